@@ -1,0 +1,1 @@
+//! Tests that span the crates: random mechanisms, golden vectors, the command as a user runs it.
