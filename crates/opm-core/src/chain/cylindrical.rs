@@ -1,0 +1,64 @@
+//! Chains of two coaxial joints: revolute, prismatic or helical. Linear, and counting whole turns,
+//! since a helical joint does.
+
+use super::{Amount, ChainError, DEGENERATE};
+
+/// A displacement about and along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylindricalDisplacement {
+    /// Radians, whole turns counted.
+    pub angle: f64,
+    /// Metres.
+    pub advance: f64,
+}
+
+/// A joint on the axis: what one unit of its coordinate turns and advances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoaxialJoint {
+    /// Radians a unit: ±1 revolute or helical, 0 prismatic.
+    pub turn: f64,
+    /// Metres a unit: 0 revolute, ±1 prismatic, ± the pitch helical.
+    pub advance: f64,
+}
+
+/// Two coaxial joints: one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylindricalChain {
+    joints: [CoaxialJoint; 2],
+    determinant: f64,
+}
+
+impl CylindricalChain {
+    /// The closed form of two joints on one axis.
+    ///
+    /// # Errors
+    /// Two of one kind, or two helical joints of one pitch.
+    pub fn new(joints: [CoaxialJoint; 2]) -> Result<Self, ChainError> {
+        let [p, q] = joints;
+        let determinant = p.turn * q.advance - q.turn * p.advance;
+        let size = p.advance.abs().max(q.advance.abs());
+        if determinant.abs() <= DEGENERATE * size {
+            return Err(ChainError::Dependent("two coaxial joints of one pitch"));
+        }
+        Ok(Self { joints, determinant })
+    }
+
+    /// The joints' amounts that displace the outer link by `target`.
+    #[inline]
+    pub fn inverse(&self, target: &CylindricalDisplacement) -> [Amount; 2] {
+        let [p, q] = self.joints;
+        let first = (target.angle * q.advance - q.turn * target.advance) / self.determinant;
+        let second = (p.turn * target.advance - target.angle * p.advance) / self.determinant;
+        [Amount::Value(first), Amount::Value(second)]
+    }
+
+    /// The displacement of the outer link.
+    pub fn forward(&self, amounts: &[Amount; 2]) -> CylindricalDisplacement {
+        let [p, q] = self.joints;
+        let [a, b] = amounts.map(Amount::value);
+        CylindricalDisplacement {
+            angle: p.turn * a + q.turn * b,
+            advance: p.advance * a + q.advance * b,
+        }
+    }
+}

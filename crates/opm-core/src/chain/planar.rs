@@ -1,0 +1,222 @@
+//! Chains of three revolute and prismatic joints in a plane, `SE(2)` as complex numbers.
+//!
+//! A planar displacement takes the point `z` to `r z + t`, `|r| = 1`. The two-valued chains find
+//! their one hard coordinate from a triangle and the rest by complex division.
+
+mod ppr;
+mod prp;
+mod prr;
+mod rpp;
+mod rpr;
+mod rrp;
+mod rrr;
+
+pub use ppr::Ppr;
+pub use prp::Prp;
+pub use prr::Prr;
+pub use rpp::Rpp;
+pub use rpr::Rpr;
+pub use rrp::Rrp;
+pub use rrr::Rrr;
+
+use super::{Amount, Branch, ChainError, Gap};
+use nalgebra::Complex;
+
+/// A displacement of the plane: `z ↦ rotation · z + translation`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanarDisplacement {
+    /// Unit.
+    pub rotation: Complex<f64>,
+    /// Metres.
+    pub translation: Complex<f64>,
+}
+
+impl PlanarDisplacement {
+    /// The identity.
+    pub const IDENTITY: Self =
+        Self { rotation: Complex::new(1.0, 0.0), translation: Complex::new(0.0, 0.0) };
+
+    /// Where the point `z` goes.
+    #[inline]
+    pub fn apply(&self, z: Complex<f64>) -> Complex<f64> {
+        self.rotation * z + self.translation
+    }
+
+    /// First `other`, then `self`.
+    #[inline]
+    #[must_use]
+    pub fn after(&self, other: &Self) -> Self {
+        Self {
+            rotation: self.rotation * other.rotation,
+            translation: self.apply(other.translation),
+        }
+    }
+
+    /// The displacement back.
+    #[inline]
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conj();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
+}
+
+/// A joint of a planar chain at home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanarJoint {
+    /// Rotation about the point `at`; counted clockwise where `reversed`.
+    Revolute {
+        /// Metres.
+        at: Complex<f64>,
+        /// The joint's axis points against the plane's normal.
+        reversed: bool,
+    },
+    /// Translation in the direction `along`, a unit vector.
+    Prismatic {
+        /// Unit.
+        along: Complex<f64>,
+    },
+}
+
+impl PlanarJoint {
+    /// The displacement of the outer link.
+    pub fn displacement(&self, amount: Amount) -> PlanarDisplacement {
+        match *self {
+            Self::Revolute { at, reversed } => {
+                let turn = amount.turn();
+                let rotation = if reversed { turn.conj() } else { turn };
+                PlanarDisplacement { rotation, translation: at - rotation * at }
+            }
+            Self::Prismatic { along } => PlanarDisplacement {
+                rotation: Complex::new(1.0, 0.0),
+                translation: along * amount.value(),
+            },
+        }
+    }
+}
+
+/// A revolute as its closed form needs it: where it is, and which way it counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pivot {
+    at: Complex<f64>,
+    reversed: bool,
+}
+
+impl Pivot {
+    /// The amount for a rotation by `r`, counter-clockwise in the plane's frame.
+    #[inline]
+    fn amount(&self, r: Complex<f64>) -> Amount {
+        Amount::Turn(if self.reversed { r.conj() } else { r })
+    }
+}
+
+/// The three joints of a chain: their closed form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanarChain {
+    /// Two links and a wrist.
+    Rrr(Rrr),
+    /// A slider and a link.
+    Prr(Prr),
+    /// A link that ends in a slider: the slider and link, backwards.
+    Rrp(Rrp),
+    /// A telescope between two pivots.
+    Rpr(Rpr),
+    /// A pivot that carries two sliders.
+    Rpp(Rpp),
+    /// Two sliders that carry a pivot.
+    Ppr(Ppr),
+    /// A pivot between two sliders.
+    Prp(Prp),
+}
+
+impl PlanarChain {
+    /// The closed form of three joints, base first.
+    ///
+    /// # Errors
+    /// Where the three are dependent in every configuration, or are three sliders.
+    pub fn new(joints: [PlanarJoint; 3]) -> Result<Self, ChainError> {
+        use PlanarJoint::{Prismatic, Revolute};
+        let pivot = |at, reversed| Pivot { at, reversed };
+        Ok(match joints {
+            [
+                Revolute { at: p1, reversed: r1 },
+                Revolute { at: p2, reversed: r2 },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Rrr(Rrr::new(pivot(p1, r1), pivot(p2, r2), pivot(p3, r3))?),
+            [
+                Prismatic { along },
+                Revolute { at: p2, reversed: r2 },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Prr(Prr::new(along, pivot(p2, r2), pivot(p3, r3))?),
+            [
+                Revolute { at: p1, reversed: r1 },
+                Revolute { at: p2, reversed: r2 },
+                Prismatic { along },
+            ] => Self::Rrp(Rrp::new(pivot(p1, r1), pivot(p2, r2), along)?),
+            [
+                Revolute { at: p1, reversed: r1 },
+                Prismatic { along },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Rpr(Rpr::new(pivot(p1, r1), along, pivot(p3, r3))),
+            [Revolute { at, reversed }, Prismatic { along: d2 }, Prismatic { along: d3 }] => {
+                Self::Rpp(Rpp::new(pivot(at, reversed), d2, d3)?)
+            }
+            [Prismatic { along: d1 }, Prismatic { along: d2 }, Revolute { at, reversed }] => {
+                Self::Ppr(Ppr::new(d1, d2, pivot(at, reversed))?)
+            }
+            [Prismatic { along: d1 }, Revolute { at, reversed }, Prismatic { along: d3 }] => {
+                Self::Prp(Prp::new(d1, pivot(at, reversed), d3))
+            }
+            [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
+                return Err(ChainError::Dependent("three sliders in one plane"));
+            }
+        })
+    }
+
+    /// Whether a target has two solutions: the chain has a choice of branch.
+    pub fn has_choice(&self) -> bool {
+        matches!(self, Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_))
+    }
+
+    /// The joints' displacements that move the outer link by `target`.
+    ///
+    /// # Errors
+    /// Out of reach: by how much.
+    #[inline]
+    pub fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Gap> {
+        match self {
+            Self::Rrr(chain) => chain.inverse(target, branch),
+            Self::Prr(chain) => chain.inverse(target, branch),
+            Self::Rrp(chain) => chain.inverse(target, branch),
+            Self::Rpr(chain) => chain.inverse(target, branch),
+            Self::Rpp(chain) => Ok(chain.inverse(target)),
+            Self::Ppr(chain) => Ok(chain.inverse(target)),
+            Self::Prp(chain) => chain.inverse(target),
+        }
+    }
+}
+
+/// The displacement of the outer link: the product of the joints' displacements, base first.
+pub fn forward(joints: &[PlanarJoint; 3], amounts: &[Amount; 3]) -> PlanarDisplacement {
+    joints
+        .iter()
+        .zip(amounts)
+        .fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| g.after(&joint.displacement(amount)))
+}
+
+/// `a × b`, the third component of the cross product.
+#[inline]
+fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
+    a.re * b.im - a.im * b.re
+}
+
+/// `z = m u + n v`: the coordinates of `z` along two unit directions that are not parallel.
+#[inline]
+fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
+    let area = cross(u, v);
+    (cross(z, v) / area, cross(u, z) / area)
+}

@@ -1,0 +1,25 @@
+//! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
+
+use super::{Amount, ChainError, Pivot, PlanarDisplacement, Rpp};
+use nalgebra::Complex;
+
+/// Two sliders, then a pivot: one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ppr(Rpp);
+
+impl Ppr {
+    pub(super) fn new(
+        d1: Complex<f64>,
+        d2: Complex<f64>,
+        pivot: Pivot,
+    ) -> Result<Self, ChainError> {
+        Rpp::new(pivot, d2, d1).map(Self)
+    }
+
+    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.
+    #[inline]
+    pub(super) fn inverse(&self, target: &PlanarDisplacement) -> [Amount; 3] {
+        let [a3, a2, a1] = self.0.inverse(&target.inverse());
+        [a1.inverse(), a2.inverse(), a3.inverse()]
+    }
+}

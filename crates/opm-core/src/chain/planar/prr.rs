@@ -1,0 +1,71 @@
+//! PRR: a slider that carries a link (Eqs. 13-16 of the paper, with the division by 2 that its
+//! Eq. 16 lacks).
+
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
+use crate::chain::{RIM, direction};
+use nalgebra::Complex;
+
+/// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
+/// slider is ahead of the link's outer pivot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prr {
+    slide: Complex<f64>,
+    pivots: [Pivot; 2],
+    link: Complex<f64>,
+    link_square: f64,
+}
+
+impl Prr {
+    pub(super) fn new(slide: Complex<f64>, p2: Pivot, p3: Pivot) -> Result<Self, ChainError> {
+        let link = p3.at - p2.at;
+        if link.norm() == 0.0 {
+            return Err(ChainError::Dependent("two pivots coincide: a zero-length link"));
+        }
+        Ok(Self { slide, pivots: [p2, p3], link, link_square: link.norm_sqr() })
+    }
+
+    /// For the outer pivot at `outer`: its coordinate along the slide, from the inner pivot at
+    /// home, and the square of what the link has left along the slide. Within reach where that is
+    /// not negative; the slider is then at the sum or difference of the first and the root.
+    #[inline]
+    pub fn triangle(&self, outer: Complex<f64>) -> (f64, f64) {
+        let local = (outer - self.pivots[0].at) * self.slide.conj();
+        (local.re, self.link_square - local.im * local.im)
+    }
+
+    /// Whether the link can leave this square along the slide, the rim included.
+    #[inline]
+    pub fn closes(&self, square: f64) -> bool {
+        square >= -2.0 * RIM * self.link_square
+    }
+
+    /// The home position of the outer pivot, which a target displaces.
+    #[inline]
+    pub fn outer(&self) -> Complex<f64> {
+        self.pivots[1].at
+    }
+
+    #[inline]
+    pub(super) fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Gap> {
+        let outer = target.apply(self.outer());
+        let (along, square) = self.triangle(outer);
+        if !self.closes(square) {
+            return Err(self.gap(outer));
+        }
+        let slider = along + branch.sign() * square.max(0.0).sqrt();
+        let link = outer - self.pivots[0].at - self.slide * slider;
+        let r2 = direction(link * self.link.conj(), self.link_square);
+        let r3 = target.rotation * r2.conj();
+        Ok([Amount::Value(slider), self.pivots[0].amount(r2), self.pivots[1].amount(r3)])
+    }
+
+    #[cold]
+    fn gap(&self, outer: Complex<f64>) -> Gap {
+        let local = (outer - self.pivots[0].at) * self.slide.conj();
+        Gap::length(local.im.abs() - self.link.norm())
+    }
+}

@@ -1,0 +1,33 @@
+//! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
+
+use super::{Amount, ChainError, Pivot, PlanarDisplacement, along, cross};
+use crate::chain::DEGENERATE;
+use nalgebra::Complex;
+
+/// A pivot, then two sliders: one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rpp {
+    pivot: Pivot,
+    slides: [Complex<f64>; 2],
+}
+
+impl Rpp {
+    pub(super) fn new(
+        pivot: Pivot,
+        d2: Complex<f64>,
+        d3: Complex<f64>,
+    ) -> Result<Self, ChainError> {
+        if cross(d2, d3).abs() <= DEGENERATE {
+            return Err(ChainError::Dependent("two sliders are parallel"));
+        }
+        Ok(Self { pivot, slides: [d2, d3] })
+    }
+
+    #[inline]
+    pub(super) fn inverse(&self, target: &PlanarDisplacement) -> [Amount; 3] {
+        // The pivot's own point of the outer link, turned back to home.
+        let moved = target.apply(self.pivot.at) - self.pivot.at;
+        let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
+        [self.pivot.amount(target.rotation), Amount::Value(s2), Amount::Value(s3)]
+    }
+}

@@ -1,0 +1,44 @@
+//! RPR: a telescope between two pivots.
+
+use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement};
+use crate::chain::{RIM, direction};
+use nalgebra::Complex;
+
+/// A pivot, a slider and a pivot. `+` where the slider's root has the plus sign: the outer pivot is
+/// ahead of the foot of the inner one on the slide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rpr {
+    pivots: [Pivot; 2],
+    slide: Complex<f64>,
+    /// From the inner to the outer pivot at home, along the slide (re) and square to it (im).
+    offset: Complex<f64>,
+}
+
+impl Rpr {
+    pub(super) fn new(p1: Pivot, slide: Complex<f64>, p3: Pivot) -> Self {
+        Self { pivots: [p1, p3], slide, offset: (p3.at - p1.at) * slide.conj() }
+    }
+
+    #[inline]
+    pub(super) fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Gap> {
+        let reach = target.apply(self.pivots[1].at) - self.pivots[0].at;
+        let aside = self.offset.im * self.offset.im;
+        let square = reach.norm_sqr() - aside;
+        if square.is_nan() || square < -2.0 * RIM * aside {
+            return Err(Gap::length(self.offset.im.abs() - reach.norm()));
+        }
+        let ahead = branch.sign() * square.max(0.0).sqrt();
+        let telescope = Complex::new(ahead, self.offset.im) * self.slide;
+        let r1 = direction(reach * telescope.conj(), reach.norm_sqr());
+        let r3 = target.rotation * r1.conj();
+        Ok([
+            self.pivots[0].amount(r1),
+            Amount::Value(ahead - self.offset.re),
+            self.pivots[1].amount(r3),
+        ])
+    }
+}

@@ -1,0 +1,25 @@
+//! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
+
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, Prr};
+use nalgebra::Complex;
+
+/// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rrp(Prr);
+
+impl Rrp {
+    pub(super) fn new(p1: Pivot, p2: Pivot, slide: Complex<f64>) -> Result<Self, ChainError> {
+        Prr::new(slide, p2, p1).map(Self)
+    }
+
+    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.
+    #[inline]
+    pub(super) fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Gap> {
+        let [a3, a2, a1] = self.0.inverse(&target.inverse(), branch)?;
+        Ok([a1.inverse(), a2.inverse(), a3.inverse()])
+    }
+}

@@ -1,0 +1,89 @@
+//! RRR: a two-link arm from a fixed pivot, with a wrist.
+
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
+use crate::chain::{DEGENERATE, RIM, direction};
+use nalgebra::Complex;
+
+/// Two links between three pivots. `+` where the second link turns counter-clockwise from the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rrr {
+    pivots: [Pivot; 3],
+    /// The links at home.
+    first: Complex<f64>,
+    second: Complex<f64>,
+    /// Rotation that lays the second link along the first, from home.
+    straighten: Complex<f64>,
+    /// `(|first|² + |second|²) / 2` and `|first| |second|`: the law of cosines.
+    mean_square: f64,
+    product: f64,
+}
+
+impl Rrr {
+    pub(super) fn new(p1: Pivot, p2: Pivot, p3: Pivot) -> Result<Self, ChainError> {
+        let (first, second) = (p2.at - p1.at, p3.at - p2.at);
+        let (a, b) = (first.norm(), second.norm());
+        if a.min(b) <= DEGENERATE * a.max(b) {
+            return Err(ChainError::Dependent("two pivots coincide: a zero-length link"));
+        }
+        Ok(Self {
+            pivots: [p1, p2, p3],
+            first,
+            second,
+            straighten: first * second.conj() / (a * b),
+            mean_square: (a * a + b * b) / 2.0,
+            product: a * b,
+        })
+    }
+
+    /// Cosine of the angle from the first link to the second when the wrist is at `wrist`; within
+    /// reach where it lies in `[-1, 1]`.
+    #[inline]
+    pub fn elbow_cosine(&self, wrist: Complex<f64>) -> f64 {
+        ((wrist - self.pivots[0].at).norm_sqr() / 2.0 - self.mean_square) / self.product
+    }
+
+    /// Whether the elbow can take this cosine, the rim included.
+    #[inline]
+    pub fn closes(cosine: f64) -> bool {
+        cosine.abs() <= 1.0 + RIM
+    }
+
+    /// The home position of the wrist, which a target displaces.
+    #[inline]
+    pub fn wrist(&self) -> Complex<f64> {
+        self.pivots[2].at
+    }
+
+    #[inline]
+    pub(super) fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Gap> {
+        let wrist = target.apply(self.wrist());
+        let cosine = self.elbow_cosine(wrist);
+        if !Self::closes(cosine) {
+            return Err(self.gap(wrist));
+        }
+        let cosine = cosine.clamp(-1.0, 1.0);
+        let elbow = Complex::new(cosine, branch.sign() * (1.0 - cosine * cosine).sqrt());
+        let r2 = elbow * self.straighten;
+        // The arm with its elbow so bent, at home's first angle, and where it must point.
+        let bent = self.first + r2 * self.second;
+        let reach = wrist - self.pivots[0].at;
+        let r1 = direction(reach * bent.conj(), self.mean_square);
+        let r3 = target.rotation * (r1 * r2).conj();
+        Ok([
+            self.pivots[0].amount(r1),
+            self.pivots[1].amount(r2),
+            self.pivots[2].amount(r3),
+        ])
+    }
+
+    #[cold]
+    fn gap(&self, wrist: Complex<f64>) -> Gap {
+        let distance = (wrist - self.pivots[0].at).norm();
+        let (a, b) = (self.first.norm(), self.second.norm());
+        Gap::length((distance - (a + b)).max((a - b).abs() - distance))
+    }
+}

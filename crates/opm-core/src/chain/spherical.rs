@@ -1,0 +1,129 @@
+//! Chains inside a sphere: three revolutes through its centre, with any axes, and the ball.
+
+use super::{Amount, Branch, ChainError, DEGENERATE, Gap, RIM};
+use nalgebra::{Complex, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
+
+/// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. `+` where the triple product
+/// `a₁ · (a₂ × a₃)` of the axes, as they have moved, is positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphericalChain {
+    axes: [Vector3<f64>; 3],
+    /// `a₁·a₂` and `a₂·a₃`: cosines of the arcs of the two links.
+    cosines: [f64; 2],
+    /// `a₂` square to `a₁`, and `a₁ × a₂`.
+    second_on_first: [Vector3<f64>; 2],
+    /// `a₃` square to `a₂`, and `a₂ × a₃`.
+    third_on_second: [Vector3<f64>; 2],
+    /// Two directions that make a right-handed triad with `a₃`.
+    beside_third: [Vector3<f64>; 2],
+}
+
+impl SphericalChain {
+    /// The closed form of three revolutes with these axes at home, base first.
+    ///
+    /// # Errors
+    /// Where two neighbouring axes are parallel: the chain cannot turn every way.
+    pub fn new(axes: [Unit<Vector3<f64>>; 3]) -> Result<Self, ChainError> {
+        let [a1, a2, a3] = axes.map(Unit::into_inner);
+        let (n12, n23) = (a1.cross(&a2), a2.cross(&a3));
+        if n12.norm().min(n23.norm()) <= DEGENERATE {
+            return Err(ChainError::Dependent("two neighbouring axes are parallel"));
+        }
+        let beside = n23.normalize();
+        Ok(Self {
+            axes: [a1, a2, a3],
+            cosines: [a1.dot(&a2), a2.dot(&a3)],
+            second_on_first: [a2 - a1 * a1.dot(&a2), n12],
+            third_on_second: [a3 - a2 * a2.dot(&a3), n23],
+            beside_third: [beside, a3.cross(&beside)],
+        })
+    }
+
+    /// The first joint's rotation, which the third axis's direction `w = R a₃` decides:
+    /// `a₂ · exp(-a₁q₁) w = a₂ · a₃`, that is `A cos q₁ + B sin q₁ = d` (Eqs. 2-3 of the paper).
+    ///
+    /// # Errors
+    /// Out of reach: by which angle `w` is too near to the first axis or too far from it.
+    #[inline]
+    pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, Gap> {
+        let a = self.second_on_first[0].dot(w);
+        let b = self.second_on_first[1].dot(w);
+        let d = self.cosines[1] - self.cosines[0] * self.axes[0].dot(w);
+        let square = a * a + b * b;
+        if !(d.abs() <= square.sqrt() + RIM) {
+            return Err(self.gap(w));
+        }
+        if square <= RIM * RIM {
+            // w on the first axis, in reach only because the links' arcs are equal or supplementary.
+            return Ok(Complex::new(1.0, 0.0));
+        }
+        let root = branch.sign() * (square - d * d).max(0.0).sqrt();
+        let e = Complex::new(a * d + b * root, b * d - a * root);
+        Ok(e * e.norm_sqr().sqrt().recip())
+    }
+
+    /// The joints' rotations that turn the outer link by `target`.
+    ///
+    /// # Errors
+    /// Out of reach: by which angle.
+    #[inline]
+    pub fn inverse(&self, target: &Matrix3<f64>, branch: Branch) -> Result<[Amount; 3], Gap> {
+        let w = target * self.axes[2];
+        let q1 = self.first(&w, branch)?;
+        let w1 = rotate_back(&self.axes[0], q1, &w);
+        let q2 = angle(&self.third_on_second, &w1);
+        let beside = target * self.beside_third[0];
+        let beside1 = rotate_back(&self.axes[0], q1, &beside);
+        let beside2 = rotate_back(&self.axes[1], q2, &beside1);
+        let q3 = angle(&self.beside_third, &beside2);
+        Ok([Amount::Turn(q1), Amount::Turn(q2), Amount::Turn(q3)])
+    }
+
+    /// The third axis at home: what [`SphericalChain::first`] needs of a target.
+    #[inline]
+    pub fn third_axis(&self) -> &Vector3<f64> {
+        &self.axes[2]
+    }
+
+    /// The rotation of the outer link: the product of the joints' rotations, base first.
+    pub fn forward(&self, amounts: &[Amount; 3]) -> Matrix3<f64> {
+        self.axes.iter().zip(amounts).fold(Matrix3::identity(), |r, (axis, amount)| {
+            r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), amount.value()).into_inner()
+        })
+    }
+
+    #[cold]
+    fn gap(&self, w: &Vector3<f64>) -> Gap {
+        let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
+        let [a12, a23] = self.cosines.map(arc);
+        let to_first = arc(self.axes[0].dot(w));
+        let nearest = (a12 - a23).abs();
+        let farthest = (a12 + a23).min(std::f64::consts::TAU - a12 - a23);
+        Gap::angle((nearest - to_first).max(to_first - farthest))
+    }
+}
+
+/// Any rotation, as the three components of its rotation vector.
+pub fn ball_inverse(target: &Matrix3<f64>) -> [Amount; 3] {
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*target));
+    let vector = rotation.scaled_axis();
+    [0, 1, 2].map(|i| Amount::Value(vector[i]))
+}
+
+/// The rotation of a ball whose rotation vector has these components.
+pub fn ball_forward(amounts: &[Amount; 3]) -> Matrix3<f64> {
+    Rotation3::new(Vector3::from_fn(|i, _| amounts[i].value())).into_inner()
+}
+
+/// `exp(-axis q) v`, with `q` as a unit vector.
+#[inline]
+fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    v * q.re - axis.cross(v) * q.im + axis * (axis.dot(v) * (1.0 - q.re))
+}
+
+/// The rotation, as a unit vector, that takes the first of two perpendicular directions to `v`.
+#[inline]
+fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
+    let e = Complex::new(directions[0].dot(v), directions[1].dot(v));
+    e * e.norm_sqr().sqrt().recip()
+}
