@@ -1,5 +1,5 @@
-//! Kinematics of overconstrained parallel manipulators with partial subspaces.
 
+pub mod chain;
 pub mod joint;
 pub mod leg;
 pub mod mechanism;
