@@ -1,0 +1,410 @@
+//! Every closed form against the product of exponentials, on random chains and targets.
+//!
+//! `forward` knows nothing of the closed forms: it multiplies the joints' displacements.
+
+use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
+use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
+use opm_core::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint, forward};
+use opm_core::chain::spherical::{SphericalChain, ball_forward, ball_inverse};
+use opm_core::chain::translational::TranslationalChain;
+use opm_core::chain::{Amount, Branch, ChainError};
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// The bound, as a share of the target's size.
+const TOLERANCE: f64 = 1e-10;
+const CASES: u32 = 100_000;
+
+fn e(angle: f64) -> Complex<f64> {
+    Complex::new(angle.cos(), angle.sin())
+}
+
+fn complex(range: f64) -> impl Strategy<Value = Complex<f64>> {
+    (-range..range, -range..range).prop_map(|(x, y)| Complex::new(x, y))
+}
+
+fn revolute() -> impl Strategy<Value = PlanarJoint> {
+    (complex(1.0), any::<bool>()).prop_map(|(at, reversed)| PlanarJoint::Revolute { at, reversed })
+}
+
+fn prismatic() -> impl Strategy<Value = PlanarJoint> {
+    (-PI..PI).prop_map(|angle| PlanarJoint::Prismatic { along: e(angle) })
+}
+
+fn target() -> impl Strategy<Value = PlanarDisplacement> {
+    (-PI..PI, complex(3.0))
+        .prop_map(|(angle, translation)| PlanarDisplacement { rotation: e(angle), translation })
+}
+
+fn distance(a: &PlanarDisplacement, b: &PlanarDisplacement) -> f64 {
+    (a.rotation - b.rotation).norm().max((a.translation - b.translation).norm())
+}
+
+/// Both branches return a target that is reached from random amounts; those amounts are one of the
+/// branches; a random target is reached on both branches or on neither.
+fn check_planar(
+    joints: [PlanarJoint; 3],
+    amounts: [f64; 3],
+    random: PlanarDisplacement,
+) -> Result<(), TestCaseError> {
+    let Ok(chain) = PlanarChain::new(joints) else { return Err(TestCaseError::reject("degenerate")) };
+    let made = std::array::from_fn(|i| match joints[i] {
+        PlanarJoint::Revolute { .. } => Amount::Turn(e(amounts[i])),
+        PlanarJoint::Prismatic { .. } => Amount::Value(amounts[i]),
+    });
+    let reached = forward(&joints, &made);
+    let mut found = false;
+    for branch in Branch::BOTH {
+        let solution = chain.inverse(&reached, branch);
+        prop_assert!(solution.is_ok(), "{joints:?} {made:?} {branch:?} {solution:?}");
+        let solution = solution.unwrap();
+        // Near a parallel pair of sliders the amounts, and so their rounding, grow without bound.
+        let size = solution.iter().map(|a| a.value().abs()).fold(3.0, f64::max);
+        let off = distance(&forward(&joints, &solution), &reached);
+        prop_assert!(off <= TOLERANCE * size, "{joints:?} {made:?} {branch:?} off by {off}");
+        found |= solution.iter().zip(&made).all(|(a, b)| match a {
+            Amount::Turn(turn) => (turn - b.turn()).norm() < 1e-5 * size,
+            Amount::Value(value) => (value - b.value()).abs() < 1e-5 * size,
+        });
+    }
+    prop_assert!(found, "the amounts that made the target are on no branch: {joints:?} {made:?}");
+    let both = Branch::BOTH.map(|branch| chain.inverse(&random, branch));
+    match both {
+        [Ok(plus), Ok(minus)] => {
+            let size = plus.iter().chain(&minus).map(|a| a.value().abs()).fold(3.0, f64::max);
+            for solution in [plus, minus] {
+                let off = distance(&forward(&joints, &solution), &random);
+                prop_assert!(off <= TOLERANCE * size, "{joints:?} {random:?} off by {off}");
+            }
+            prop_assert_eq!(chain.has_choice(), plus != minus);
+        }
+        [Err(plus), Err(minus)] => {
+            prop_assert_eq!(plus, minus);
+            prop_assert!(plus.excess > 0.0);
+        }
+        mixed => prop_assert!(false, "one branch reaches, the other does not: {mixed:?}"),
+    }
+    Ok(())
+}
+
+macro_rules! planar_chains {
+    ($($name:ident: $a:ident $b:ident $c:ident;)*) => {
+        proptest! {
+            #![proptest_config(ProptestConfig::with_cases(CASES))]
+            $(
+                #[test]
+                fn $name(
+                    joints in ($a(), $b(), $c()),
+                    amounts in [-3.1..3.1, -3.1..3.1, -3.1..3.1_f64],
+                    random in target(),
+                ) {
+                    check_planar([joints.0, joints.1, joints.2], amounts, random)?;
+                }
+            )*
+        }
+    };
+}
+
+planar_chains! {
+    rrr: revolute revolute revolute;
+    prr: prismatic revolute revolute;
+    rrp: revolute revolute prismatic;
+    rpr: revolute prismatic revolute;
+    rpp: revolute prismatic prismatic;
+    ppr: prismatic prismatic revolute;
+    prp: prismatic revolute prismatic;
+}
+
+/// Whether a chain reaches a wrist, by geometry: which distances its first two joints can give.
+#[test]
+fn reach_is_what_geometry_says() {
+    let revolute = |x: f64, y: f64| PlanarJoint::Revolute { at: Complex::new(x, y), reversed: false };
+    let prismatic = |angle| PlanarJoint::Prismatic { along: e(angle) };
+    let moved = |x: f64, y: f64| PlanarDisplacement {
+        rotation: e(0.3),
+        translation: Complex::new(x, y) - e(0.3) * Complex::new(3.0, 0.0),
+    };
+    // Links 2 and 1 from the origin: wrist distances 1 to 3.
+    let rrr = PlanarChain::new([revolute(0.0, 0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
+    let excess = |chain: &PlanarChain, x, y| {
+        chain.inverse(&moved(x, y), Branch::Plus).err().map_or(0.0, |gap| gap.excess)
+    };
+    for angle in [0.0, 1.0, 4.0_f64] {
+        for (radius, expected) in
+            [(0.0, 1.0), (0.75, 0.25), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (3.5, 0.5), (1e6, 999_997.0)]
+        {
+            let found = excess(&rrr, radius * angle.cos(), radius * angle.sin());
+            assert!((found - expected).abs() < 1e-9, "radius {radius}: {found}, {expected}");
+        }
+    }
+    // A slide along x with a link of 1: wrists within 1 of the x axis.
+    let prr = PlanarChain::new([prismatic(0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
+    for (y, expected) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (1.5, 0.5), (-3.0, 2.0)] {
+        let found = excess(&prr, 7.0, y);
+        assert!((found - expected).abs() < 1e-12, "{y}: {found}");
+    }
+    // A telescope whose slide passes the inner pivot at a distance of 1.
+    let rpr = PlanarChain::new([revolute(0.0, 1.0), prismatic(0.0), revolute(3.0, 0.0)]).unwrap();
+    for (radius, expected) in [(0.25, 0.75), (1.0, 0.0), (5.0, 0.0)] {
+        let found = excess(&rpr, radius * 0.6, 1.0 + radius * 0.8);
+        assert!((found - expected).abs() < 1e-12, "{radius}: {found}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+    /// The number of branches of an RRR is the number of elbows: crossings of the circle that the
+    /// elbow moves on with the circle about the wrist, counted along the first.
+    #[test]
+    fn rrr_has_as_many_branches_as_circles_cross(
+        joints in (revolute(), revolute(), revolute()), target in target(),
+    ) {
+        let joints = [joints.0, joints.1, joints.2];
+        let at = joints.map(|j| match j {
+            PlanarJoint::Revolute { at, .. } => at,
+            PlanarJoint::Prismatic { .. } => unreachable!(),
+        });
+        let wrist = target.apply(at[2]);
+        let length = (at[2] - at[1]).norm();
+        let beyond = |angle: f64| (at[0] + e(angle) * (at[1] - at[0]) - wrist).norm() - length;
+        let steps = 5_000;
+        let signs: Vec<bool> =
+            (0..steps).map(|i| beyond(TAU * f64::from(i) / f64::from(steps)) > 0.0).collect();
+        let crossings =
+            (0..signs.len()).filter(|&i| signs[i] != signs[(i + 1) % signs.len()]).count();
+        let chain = PlanarChain::new(joints).unwrap();
+        let branches =
+            Branch::BOTH.iter().filter(|&&b| chain.inverse(&target, b).is_ok()).count();
+        // Two crossings within one step of each other are not seen: the rim, left out by distance.
+        let first = (at[1] - at[0]).norm();
+        let distance = (wrist - at[0]).norm();
+        let rim = (distance - (first + length).abs()).abs().min((distance - (first - length).abs()).abs());
+        prop_assume!(rim > 1e-5);
+        prop_assert_eq!(branches, crossings);
+    }
+}
+
+fn axis() -> impl Strategy<Value = Unit<Vector3<f64>>> {
+    (-1.0..1.0_f64, -PI..PI).prop_map(|(z, a)| {
+        let r = (1.0 - z * z).sqrt();
+        Unit::new_normalize(Vector3::new(r * a.cos(), r * a.sin(), z))
+    })
+}
+
+fn rotation() -> impl Strategy<Value = Matrix3<f64>> {
+    (axis(), 0.0..PI).prop_map(|(axis, angle)| Rotation3::from_axis_angle(&axis, angle).into_inner())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(CASES))]
+
+    #[test]
+    fn spherical_rrr(
+        axes in [axis(), axis(), axis()],
+        amounts in [-3.1..3.1, -3.1..3.1, -3.1..3.1_f64],
+        random in rotation(),
+    ) {
+        let Ok(chain) = SphericalChain::new(axes) else {
+            return Err(TestCaseError::reject("degenerate"));
+        };
+        let made = amounts.map(|a| Amount::Turn(e(a)));
+        let reached = chain.forward(&made);
+        let mut found = false;
+        for branch in Branch::BOTH {
+            let solution = chain.inverse(&reached, branch);
+            prop_assert!(solution.is_ok(), "{axes:?} {amounts:?}: {solution:?}");
+            let solution = solution.unwrap();
+            let off = (chain.forward(&solution) - reached).norm();
+            prop_assert!(off < TOLERANCE, "{axes:?} {amounts:?} {branch:?}: off by {off}");
+            found |= solution.iter().zip(&made).all(|(a, b)| (a.turn() - b.turn()).norm() < 1e-4);
+            // The branch is the sign of the triple product of the axes as they have moved.
+            let turn = |i: usize| Rotation3::from_axis_angle(&axes[i], solution[i].value());
+            let second = turn(0) * axes[1].into_inner();
+            let third = turn(0) * turn(1) * axes[2].into_inner();
+            let triple = axes[0].dot(&second.cross(&third));
+            prop_assert!(triple * branch.sign() > -1e-6, "{triple} on {branch:?}");
+        }
+        prop_assert!(found, "{axes:?} {amounts:?}: made on no branch");
+        // A random rotation is in reach iff the angle from the first axis to the turned third one
+        // is between the difference and the sum of the links' arcs.
+        let (a12, a23) = (axes[0].angle(&axes[1]), axes[1].angle(&axes[2]));
+        let between = axes[0].angle(&(random * axes[2].into_inner()));
+        let (low, high) = ((a12 - a23).abs(), (a12 + a23).min(TAU - a12 - a23));
+        for branch in Branch::BOTH {
+            match chain.inverse(&random, branch) {
+                Ok(solution) => {
+                    prop_assert!((chain.forward(&solution) - random).norm() < TOLERANCE);
+                    prop_assert!(between > low - 1e-6 && between < high + 1e-6);
+                }
+                Err(gap) => {
+                    let excess = (low - between).max(between - high);
+                    prop_assert!((gap.excess - excess).abs() < 1e-6, "{gap:?}, {excess}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ball(target in rotation()) {
+        prop_assert!((ball_forward(&ball_inverse(&target)) - target).norm() < TOLERANCE);
+    }
+
+    #[test]
+    fn coaxial(kinds in [0..3, 0..3], pitches in [-2.0..2.0, -2.0..2.0_f64], angle in -20.0..20.0, advance in -3.0..3.0_f64) {
+        let joint = |i: usize| match kinds[i] {
+            0 => CoaxialJoint { turn: 1.0, advance: 0.0 },
+            1 => CoaxialJoint { turn: 0.0, advance: -1.0 },
+            _ => CoaxialJoint { turn: -1.0, advance: pitches[i] },
+        };
+        let Ok(chain) = CylindricalChain::new([joint(0), joint(1)]) else {
+            prop_assert!(kinds[0] == kinds[1], "only two of one kind are dependent");
+            return Ok(());
+        };
+        let target = CylindricalDisplacement { angle, advance };
+        let amounts = chain.inverse(&target);
+        let reached = chain.forward(&amounts);
+        let size = amounts.iter().map(|a| a.value().abs()).fold(20.0, f64::max);
+        prop_assert!((reached.angle - angle).abs() < TOLERANCE * size);
+        prop_assert!((reached.advance - advance).abs() < TOLERANCE * size);
+    }
+
+    #[test]
+    fn two_sliders(angles in [-PI..PI, -PI..PI], target in complex(3.0)) {
+        let Ok(chain) = TranslationalChain::new(angles.map(e)) else {
+            return Err(TestCaseError::reject("parallel"));
+        };
+        let amounts = chain.inverse(target);
+        let size = amounts.iter().map(|a| a.value().abs()).fold(3.0, f64::max);
+        prop_assert!((chain.forward(&amounts) - target).norm() < TOLERANCE * size);
+    }
+}
+
+#[test]
+fn the_rim_is_inside_and_both_branches_meet_there() {
+    let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
+    let joints = [revolute(0.0), revolute(0.1), revolute(0.3)];
+    let chain = PlanarChain::new(joints).unwrap();
+    for angle in (0..100).map(|i| 0.0628 * f64::from(i)) {
+        for radius in [0.3_f64, 0.1] {
+            let target = PlanarDisplacement {
+                rotation: e(angle),
+                translation: e(angle) * (radius - 0.3),
+            };
+            for branch in Branch::BOTH {
+                let solution = chain.inverse(&target, branch).unwrap();
+                assert!(distance(&forward(&joints, &solution), &target) < 1e-10);
+            }
+            let outside = if radius > 0.2 { 1e-6 } else { -1e-6 };
+            let beyond = PlanarDisplacement {
+                rotation: e(angle),
+                translation: e(angle) * (radius - 0.3 + outside),
+            };
+            let gap = chain.inverse(&beyond, Branch::Plus).unwrap_err();
+            assert!((gap.excess - 1e-6).abs() < 1e-12, "{gap:?}");
+        }
+    }
+    let axes = [Vector3::z_axis(), Vector3::y_axis(), Vector3::x_axis()];
+    let chain = SphericalChain::new(axes).unwrap();
+    // Third axis straight up and straight down: on the first axis, in reach with arcs of 90 degrees.
+    for angle in [-90.0_f64, 90.0] {
+        let target = Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians()).into_inner();
+        for branch in Branch::BOTH {
+            let solution = chain.inverse(&target, branch).unwrap();
+            assert!((chain.forward(&solution) - target).norm() < 1e-10, "{angle} {solution:?}");
+        }
+    }
+}
+
+#[test]
+fn an_angle_left_free_is_home() {
+    let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
+    // Equal links fold back onto the first pivot: the first angle is free.
+    let joints = [revolute(0.0), revolute(1.0), revolute(2.0)];
+    let chain = PlanarChain::new(joints).unwrap();
+    let target =
+        PlanarDisplacement { rotation: e(0.5), translation: -e(0.5) * Complex::new(2.0, 0.0) };
+    for branch in Branch::BOTH {
+        let solution = chain.inverse(&target, branch).unwrap();
+        assert_eq!(solution[0], Amount::Turn(Complex::new(1.0, 0.0)));
+        assert!(distance(&forward(&joints, &solution), &target) < 1e-10);
+    }
+    // Arcs of 60 degrees fold the third axis onto the first.
+    let axes = [0.0, 60.0, 120.0_f64].map(|a| {
+        Unit::new_normalize(Vector3::new(a.to_radians().sin(), 0.0, a.to_radians().cos()))
+    });
+    let chain = SphericalChain::new(axes).unwrap();
+    let target = Rotation3::from_axis_angle(&Vector3::y_axis(), -120.0_f64.to_radians()).into_inner();
+    for branch in Branch::BOTH {
+        let solution = chain.inverse(&target, branch).unwrap();
+        assert!((chain.forward(&solution) - target).norm() < 1e-10);
+    }
+}
+
+#[test]
+fn chains_that_cannot_reach_a_neighbourhood_are_refused() {
+    let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
+    let prismatic = |angle| PlanarJoint::Prismatic { along: e(angle) };
+    for joints in [
+        [revolute(0.0), revolute(0.0), revolute(1.0)],
+        [revolute(0.0), revolute(1.0), revolute(1.0)],
+        [prismatic(0.0), revolute(1.0), revolute(1.0)],
+        [revolute(1.0), revolute(1.0), prismatic(0.0)],
+        [revolute(0.0), prismatic(1.0), prismatic(1.0)],
+        [prismatic(1.0), prismatic(1.0 + PI), revolute(0.0)],
+        [prismatic(0.0), prismatic(1.0), prismatic(2.0)],
+    ] {
+        assert!(matches!(PlanarChain::new(joints), Err(ChainError::Dependent(_))), "{joints:?}");
+    }
+    let (x, z) = (Vector3::x_axis(), Vector3::z_axis());
+    for axes in [[z, z, x], [x, z, z], [z, -z, x]] {
+        assert!(matches!(SphericalChain::new(axes), Err(ChainError::Dependent(_))), "{axes:?}");
+    }
+    assert!(TranslationalChain::new([e(0.4), -e(0.4)]).is_err());
+    let helix = CoaxialJoint { turn: 1.0, advance: 0.02 };
+    assert!(CylindricalChain::new([helix, helix]).is_err());
+}
+
+#[test]
+fn nothing_that_is_not_a_number_gets_out() {
+    let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
+    let prismatic = |angle| PlanarJoint::Prismatic { along: e(angle) };
+    let (r, p) = (revolute, prismatic);
+    for joints in [
+        [r(0.0), r(1.0), r(2.0)],
+        [p(0.0), r(1.0), r(2.0)],
+        [r(0.0), r(1.0), p(0.0)],
+        [r(0.0), p(0.0), r(0.0)],
+        [r(0.0), p(0.0), r(1.0)],
+        [r(0.0), p(0.0), p(1.0)],
+        [p(0.0), p(1.0), r(0.0)],
+        [p(0.0), r(0.0), p(0.0)],
+    ] {
+        let chain = PlanarChain::new(joints).unwrap();
+        for size in [0.0, 1e-300, 1e-20, 1e-12, 1.0, 1e12, 1e100] {
+            for angle in [0.0, PI / 2.0, PI, 1e-9, 2.5] {
+                for direction in [0.0, PI / 2.0, 3.0] {
+                    let target = PlanarDisplacement {
+                        rotation: e(angle),
+                        translation: e(direction) * size,
+                    };
+                    for branch in Branch::BOTH {
+                        match chain.inverse(&target, branch) {
+                            Ok(amounts) => {
+                                for amount in amounts {
+                                    assert!(amount.value().is_finite(), "{joints:?} {target:?}");
+                                    let turn = amount.turn();
+                                    assert!(
+                                        matches!(amount, Amount::Value(_))
+                                            || (turn.norm() - 1.0).abs() < 1e-12
+                                    );
+                                }
+                            }
+                            Err(gap) => assert!(gap.excess > 0.0),
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
