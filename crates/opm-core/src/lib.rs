@@ -1,6 +1,10 @@
 //! Kinematics of overconstrained parallel manipulators with partial subspaces.
 
+pub mod decomposition;
 pub mod joint;
 pub mod leg;
 pub mod mechanism;
+pub mod mobility;
 pub mod screw;
+pub mod subspace;
+mod svd;
