@@ -44,3 +44,6 @@ pub const EXAMPLES: &[Example] = &[
 pub fn find(name: &str) -> Option<&'static Example> {
     EXAMPLES.iter().find(|example| example.name == name)
 }
+
+#[cfg(test)]
+mod tests;

@@ -29,6 +29,8 @@ mod joints;
 mod problem;
 mod reader;
 mod units;
+#[cfg(test)]
+pub(super) mod writer;
 
 pub use problem::{FileErrors, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
