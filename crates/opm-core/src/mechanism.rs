@@ -1,5 +1,9 @@
 //! Mechanisms: legs between one base and one platform, at an assembled home pose.
 
+pub mod examples;
+pub mod family;
+pub mod file;
+
 use crate::joint::{Joint, JointCoordinate};
 use crate::leg::Leg;
 use nalgebra::{Point3, Vector3};

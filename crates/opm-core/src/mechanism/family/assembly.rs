@@ -1,0 +1,289 @@
+//! What every family needs to place its joints at home, and what can go wrong with that.
+
+use crate::chain::{Amount, ChainError, Gap};
+use crate::joint::{Joint, Quantity};
+use crate::leg::Leg;
+use crate::mechanism::file::FileUnits;
+use nalgebra::Isometry3;
+use std::f64::consts::PI;
+use std::fmt;
+
+/// How far outside its limits a joint may be at home, metres or radians: home values are computed,
+/// and one that belongs on a limit counts as inside.
+const ON_LIMIT: f64 = 1e-9;
+
+/// Why a parameter set does not assemble: every problem, at least one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", self.describe())]
+pub struct AssemblyError {
+    /// In the order of the legs.
+    pub problems: Vec<AssemblyProblem>,
+}
+
+impl AssemblyError {
+    fn describe(&self) -> String {
+        self.problems.iter().map(AssemblyProblem::to_string).collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// One problem of a parameter set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyProblem {
+    /// Which leg, counted as in [`Mechanism::legs`](crate::mechanism::Mechanism::legs); `None`: home,
+    /// or the mechanism as a whole.
+    pub leg: Option<usize>,
+    /// The parameter to blame, as files write it; `None`: the leg as a whole.
+    pub parameter: Option<&'static str>,
+    /// What is wrong with it.
+    pub reason: AssemblyReason,
+}
+
+impl AssemblyProblem {
+    /// The problem with its numbers in the units of a file, without the place.
+    pub fn describe(&self, units: FileUnits) -> String {
+        let reason = self.reason.describe(units);
+        match self.parameter {
+            Some(parameter) => format!("`{parameter}` {reason}"),
+            None => reason,
+        }
+    }
+}
+
+impl fmt::Display for AssemblyProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(leg) = self.leg {
+            write!(f, "leg {}: ", leg + 1)?;
+        }
+        f.write_str(&self.describe(FileUnits::SI))
+    }
+}
+
+/// What is wrong with a parameter or a leg. Values are SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AssemblyReason {
+    /// A NaN or an infinity.
+    NotFinite,
+    /// A length that must be above zero.
+    NotPositive(f64),
+    /// A length that must not be below zero.
+    Negative(f64),
+    /// An arc that is not above zero and below half a turn.
+    NotAnArc(f64),
+    /// A helical joint without advance: a revolute one.
+    NoPitch,
+    /// Not as many legs of a kind as the family has.
+    LegCount {
+        /// How many there are.
+        found: usize,
+        /// How many it has.
+        expected: usize,
+    },
+    /// No leg has a pitch.
+    NoHelicalLeg,
+    /// So many legs have a pitch.
+    HelicalLegs(usize),
+    /// Another direction than the first leg's, where all must be one.
+    Direction {
+        /// Radians, this leg's.
+        angle: f64,
+        /// Radians, the first leg's.
+        expected: f64,
+    },
+    /// Two legs of one name.
+    SameName(String),
+    /// The freedoms of the leg are dependent everywhere.
+    Degenerate(ChainError),
+    /// The leg does not reach its place at home.
+    OutOfReach {
+        /// The links that are too short or too long.
+        links: &'static str,
+        /// By how much.
+        gap: Gap,
+    },
+    /// A joint's value at home is not within its limits.
+    OutsideLimits {
+        /// The joint.
+        joint: String,
+        /// Its value at home.
+        home: f64,
+        /// Its limits.
+        limits: [f64; 2],
+        /// What these are.
+        quantity: Quantity,
+    },
+}
+
+impl AssemblyReason {
+    fn describe(&self, units: FileUnits) -> String {
+        use Quantity::{Angle, Length};
+        match self {
+            Self::NotFinite => "is not a finite number".into(),
+            Self::NotPositive(value) => {
+                format!("is {}, expected a length above 0", units.show(*value, Length))
+            }
+            Self::Negative(value) => {
+                format!("is {}, expected a length of at least 0", units.show(*value, Length))
+            }
+            Self::NotAnArc(value) => format!(
+                "is {}, expected an arc between 0 and {}",
+                units.show(*value, Angle),
+                units.show(PI, Angle)
+            ),
+            Self::NoPitch => "is 0, expected an advance per radian: a helical joint".into(),
+            Self::LegCount { found, expected } => {
+                format!("is there {found} times, expected {expected} legs")
+            }
+            Self::NoHelicalLeg => {
+                "never has a `pitch`, expected one in exactly one leg, the helical one".into()
+            }
+            Self::HelicalLegs(count) => {
+                format!("is given for {count} legs, expected it for exactly one, the helical leg")
+            }
+            Self::Direction { angle, expected } => format!(
+                "gives the direction alpha + beta = {}, expected {}, as for the first leg: it is \
+                 the common axis",
+                units.show(*angle, Angle),
+                units.show(*expected, Angle)
+            ),
+            Self::SameName(name) => {
+                format!("is {name:?} for two legs, expected different names")
+            }
+            Self::Degenerate(error) => format!("the leg has dependent joints: {error}"),
+            Self::OutOfReach { links, gap } => format!(
+                "home is out of this leg's reach by {}, expected {links} that reach it",
+                units.show(gap.excess, gap.quantity)
+            ),
+            Self::OutsideLimits { joint, home, limits: [low, high], quantity } => format!(
+                "leave out home: {joint} is {} there, expected it between {} and {}",
+                units.show(*home, *quantity),
+                units.show(*low, *quantity),
+                units.show(*high, *quantity)
+            ),
+        }
+    }
+}
+
+/// The problems of one leg, or of home, as they are found.
+#[derive(Default)]
+pub(super) struct Problems(Vec<(Option<&'static str>, AssemblyReason)>);
+
+impl Problems {
+    pub(super) fn add(&mut self, parameter: Option<&'static str>, reason: AssemblyReason) {
+        self.0.push((parameter, reason));
+    }
+
+    pub(super) fn finite(&mut self, parameters: &[(&'static str, f64)]) {
+        self.check(parameters, |_| None);
+    }
+
+    pub(super) fn positive(&mut self, parameters: &[(&'static str, f64)]) {
+        self.check(parameters, |v| (v <= 0.0).then_some(AssemblyReason::NotPositive(v)));
+    }
+
+    pub(super) fn not_negative(&mut self, parameters: &[(&'static str, f64)]) {
+        self.check(parameters, |v| (v < 0.0).then_some(AssemblyReason::Negative(v)));
+    }
+
+    pub(super) fn arcs(&mut self, parameters: &[(&'static str, f64)]) {
+        self.check(parameters, |v| (v <= 0.0 || v >= PI).then_some(AssemblyReason::NotAnArc(v)));
+    }
+
+    fn check(
+        &mut self,
+        parameters: &[(&'static str, f64)],
+        wrong: impl Fn(f64) -> Option<AssemblyReason>,
+    ) {
+        for &(parameter, value) in parameters {
+            let reason =
+                if value.is_finite() { wrong(value) } else { Some(AssemblyReason::NotFinite) };
+            if let Some(reason) = reason {
+                self.add(Some(parameter), reason);
+            }
+        }
+    }
+
+    pub(super) fn none(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+
+    pub(super) fn of(self, leg: Option<usize>) -> impl Iterator<Item = AssemblyProblem> {
+        self.0.into_iter().map(move |(parameter, reason)| AssemblyProblem {
+            leg,
+            parameter,
+            reason,
+        })
+    }
+}
+
+impl From<ChainError> for Problems {
+    fn from(error: ChainError) -> Self {
+        Self(vec![(None, AssemblyReason::Degenerate(error))])
+    }
+}
+
+/// A leg that does not reach, by its links.
+pub(super) fn out_of_reach(links: &'static str) -> impl Fn(Gap) -> Problems {
+    move |gap| Problems(vec![(None, AssemblyReason::OutOfReach { links, gap })])
+}
+
+/// The legs, or every problem of all of them and of home. Each leg comes with its name, which it
+/// keeps where it does not assemble.
+pub(super) fn all_legs<'a>(
+    home: Problems,
+    legs: impl IntoIterator<Item = (&'a str, Result<Leg, Problems>)>,
+) -> Result<Vec<Leg>, AssemblyError> {
+    let mut problems: Vec<_> = home.of(None).collect();
+    let mut assembled = Vec::new();
+    let mut names = Vec::new();
+    for (index, (name, leg)) in legs.into_iter().enumerate() {
+        let mut wrong = Problems::default();
+        if names.contains(&name) {
+            wrong.add(Some("name"), AssemblyReason::SameName(name.to_owned()));
+        }
+        names.push(name);
+        match leg {
+            Ok(leg) => assembled.push(leg),
+            Err(others) => wrong.0.extend(others.0),
+        }
+        problems.extend(wrong.of(Some(index)));
+    }
+    if problems.is_empty() { Ok(assembled) } else { Err(AssemblyError { problems }) }
+}
+
+/// One-degree joints, base first, laid out where every joint is zero, carried to where they have
+/// these values: each moves with the joints before it (product of exponentials). An angle is taken
+/// modulo a turn: in `(-π, π]`, or within the joint's limits where it has some.
+pub(super) fn carried(
+    reference: impl IntoIterator<Item = (Joint, Amount)>,
+) -> Result<Vec<Joint>, Problems> {
+    let mut g = Isometry3::identity();
+    let mut joints = Vec::new();
+    let mut problems = Problems::default();
+    for (mut joint, amount) in reference {
+        let coordinate = &mut joint.coordinates[0];
+        let home = home_value(amount, coordinate.limits);
+        if let Some(limits @ [low, high]) = coordinate.limits
+            && !(low - ON_LIMIT..=high + ON_LIMIT).contains(&home)
+        {
+            let (joint, quantity) = (coordinate.name.clone(), coordinate.quantity);
+            let reason = AssemblyReason::OutsideLimits { joint, home, limits, quantity };
+            problems.add(Some("limits"), reason);
+        }
+        let own = joint.displacement(&[home]);
+        joint.coordinates[0].home = home;
+        joint.axis = g.rotation * joint.axis;
+        joint.point = g * joint.point;
+        joints.push(joint);
+        g *= own;
+    }
+    problems.none().map(|()| joints)
+}
+
+fn home_value(amount: Amount, limits: Option<[f64; 2]>) -> f64 {
+    match (amount, limits) {
+        (Amount::Turn(_), Some([low, high])) => amount.nearest((low + high) / 2.0),
+        // atan2 gives -π for a turn of -1 with a negative zero.
+        _ if matches!(amount, Amount::Turn(_)) && amount.value() <= -PI => PI,
+        _ => amount.value(),
+    }
+}

@@ -1,0 +1,322 @@
+//! The 5-DoF plano-spherical manipulator, 3-PRR(RR) + RRS (section 3.1 of the paper).
+//!
+//! The platform's point P moves in the base's xy plane and the platform turns about P in every
+//! way: `P = (x, y, 0)`, `R = Rz(ζ) Ry(ξ) Rz(ψ)`. Three slider legs hold it on spherical arcs, one
+//! arm carries P. With `e(t) = (cos t, sin t)` and `n(t) = e(t + π/2)`, slider leg i is
+//!
+//! ```text
+//! A = h e(α) + S n(α)      S{i}      prismatic along n(α), actuated
+//! C = A + a1 e(α+π/2+φ1)   phi1{i}   revolute at A, along +z
+//!   = P + a2 e(θ1)         phi2{i}   revolute at C, along +z;  θ1 = α + π/2 + φ1 + φ2
+//! v = Rz(θ1) Rx(α1) z      theta2{i} revolute through P
+//! w = R Rz(η) Ry(β) z      theta3{i} revolute through P, fixed in the platform
+//! ```
+//!
+//! with `R Rz(η) Ry(β) = Rz(θ1) Rx(α1) Rz(θ2) Rx(α2) Rz(θ3)` (Eqs. 2-3, 13-16), and the arm,
+//! leg 4, is `P = D + b1 e(φ14) + b2 e(φ14 + φ24)` (Eqs. 10-12): `phi14` and `phi24`, both
+//! actuated, and the spherical `s4` at P, whose rotation vector is zero at home. The imaginary joint
+//! of slider leg i is `theta1{i}`, a revolute about +z through P.
+
+mod file;
+
+pub(in crate::mechanism) use file::read;
+
+use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried, out_of_reach};
+use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
+use crate::chain::spherical::SphericalChain;
+use crate::chain::{Amount, Branch, unit};
+use crate::joint::{Joint, JointKind};
+use crate::leg::{ImaginaryLabel, Leg};
+use crate::mechanism::{Mechanism, TaskHints};
+use nalgebra::{Complex, Point3, Rotation3, Unit, Vector3};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// How many slider legs there are.
+pub const SLIDER_LEGS: usize = 3;
+
+/// The pose in which the mechanism is assembled: metres and radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Home {
+    /// P along the base's x.
+    pub x: f64,
+    /// P along the base's y.
+    pub y: f64,
+    /// ζ, about z.
+    pub zeta: f64,
+    /// ξ, about y as turned by ζ.
+    pub xi: f64,
+    /// ψ, about z as turned by both.
+    pub psi: f64,
+}
+
+/// Limits of a slider leg's joints, lowest and highest value; metres and radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SliderLimits {
+    /// S.
+    pub s: Option<[f64; 2]>,
+    /// φ1.
+    pub phi1: Option<[f64; 2]>,
+    /// φ2.
+    pub phi2: Option<[f64; 2]>,
+    /// θ2.
+    pub theta2: Option<[f64; 2]>,
+    /// θ3.
+    pub theta3: Option<[f64; 2]>,
+}
+
+/// A PRR(RR) leg: metres and radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SliderLeg {
+    /// Name, unique in the mechanism.
+    pub name: String,
+    /// α: the slider runs along `n(α)`.
+    pub alpha: f64,
+    /// h: distance of the slider's line from the base's origin.
+    pub h: f64,
+    /// Planar link that the slider carries.
+    pub a1: f64,
+    /// Planar link at P.
+    pub a2: f64,
+    /// α1: arc from z to v.
+    pub alpha1: f64,
+    /// α2: arc from v to w.
+    pub alpha2: f64,
+    /// η: where w points in the platform, about its z.
+    pub eta: f64,
+    /// β: angle between w and the platform's z.
+    pub beta: f64,
+    /// `+`: `θ1 = atan2(wy, wx) + asin(k)`; `-`: the other solution of Eq. 3.
+    pub upper: Branch,
+    /// `+`: S with plus the square root of Eq. 16.
+    pub slider: Branch,
+    /// Limits of its joints.
+    pub limits: SliderLimits,
+}
+
+/// The RRS leg: metres and radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmLeg {
+    /// Name, unique in the mechanism.
+    pub name: String,
+    /// D, where it stands in the plane.
+    pub base: [f64; 2],
+    /// Link from D.
+    pub b1: f64,
+    /// Link to P.
+    pub b2: f64,
+    /// `+`: `sin φ24 > 0`.
+    pub elbow: Branch,
+    /// Limits of φ14.
+    pub phi1: Option<[f64; 2]>,
+    /// Limits of φ24.
+    pub phi2: Option<[f64; 2]>,
+}
+
+/// Geometric parameters of the manipulator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanoSpherical {
+    /// Name of the mechanism.
+    pub name: String,
+    /// Where it is assembled.
+    pub home: Home,
+    /// The slider legs, [`SLIDER_LEGS`] of them.
+    pub slider_legs: Vec<SliderLeg>,
+    /// The arm.
+    pub arm_leg: ArmLeg,
+}
+
+impl PlanoSpherical {
+    /// The mechanism, assembled at home.
+    ///
+    /// # Errors
+    /// Every parameter out of its range, every leg that does not reach home, every joint that is
+    /// outside its limits there.
+    pub fn assemble(&self) -> Result<Mechanism, AssemblyError> {
+        let Home { x, y, zeta, xi, psi } = self.home;
+        let mut wrong = Problems::default();
+        wrong.finite(&[("x", x), ("y", y), ("zeta", zeta), ("xi", xi), ("psi", psi)]);
+        let found = self.slider_legs.len();
+        if found != SLIDER_LEGS {
+            let count = AssemblyReason::LegCount { found, expected: SLIDER_LEGS };
+            wrong.add(Some("slider_leg"), count);
+        }
+        let sliders = self.slider_legs.iter().enumerate();
+        let legs = sliders
+            .map(|(i, leg)| (leg.name.as_str(), leg.assemble(&self.home, i + 1)))
+            .chain([(self.arm_leg.name.as_str(), self.arm_leg.assemble(&self.home))]);
+        Ok(Mechanism {
+            name: self.name.clone(),
+            legs: all_legs(wrong, legs)?,
+            platform: self.home.point(),
+            task: TaskHints {
+                axis: Some(Vector3::z()),
+                home: vec![("zeta".into(), zeta), ("xi".into(), xi), ("psi".into(), psi)],
+            },
+        })
+    }
+
+    /// The working mode of home, `++ ++ ++ +` for instance.
+    pub fn mode(&self) -> String {
+        let sign = |branch| if branch == Branch::Plus { '+' } else { '-' };
+        let mut mode = String::new();
+        for leg in &self.slider_legs {
+            mode.extend([sign(leg.upper), sign(leg.slider), ' ']);
+        }
+        mode.push(sign(self.arm_leg.elbow));
+        mode
+    }
+}
+
+impl Home {
+    fn point(&self) -> Point3<f64> {
+        Point3::new(self.x, self.y, 0.0)
+    }
+
+    fn rotation(&self) -> Rotation3<f64> {
+        rz(self.zeta) * ry(self.xi) * rz(self.psi)
+    }
+
+    fn is_finite(&self) -> bool {
+        [self.x, self.y, self.zeta, self.xi, self.psi].iter().all(|v| v.is_finite())
+    }
+}
+
+impl SliderLeg {
+    fn assemble(&self, home: &Home, number: usize) -> Result<Leg, Problems> {
+        self.check()?;
+        if !home.is_finite() {
+            return Err(Problems::default());
+        }
+        let z = Vector3::z_axis();
+        let slider = unit(self.alpha + FRAC_PI_2);
+
+        // Laid out with every joint at zero: the links a1 and a2 lie along the slider, θ1 points
+        // there too, and the arcs α1 and α2 add up.
+        let a = unit(self.alpha) * self.h;
+        let c = a + slider * self.a1;
+        let p = c - slider * self.a2;
+        let theta1_zero = rz(self.alpha + FRAC_PI_2);
+        let v = rx(self.alpha1) * z;
+        let w = rx(self.alpha1 + self.alpha2) * z;
+
+        // Upper section: θ1 θ2 θ3 turn the platform's frame Rx(α1+α2) to home's.
+        let target =
+            home.rotation() * rz(self.eta) * ry(self.beta) * rx(-self.alpha1 - self.alpha2);
+        let [theta1, theta2, theta3] = SphericalChain::new([z, v, w])?
+            .inverse(target.matrix(), self.upper)
+            .map_err(out_of_reach("arcs"))?;
+
+        // Lower section: the slider and both revolutes bring P and the direction θ1 there.
+        let rotation = theta1.turn() * slider.conj();
+        let lower = PlanarDisplacement {
+            rotation,
+            translation: Complex::new(home.x, home.y) - rotation * p,
+        };
+        let [s, phi1, phi2] = PlanarChain::new([
+            PlanarJoint::Prismatic { along: slider },
+            PlanarJoint::Revolute { at: a, reversed: false },
+            PlanarJoint::Revolute { at: c, reversed: false },
+        ])?
+        .inverse(&lower, self.slider)
+        .map_err(out_of_reach("links"))?;
+
+        let name = |symbol: &str| format!("{symbol}{number}");
+        let prismatic = Unit::new_unchecked(in_plane(slider).coords);
+        let limits = &self.limits;
+        let revolute = |symbol, axis, point, limits| {
+            Joint::new(name(symbol), JointKind::Revolute, axis, in_plane(point)).within(limits)
+        };
+        let joints = carried([
+            (
+                Joint::new(name("S"), JointKind::Prismatic, prismatic, in_plane(a))
+                    .actuated()
+                    .within(limits.s),
+                s,
+            ),
+            (revolute("phi1", z, a, limits.phi1), phi1),
+            (revolute("phi2", z, c, limits.phi2), phi2),
+            (revolute("theta2", theta1_zero * v, p, limits.theta2), theta2),
+            (revolute("theta3", theta1_zero * w, p, limits.theta3), theta3),
+        ])?;
+        let imaginary = ImaginaryLabel {
+            name: name("theta1"),
+            home: positive_turn(theta1),
+            positive: Vector3::z(),
+        };
+        Ok(Leg { name: self.name.clone(), joints, imaginary: Some(imaginary) })
+    }
+
+    fn check(&self) -> Result<(), Problems> {
+        let mut wrong = Problems::default();
+        wrong.finite(&[("alpha", self.alpha), ("eta", self.eta), ("beta", self.beta)]);
+        wrong.not_negative(&[("h", self.h)]);
+        wrong.positive(&[("a1", self.a1), ("a2", self.a2)]);
+        wrong.arcs(&[("alpha1", self.alpha1), ("alpha2", self.alpha2)]);
+        wrong.none()
+    }
+}
+
+impl ArmLeg {
+    fn assemble(&self, home: &Home) -> Result<Leg, Problems> {
+        let mut wrong = Problems::default();
+        wrong.finite(&self.base.map(|coordinate| ("base", coordinate)));
+        wrong.positive(&[("b1", self.b1), ("b2", self.b2)]);
+        wrong.none()?;
+        if !home.is_finite() {
+            return Err(Problems::default());
+        }
+        // Laid out with every joint at zero: the arm stretched along x.
+        let d = Complex::new(self.base[0], self.base[1]);
+        let elbow = d + self.b1;
+        let p = elbow + self.b2;
+        let [phi1, phi2, _] = PlanarChain::new(
+            [d, elbow, p].map(|at| PlanarJoint::Revolute { at, reversed: false }),
+        )?
+        .inverse(
+            &PlanarDisplacement {
+                rotation: Complex::new(1.0, 0.0),
+                translation: Complex::new(home.x, home.y) - p,
+            },
+            self.elbow,
+        )
+        .map_err(out_of_reach("links"))?;
+
+        let revolute = |name: &str, at, limits| {
+            Joint::new(name, JointKind::Revolute, Vector3::z_axis(), in_plane(at))
+                .actuated()
+                .within(limits)
+        };
+        let mut joints = carried([
+            (revolute("phi14", d, self.phi1), phi1),
+            (revolute("phi24", elbow, self.phi2), phi2),
+        ])?;
+        joints.push(Joint::new("s4", JointKind::Spherical, Vector3::z_axis(), home.point()));
+        Ok(Leg::new(self.name.clone(), joints))
+    }
+}
+
+/// An angle in `[0, 2π)`.
+fn positive_turn(angle: Amount) -> f64 {
+    let angle = angle.value().rem_euclid(TAU);
+    // A tiny negative angle is rounded up to a whole turn.
+    if angle < TAU { angle } else { 0.0 }
+}
+
+fn in_plane(z: Complex<f64>) -> Point3<f64> {
+    Point3::new(z.re, z.im, 0.0)
+}
+
+fn rx(angle: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::x_axis(), angle)
+}
+
+fn ry(angle: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::y_axis(), angle)
+}
+
+fn rz(angle: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::z_axis(), angle)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,184 @@
+//! Mechanism files: TOML in, a [`Mechanism`] out, or every problem of the file with its place.
+//!
+//! A file names its own units and what follows is SI. Two forms:
+//!
+//! * **Family**: `family = "..."` and the parameters of one of the [families](super::family). All
+//!   of `home` may be left out: a coordinate that is not given is zero. So may `mode`: every
+//!   choice is `+`.
+//! * **Joints**: `[platform]` and `[[leg]]` with `joints`, at the assembled home pose. A joint is
+//!   `{ name, type, ... }` with
+//!
+//! | type | needs | may have |
+//! |---|---|---|
+//! | `revolute` | `axis`, `point` | `home`, `limits`, `actuated` |
+//! | `prismatic` | `axis` | `point` (where it is drawn), `home`, `limits`, `actuated` |
+//! | `helical` | `axis`, `point`, `pitch` (length per radian, negative left-handed) | as revolute |
+//! | `cylindrical` | `axis`, `point` | as revolute; coordinates angle, slide |
+//! | `universal` | `axis`, `axis2`, `point` | as revolute; coordinates about `axis`, `axis2` |
+//! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
+//!
+//! `home` (default zero) is a number and `limits` a pair `[lowest, highest]`; a joint of several
+//! coordinates has an array of as many. `[task]` may give the `axis` along which the intersection
+//! motion counts as positive.
+//!
+//! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
+//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Whatever a file does not need to have
+//! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
+
+mod joints;
+mod problem;
+mod reader;
+mod units;
+#[cfg(test)]
+pub(super) mod writer;
+
+pub use problem::{FileErrors, Problem};
+pub use units::{AngleUnit, FileUnits, LengthUnit};
+
+pub(super) use reader::Table;
+
+use super::Mechanism;
+use super::family::{
+    AssemblyError, AssemblyReason, Family, plano_spherical, translational_helical,
+};
+use crate::chain::Branch;
+use crate::joint::Quantity;
+use reader::Reader;
+use toml::de::DeTable;
+
+/// The format that this version reads.
+const FORMAT: i64 = 1;
+
+/// What a mechanism file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismFile {
+    /// The mechanism at its assembled home pose, SI.
+    pub mechanism: Mechanism,
+    /// The file's units, for what people read.
+    pub units: FileUnits,
+    /// The parameters that it was assembled from; `None` for a list of joints.
+    pub family: Option<Family>,
+    /// The working mode of home, where the family knows it; else it follows from the joints.
+    pub mode: Option<String>,
+}
+
+/// Reads the text of a mechanism file.
+///
+/// # Errors
+/// Every problem of the file. Where the text is not TOML: the parser's problems only.
+pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
+    let reader = Reader::new();
+    let (document, syntax) = DeTable::parse_recoverable(text);
+    for error in &syntax {
+        reader.report(error.span().map_or(0, |span| span.start), error.message());
+    }
+    let file = if syntax.is_empty() {
+        read_document(&Table::new(document.get_ref(), 0, &reader))
+    } else {
+        None
+    };
+    match (reader.into_errors(text), file) {
+        (None, Some(file)) => Ok(file),
+        (Some(errors), _) => Err(errors),
+        (None, None) => Err(FileErrors {
+            problems: vec![Problem {
+                line: 1,
+                column: 1,
+                message: "not a mechanism, expected a mechanism file".into(),
+            }],
+        }),
+    }
+}
+
+fn read_document(root: &Table<'_>) -> Option<MechanismFile> {
+    let format = root.require("format", &format!("format = {FORMAT}"))?;
+    let number = format.integer()?;
+    if number != FORMAT {
+        format.report(format!("is {number}, expected {FORMAT}, the only one so far"));
+        return None;
+    }
+    let name = root
+        .require("name", "the mechanism's name")
+        .and_then(|value| value.name())
+        .unwrap_or_default();
+    let units = read_units(root);
+    root.reader.set_units(units);
+
+    let Some(family) = root.get("family") else {
+        let mechanism = joints::read(root, name);
+        return Some(MechanismFile { mechanism, units, family: None, mode: None });
+    };
+    type Read = fn(&Table<'_>, &str) -> Option<(Family, Mechanism)>;
+    let read = family.word::<Read>(&[
+        ("plano-spherical", plano_spherical::read),
+        ("translational-helical", translational_helical::read),
+    ])?;
+    let (family, mechanism) = read(root, name)?;
+    Some(MechanismFile { mechanism, units, mode: Some(family.mode()), family: Some(family) })
+}
+
+/// The file's units; where they are not understood, SI, so that the rest can be checked.
+fn read_units(root: &Table<'_>) -> FileUnits {
+    let expected = "units = { length = \"mm\", angle = \"deg\" }, for instance";
+    let units = root.require("units", expected).and_then(|value| value.table(&["length", "angle"]));
+    let lengths = LengthUnit::ALL.map(|unit| (unit.symbol(), unit));
+    let angles = AngleUnit::ALL.map(|unit| (unit.symbol(), unit));
+    let length = units
+        .and_then(|units| units.require("length", "the unit of lengths"))
+        .and_then(|value| value.word(&lengths));
+    let angle = units
+        .and_then(|units| units.require("angle", "the unit of angles"))
+        .and_then(|value| value.word(&angles));
+    FileUnits { length: length.unwrap_or_default(), angle: angle.unwrap_or_default() }
+}
+
+/// A leg's name; `leg1`, `leg2`, ... where it has none.
+pub(super) fn leg_name(leg: &Table<'_>, index: usize) -> String {
+    let given = leg.get("name").and_then(|value| value.name());
+    given.map_or_else(|| format!("leg{}", index + 1), str::to_owned)
+}
+
+/// A family's parameter that must be there, SI; NaN where it is not, which has been reported then.
+pub(super) fn quantity(leg: &Table<'_>, key: &str, of: Quantity, expected: &str) -> f64 {
+    leg.require(key, expected).and_then(|value| value.quantity(of)).unwrap_or(f64::NAN)
+}
+
+/// The branches of `mode`: a group of signs for each leg with choices, in one row. All plus where
+/// it is not given.
+pub(super) fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
+    let plus = || vec![Branch::Plus; choices.iter().sum()];
+    let Some((value, text)) = root.get("mode").and_then(|value| Some((value, value.string()?)))
+    else {
+        return plus();
+    };
+    let groups: Vec<&str> = text.split_whitespace().collect();
+    let example = choices.iter().map(|&n| "+".repeat(n)).collect::<Vec<_>>().join(" ");
+    if let Some(wrong) = text.chars().find(|c| !c.is_whitespace() && !"+-".contains(*c)) {
+        value.report(format!("has {wrong:?} in it, expected signs + and - like {example:?}"));
+        return plus();
+    }
+    if groups.iter().map(|group| group.len()).ne(choices.iter().copied()) {
+        value
+            .report(format!("is {text:?}, expected as many signs, in such groups, as {example:?}"));
+        return plus();
+    }
+    let branch = |sign| if sign == '+' { Branch::Plus } else { Branch::Minus };
+    groups.into_iter().flat_map(str::chars).map(branch).collect()
+}
+
+/// Reports what keeps a family from assembling, each problem at the parameter to blame. A value
+/// that could not be read, and so is no number, has its problem already.
+pub(super) fn report_problems(error: &AssemblyError, root: &Table<'_>, legs: &[Table<'_>]) {
+    for problem in &error.problems {
+        let table = problem.leg.and_then(|leg| legs.get(leg)).unwrap_or(root);
+        let value = problem.parameter.and_then(|parameter| table.get(parameter));
+        let at = value.map_or(table.at, |value| value.at);
+        let told = value.is_some() && root.reader.has_problem(at);
+        if problem.reason != AssemblyReason::NotFinite && !told {
+            root.reader.report(at, problem.describe(root.reader.units()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,188 @@
+//! The form of a mechanism file that lists the joints at the assembled home pose.
+
+use super::leg_name;
+use super::reader::{Table, UniqueNames, Value};
+use crate::joint::{Joint, JointKind, Quantity};
+use crate::leg::Leg;
+use crate::mechanism::{Mechanism, TaskHints};
+use nalgebra::{Point3, Unit, Vector3};
+
+const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
+const LEG_KEYS: &[&str] = &["name", "joints"];
+const TYPES: [(&str, Type); 6] = [
+    ("revolute", Type::Revolute),
+    ("prismatic", Type::Prismatic),
+    ("helical", Type::Helical),
+    ("cylindrical", Type::Cylindrical),
+    ("universal", Type::Universal),
+    ("spherical", Type::Spherical),
+];
+
+/// Sine of the angle below which the axes of a universal joint are one: its two freedoms would be.
+const PARALLEL: f64 = 1e-6;
+
+/// A joint's `type`.
+#[derive(Clone, Copy, PartialEq)]
+enum Type {
+    Revolute,
+    Prismatic,
+    Helical,
+    Cylindrical,
+    Universal,
+    Spherical,
+}
+
+impl Type {
+    /// The keys that a joint of this type may have.
+    fn keys(self) -> Vec<&'static str> {
+        let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
+        keys.extend_from_slice(match self {
+            Self::Revolute | Self::Prismatic | Self::Cylindrical => &["axis"],
+            Self::Helical => &["axis", "pitch"],
+            Self::Universal => &["axis", "axis2"],
+            Self::Spherical => &[],
+        });
+        keys
+    }
+}
+
+/// The mechanism. What cannot be read is reported, and stands for something harmless, so that the
+/// rest is checked too.
+pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
+    root.allow(KEYS);
+    let point = "the platform's reference point [x, y, z] at home";
+    let platform = root
+        .require("platform", "a table [platform] with its `point`, or else a `family`")
+        .and_then(|value| value.table(&["point"]))
+        .and_then(|table| table.require("point", point)?.point())
+        .map_or_else(Point3::origin, Point3::from);
+    let axis = root
+        .get("task")
+        .and_then(|value| value.table(&["axis"]))
+        .and_then(|task| task.get("axis")?.direction());
+
+    let tables = root.tables("leg", LEG_KEYS);
+    let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
+    let mut legs = Vec::new();
+    for (index, table) in tables.iter().enumerate() {
+        let name = leg_name(table, index);
+        leg_names.add(&name, root.reader, table.place_of("name"));
+        legs.push(Leg::new(name, read_joints(table, platform, &mut joint_names)));
+    }
+    let at = root.place_of("leg");
+    if legs.len() < 2 && !root.reader.has_problem(at) {
+        let count = legs.len();
+        root.reader.report(at, format!("{count} of [[leg]], expected at least two legs"));
+    }
+    let mut joints = legs.iter().flat_map(|leg| &leg.joints).peekable();
+    if joints.peek().is_some() && !joints.any(|joint| joint.actuated) {
+        root.reader.report(at, "no joint is actuated, expected `actuated = true` in at least one");
+    }
+    let task = TaskHints { axis: axis.map(Unit::into_inner), home: Vec::new() };
+    Mechanism { name: name.to_owned(), legs, platform, task }
+}
+
+fn read_joints(leg: &Table<'_>, platform: Point3<f64>, names: &mut UniqueNames) -> Vec<Joint> {
+    let expected = "an array of joints, from base to platform";
+    let Some(value) = leg.require("joints", expected) else { return Vec::new() };
+    let Some(items) = value.items(expected) else { return Vec::new() };
+    if items.is_empty() {
+        value.report("is empty, expected at least one joint");
+    }
+    items.iter().filter_map(|item| read_joint(item, platform, names)).collect()
+}
+
+/// A joint; `None` without a type, which decides what else there is to check.
+fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames) -> Option<Joint> {
+    let table = value.open_table()?;
+    let name = table.require("name", "the joint's name").and_then(|value| value.name());
+    let kind = table.require("type", "the joint's type")?.word(&TYPES)?;
+    table.allow(&kind.keys());
+
+    let axis = match kind {
+        Type::Spherical => None,
+        _ => direction(&table, "axis"),
+    };
+    let point = match (kind, table.get("point")) {
+        (Type::Prismatic, None) => platform,
+        _ => table
+            .require("point", "a point [x, y, z] of the joint at home")
+            .and_then(|value| value.point())
+            .map_or(platform, Point3::from),
+    };
+    let joint_kind = joint_kind(&table, kind, axis);
+    let mut joint =
+        Joint::new(name.unwrap_or_default(), joint_kind, axis.unwrap_or(Vector3::z_axis()), point);
+    joint.actuated = table.get("actuated").and_then(|value| value.boolean()).unwrap_or_default();
+    if name.is_some() {
+        let at = table.place_of("name");
+        names.add(&joint.name, table.reader, at);
+        // `s.x` of a spherical joint `s` may be another joint's whole name.
+        for coordinate in joint.coordinates.iter().filter(|c| c.name != joint.name) {
+            names.add(&coordinate.name, table.reader, at);
+        }
+    }
+    read_coordinates(&table, &mut joint);
+    Some(joint)
+}
+
+fn direction(table: &Table<'_>, key: &str) -> Option<Unit<Vector3<f64>>> {
+    table.require(key, "a direction [x, y, z] at home")?.direction()
+}
+
+fn joint_kind(table: &Table<'_>, kind: Type, axis: Option<Unit<Vector3<f64>>>) -> JointKind {
+    match kind {
+        Type::Revolute => JointKind::Revolute,
+        Type::Prismatic => JointKind::Prismatic,
+        Type::Cylindrical => JointKind::Cylindrical,
+        Type::Spherical => JointKind::Spherical,
+        Type::Helical => {
+            let value = table.require("pitch", "the advance per radian, a length");
+            let pitch = value.and_then(|value| value.length());
+            if let (Some(value), Some(0.0)) = (value, pitch) {
+                value.report("is 0, expected an advance per radian: without it, a revolute joint");
+            }
+            JointKind::Helical { pitch: pitch.unwrap_or_default() }
+        }
+        Type::Universal => {
+            let second = direction(table, "axis2");
+            if let (Some(first), Some(second)) = (axis, second)
+                && first.cross(&second).norm() < PARALLEL
+            {
+                let at = table.place_of("axis2");
+                table
+                    .reader
+                    .report(at, "`axis2` is parallel to `axis`, expected another direction");
+            }
+            JointKind::Universal { second: second.unwrap_or(Vector3::x_axis()) }
+        }
+    }
+}
+
+/// `home` and `limits`: one value and one pair a coordinate.
+fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
+    let quantities: Vec<Quantity> = joint.coordinates.iter().map(|c| c.quantity).collect();
+    let home = match table.get("home") {
+        Some(value) => value.per_coordinate(&quantities),
+        None => Some(vec![0.0; quantities.len()]),
+    };
+    let limits = table.get("limits");
+    let pairs = limits.and_then(|value| value.limits_per_coordinate(&quantities));
+    for (i, coordinate) in joint.coordinates.iter_mut().enumerate() {
+        coordinate.limits = pairs.as_ref().map(|pairs| pairs[i]);
+        let Some(home) = &home else { continue };
+        coordinate.home = home[i];
+        if let (Some(value), Some([low, high])) = (limits, coordinate.limits)
+            && !(low..=high).contains(&home[i])
+        {
+            let show = |number| table.reader.units().show(number, coordinate.quantity);
+            value.report(format!(
+                "leave out home: {} is {} there, expected it between {} and {}",
+                coordinate.name,
+                show(home[i]),
+                show(low),
+                show(high)
+            ));
+        }
+    }
+}

@@ -1,0 +1,417 @@
+//! Reading of TOML values that notes every problem, with its place, and goes on.
+//!
+//! A method that returns `None` has already reported why: its caller only has to do without.
+
+use super::problem::{FileErrors, Lines, Problem};
+use super::units::FileUnits;
+use crate::joint::Quantity;
+use std::cell::{Cell, RefCell};
+use std::collections::HashSet;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Larger than any machine, in metres or radians; beyond it squares and products lose their digits
+/// to overflow, and what is computed from them would no longer be a number.
+const LARGEST: f64 = 1e9;
+
+/// The problems found so far, and the units in force.
+pub(in crate::mechanism) struct Reader {
+    problems: RefCell<Vec<(usize, String)>>,
+    units: Cell<FileUnits>,
+}
+
+impl Reader {
+    pub(super) fn new() -> Self {
+        Self { problems: RefCell::default(), units: Cell::default() }
+    }
+
+    pub(in crate::mechanism) fn report(&self, at: usize, message: impl Into<String>) {
+        self.problems.borrow_mut().push((at, message.into()));
+    }
+
+    pub(in crate::mechanism) fn units(&self) -> FileUnits {
+        self.units.get()
+    }
+
+    pub(super) fn set_units(&self, units: FileUnits) {
+        self.units.set(units);
+    }
+
+    /// Whether a problem was reported at this place.
+    pub(super) fn has_problem(&self, at: usize) -> bool {
+        self.problems.borrow().iter().any(|&(other, _)| other == at)
+    }
+
+    /// The problems in the order of their places, if there are any.
+    pub(super) fn into_errors(self, text: &str) -> Option<FileErrors> {
+        let lines = Lines::new(text);
+        let mut problems: Vec<_> = self
+            .problems
+            .into_inner()
+            .into_iter()
+            .map(|(at, message)| {
+                let (line, column) = lines.place(at);
+                Problem { line, column, message }
+            })
+            .collect();
+        problems.sort();
+        problems.dedup();
+        (!problems.is_empty()).then_some(FileErrors { problems })
+    }
+}
+
+/// One value, and the key that people know it by.
+#[derive(Clone, Copy)]
+pub(in crate::mechanism) struct Value<'a> {
+    value: &'a DeValue<'a>,
+    key: &'a str,
+    /// Byte offset.
+    pub(in crate::mechanism) at: usize,
+    reader: &'a Reader,
+}
+
+impl<'a> Value<'a> {
+    fn new(key: &'a str, value: &'a Spanned<DeValue<'a>>, reader: &'a Reader) -> Self {
+        Self { value: value.get_ref(), key, at: value.span().start, reader }
+    }
+
+    /// Reports `KEY PROBLEM` here.
+    pub(in crate::mechanism) fn report(&self, problem: impl AsRef<str>) {
+        self.reader.report(self.at, format!("`{}` {}", self.key, problem.as_ref()));
+    }
+
+    fn wrong_type<T>(&self, expected: &str) -> Option<T> {
+        let found = match self.value {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) => "an integer",
+            DeValue::Float(_) => "a number",
+            DeValue::Boolean(_) => "a boolean",
+            DeValue::Datetime(_) => "a date or time",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        self.report(format!("is {found}, expected {expected}"));
+        None
+    }
+
+    pub(super) fn boolean(&self) -> Option<bool> {
+        self.value.as_bool().or_else(|| self.wrong_type("true or false"))
+    }
+
+    pub(in crate::mechanism) fn string(&self) -> Option<&'a str> {
+        match self.value {
+            DeValue::String(text) => Some(text),
+            _ => self.wrong_type("a string"),
+        }
+    }
+
+    /// A name: not empty, and without what commas, equals signs, quotes and line ends would break
+    /// where names stand on command lines and in headers of tables.
+    pub(in crate::mechanism) fn name(&self) -> Option<&'a str> {
+        let name = self.string()?;
+        let breaks = |c: char| c.is_control() || matches!(c, ',' | '=' | '"');
+        if name.trim().is_empty() || name.trim() != name || name.contains(breaks) {
+            self.report(format!(
+                "is {name:?}, expected a name: not empty, no spaces around it, none of , = \" in it"
+            ));
+            return None;
+        }
+        Some(name)
+    }
+
+    /// One of the given words.
+    pub(super) fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+        let text = self.string()?;
+        let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
+        if found.is_none() {
+            let names: Vec<_> = words.iter().map(|&(word, _)| word).collect();
+            self.report(format!("is {text:?}, {}", expected_one_of(text, &names)));
+        }
+        found
+    }
+
+    pub(super) fn integer(&self) -> Option<i64> {
+        match self.value {
+            DeValue::Integer(integer) => {
+                let value = i64::from_str_radix(integer.as_str(), integer.radix()).ok();
+                if value.is_none() {
+                    self.report(format!("is {integer}, expected an integer of at most 64 bits"));
+                }
+                value
+            }
+            _ => self.wrong_type("an integer"),
+        }
+    }
+
+    /// A finite number without a unit; integers are welcome.
+    fn number(&self) -> Option<f64> {
+        let value = match self.value {
+            DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
+            // Through i128, so that hexadecimal and the like are read too; then rounded to double.
+            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
+                .map_or(f64::INFINITY, |n| n as f64),
+            _ => return self.wrong_type("a number"),
+        };
+        if !value.is_finite() {
+            let literal = match self.value {
+                DeValue::Float(float) => float.to_string(),
+                DeValue::Integer(integer) => integer.to_string(),
+                _ => String::new(),
+            };
+            self.report(format!("is {literal}, expected a finite number"));
+            return None;
+        }
+        Some(value)
+    }
+
+    /// An angle or a length, in the file's unit; SI is returned.
+    pub(in crate::mechanism) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        let units = self.reader.units();
+        let value = self.number()? * units.factor(quantity);
+        if value.abs() > LARGEST {
+            let limit = units.show(LARGEST, quantity);
+            self.report(format!(
+                "is {}, expected a size of at most {limit}",
+                units.show(value, quantity)
+            ));
+            return None;
+        }
+        Some(value)
+    }
+
+    pub(in crate::mechanism) fn length(&self) -> Option<f64> {
+        self.quantity(Quantity::Length)
+    }
+
+    /// The values of an array; `expected` says what it should be.
+    pub(super) fn items(&self, expected: &str) -> Option<Vec<Value<'a>>> {
+        match self.value {
+            DeValue::Array(items) => {
+                Some(items.iter().map(|item| Value::new(self.key, item, self.reader)).collect())
+            }
+            _ => self.wrong_type(expected),
+        }
+    }
+
+    /// The values of an array of this many.
+    fn exactly(&self, count: usize, expected: &str) -> Option<Vec<Value<'a>>> {
+        let items = self.items(expected)?;
+        if items.len() != count {
+            let values = if items.len() == 1 { "value" } else { "values" };
+            self.report(format!("has {} {values}, expected {expected}", items.len()));
+            return None;
+        }
+        Some(items)
+    }
+
+    fn each<const N: usize>(
+        &self,
+        expected: &str,
+        read: impl Fn(&Value<'a>) -> Option<f64>,
+    ) -> Option<[f64; N]> {
+        all(self.exactly(N, expected)?.iter().map(read))?.try_into().ok()
+    }
+
+    /// A point of the plane or of space.
+    pub(in crate::mechanism) fn point<const N: usize>(&self) -> Option<[f64; N]> {
+        let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
+        self.each(expected, |item| item.length())
+    }
+
+    /// A direction: three numbers without a unit, of any size but zero; returned with size 1.
+    pub(super) fn direction(&self) -> Option<nalgebra::Unit<nalgebra::Vector3<f64>>> {
+        let [x, y, z] = self.each("a direction [x, y, z]", Value::number)?;
+        let vector = nalgebra::Vector3::new(x, y, z);
+        let largest = vector.amax();
+        if largest == 0.0 {
+            self.report("is zero, expected a direction");
+            return None;
+        }
+        // Scaled first: the squares of the largest and smallest doubles are out of range.
+        Some(nalgebra::Unit::new_normalize(vector / largest))
+    }
+
+    /// `N` values, one a coordinate; a single one stands alone, without brackets.
+    pub(super) fn per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<f64>> {
+        if let [quantity] = quantities {
+            return Some(vec![self.quantity(*quantity)?]);
+        }
+        let expected = format!("{} values, one for each coordinate", quantities.len());
+        let items = self.exactly(quantities.len(), &expected)?;
+        all(items.iter().zip(quantities).map(|(item, &quantity)| item.quantity(quantity)))
+    }
+
+    /// Lowest and highest value: one pair a coordinate; a single one stands alone.
+    pub(super) fn limits_per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<[f64; 2]>> {
+        if let [quantity] = quantities {
+            return Some(vec![self.limits(*quantity)?]);
+        }
+        let expected =
+            format!("{} pairs [lowest, highest], one for each coordinate", quantities.len());
+        let items = self.exactly(quantities.len(), &expected)?;
+        all(items.iter().zip(quantities).map(|(item, &quantity)| item.limits(quantity)))
+    }
+
+    /// Lowest and highest value, both included.
+    pub(in crate::mechanism) fn limits(&self, quantity: Quantity) -> Option<[f64; 2]> {
+        let [low, high] = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
+        if low > high {
+            let units = self.reader.units();
+            self.report(format!(
+                "are reversed: {} is above {}, expected [lowest, highest]",
+                units.show(low, quantity),
+                units.show(high, quantity)
+            ));
+            return None;
+        }
+        Some([low, high])
+    }
+
+    /// A table; every key that is not one of these is reported.
+    pub(in crate::mechanism) fn table(&self, keys: &[&str]) -> Option<Table<'a>> {
+        let table = self.open_table()?;
+        table.allow(keys);
+        Some(table)
+    }
+
+    /// A table whose keys are still to be checked.
+    pub(super) fn open_table(&self) -> Option<Table<'a>> {
+        match self.value {
+            DeValue::Table(entries) => Some(Table::new(entries, self.at, self.reader)),
+            _ => self.wrong_type("a table"),
+        }
+    }
+}
+
+/// A table.
+#[derive(Clone, Copy)]
+pub(in crate::mechanism) struct Table<'a> {
+    entries: &'a DeTable<'a>,
+    /// Byte offset of its header, or of its opening brace.
+    pub(in crate::mechanism) at: usize,
+    pub(in crate::mechanism) reader: &'a Reader,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(entries: &'a DeTable<'a>, at: usize, reader: &'a Reader) -> Self {
+        Self { entries, at, reader }
+    }
+
+    /// Reports every key that is not one of these.
+    pub(in crate::mechanism) fn allow(&self, keys: &[&str]) {
+        for key in self.entries.keys() {
+            let name: &str = key.get_ref();
+            if !keys.contains(&name) {
+                let expected = expected_one_of(name, keys);
+                self.reader.report(key.span().start, format!("unknown key `{name}`, {expected}"));
+            }
+        }
+    }
+
+    /// The value of a key that may be left out.
+    pub(in crate::mechanism) fn get(&self, key: &str) -> Option<Value<'a>> {
+        let (key, value) = self.entries.get_key_value(key)?;
+        Some(Value::new(key.get_ref(), value, self.reader))
+    }
+
+    /// The value of a key that must be there; `expected` says what it stands for.
+    pub(in crate::mechanism) fn require(&self, key: &str, expected: &str) -> Option<Value<'a>> {
+        let value = self.get(key);
+        if value.is_none() {
+            self.reader.report(self.at, format!("`{key}` is missing, expected {expected}"));
+        }
+        value
+    }
+
+    /// Where a problem with a key belongs: at its value, or at the table where it is missing.
+    pub(in crate::mechanism) fn place_of(&self, key: &str) -> usize {
+        self.get(key).map_or(self.at, |value| value.at)
+    }
+
+    /// The tables of an array of tables; empty where the key is missing.
+    pub(in crate::mechanism) fn tables(&self, key: &str, keys: &[&str]) -> Vec<Table<'a>> {
+        let Some(value) = self.get(key) else { return Vec::new() };
+        let Some(items) = value.items(&format!("an array of tables [[{key}]]")) else {
+            return Vec::new();
+        };
+        items.iter().filter_map(|item| item.table(keys)).collect()
+    }
+}
+
+/// Names of one kind of thing, each to be used once.
+pub(super) struct UniqueNames {
+    what: &'static str,
+    seen: HashSet<String>,
+}
+
+impl UniqueNames {
+    pub(super) fn new(what: &'static str) -> Self {
+        Self { what, seen: HashSet::new() }
+    }
+
+    /// Reports a name that was there before.
+    pub(super) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
+        if !self.seen.insert(name.to_owned()) {
+            let what = self.what;
+            reader.report(at, format!("two {what} are called {name:?}, expected different names"));
+        }
+    }
+}
+
+/// The values, if there are all. Every one is read before the first failure ends it: each has its
+/// own problem to report.
+fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    read.collect::<Vec<_>>().into_iter().collect()
+}
+
+/// `expected A` or `did you mean A? Expected one of A, B, C`.
+fn expected_one_of(found: &str, words: &[&str]) -> String {
+    let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    let expected = if words.len() == 1 { "expected" } else { "expected one of" };
+    // A third of the letters wrong is a slip; more is another word.
+    let allowed = found.chars().count().max(3) / 3;
+    let nearest = words.iter().map(|word| (edits(found, word), word)).min();
+    match nearest {
+        Some((distance, word)) if distance <= allowed => {
+            format!("did you mean `{word}`? {expected} {list}")
+        }
+        _ => format!("{expected} {list}"),
+    }
+}
+
+/// Letters to insert, delete or replace to make one word of the other (Levenshtein); upper and
+/// lower case are alike.
+fn edits(a: &str, b: &str) -> usize {
+    let (a, b) = (a.to_lowercase(), b.to_lowercase());
+    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.chars().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.chars().count()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edit_distances_of_known_words() {
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "abc"), 3);
+        assert_eq!(edits("Alpha", "alpha"), 0);
+        assert_eq!(edits("flaw", "lawn"), 2);
+    }
+
+    #[test]
+    fn a_slip_is_recognised_and_another_word_is_not() {
+        assert!(
+            expected_one_of("lenght", &["length", "angle"]).starts_with("did you mean `length`")
+        );
+        assert!(expected_one_of("colour", &["length", "angle"]).starts_with("expected one of"));
+    }
+}

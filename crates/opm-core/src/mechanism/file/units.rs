@@ -1,0 +1,151 @@
+//! The units that a mechanism file names for its own numbers; everything after reading is SI.
+
+use crate::joint::Quantity;
+use std::fmt;
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// `m`
+    #[default]
+    Metre,
+    /// `cm`
+    Centimetre,
+    /// `mm`
+    Millimetre,
+    /// `in`, 25.4 mm
+    Inch,
+}
+
+impl LengthUnit {
+    /// Every unit that a file may name.
+    pub const ALL: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
+
+    /// How files write it.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Inch => "in",
+        }
+    }
+
+    /// Metres in one unit.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 0.01,
+            Self::Millimetre => 0.001,
+            Self::Inch => 0.0254,
+        }
+    }
+
+    /// The unit with this symbol.
+    pub fn from_symbol(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+    }
+}
+
+/// A unit of angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AngleUnit {
+    /// `rad`
+    #[default]
+    Radian,
+    /// `deg`
+    Degree,
+}
+
+impl AngleUnit {
+    /// Every unit that a file may name.
+    pub const ALL: [Self; 2] = [Self::Radian, Self::Degree];
+
+    /// How files write it.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Radian => "rad",
+            Self::Degree => "deg",
+        }
+    }
+
+    /// Radians in one unit.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Radian => 1.0,
+            Self::Degree => std::f64::consts::PI / 180.0,
+        }
+    }
+
+    /// The unit with this symbol.
+    pub fn from_symbol(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+    }
+}
+
+/// The units of one file; the default is SI.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FileUnits {
+    /// Of every length, and of a pitch's length per radian.
+    pub length: LengthUnit,
+    /// Of every angle.
+    pub angle: AngleUnit,
+}
+
+impl FileUnits {
+    /// Metres and radians.
+    pub const SI: Self = Self { length: LengthUnit::Metre, angle: AngleUnit::Radian };
+
+    /// SI units in one unit of the file.
+    pub fn factor(self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Angle => self.angle.factor(),
+            Quantity::Length => self.length.factor(),
+        }
+    }
+
+    /// The symbol of the file's unit.
+    pub fn symbol(self, quantity: Quantity) -> &'static str {
+        match quantity {
+            Quantity::Angle => self.angle.symbol(),
+            Quantity::Length => self.length.symbol(),
+        }
+    }
+
+    /// An SI value as people read it: in the file's unit, to six significant digits.
+    pub fn show(self, value: f64, quantity: Quantity) -> impl fmt::Display {
+        format!("{} {}", six_digits(value / self.factor(quantity)), self.symbol(quantity))
+    }
+}
+
+/// A number to six significant digits, without trailing zeros.
+fn six_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    // `-0` reads like a mistake.
+    if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_shown_in_the_unit_of_the_file() {
+        let file = FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
+        assert_eq!(file.show(0.012_345_678_9, Quantity::Length).to_string(), "12.3457 mm");
+        assert_eq!(file.show(std::f64::consts::FRAC_PI_2, Quantity::Angle).to_string(), "90 deg");
+        assert_eq!(FileUnits::SI.show(-0.0, Quantity::Length).to_string(), "0 m");
+        assert_eq!(FileUnits::SI.show(-1.5e-9, Quantity::Length).to_string(), "-0.0000000015 m");
+    }
+
+    #[test]
+    fn every_unit_is_found_by_its_symbol() {
+        for unit in LengthUnit::ALL {
+            assert_eq!(LengthUnit::from_symbol(unit.symbol()), Some(unit));
+        }
+        for unit in AngleUnit::ALL {
+            assert_eq!(AngleUnit::from_symbol(unit.symbol()), Some(unit));
+        }
+        assert_eq!(LengthUnit::from_symbol("MM"), None);
+    }
+}
