@@ -101,6 +101,8 @@ impl From<mcap::McapError> for RecordError {
     fn from(error: mcap::McapError) -> Self {
         match error {
             mcap::McapError::Io(source) => Self::Io(source),
+            // A failed write of a chunk's header: nothing is parsed while writing.
+            mcap::McapError::Parse(reason) => Self::Io(std::io::Error::other(reason.to_string())),
             other => Self::Mcap(other),
         }
     }

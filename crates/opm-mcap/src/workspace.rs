@@ -42,6 +42,11 @@ pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
 /// Most slices. Each is a message, points or not; a million play for a day.
 pub const MAX_SLICES: u64 = 1_000_000;
 
+/// Parts into which the slices are divided by flushes: a recording that is cut short lacks at most
+/// one of them, or the last MiB of points where that is less. Counted in slices, not in seconds, so
+/// that the bytes do not depend on the machine's speed.
+const FLUSHES: u64 = 100;
+
 /// The slice that a message of [`SLICES_TOPIC`] belongs to, by its time in nanoseconds.
 pub fn slice_at(time: u64) -> Option<u64> {
     Some(time.checked_sub(START)? / SLICE_STEP)
@@ -256,6 +261,9 @@ impl<W: Sink> WorkspaceRecorder<W> {
         while open.slice < end {
             let slice = open.slice;
             self.write_part(open)?;
+            if (slice + 1).is_multiple_of(self.plan.slices.div_ceil(FLUSHES)) {
+                self.log.flush()?;
+            }
             open = *self.open.insert(Open { slice: slice + 1, parts: 0 });
         }
         Ok(open)
