@@ -120,6 +120,7 @@ fn a_dropped_recorder_leaves_the_old_file_and_a_partial() {
     assert_eq!(fs::read(&path).unwrap(), b"the old file");
     let (seen, recording) = clouds(&directory.path().join("w.mcap.partial")).unwrap();
     assert!(!recording.complete);
+    assert!(!fs::read(directory.path().join("w.mcap.partial")).unwrap().ends_with(mcap::MAGIC));
     assert_eq!(seen.iter().map(common::Seen::len).collect::<Vec<_>>(), [60_000, 50_000]);
 
     // The next run takes the place of both.
