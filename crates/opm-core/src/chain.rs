@@ -22,7 +22,7 @@ use crate::task::{Displacement, Subspace, SubspaceKind};
 use cylindrical::{CoaxialJoint, CylindricalChain};
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use planar::{PlanarChain, PlanarJoint};
-use spherical::SphericalChain;
+use spherical::{Ball, SphericalChain};
 use std::f64::consts::TAU;
 use translational::TranslationalChain;
 
@@ -175,7 +175,7 @@ pub enum Chain {
     /// Three revolutes through a point.
     Spherical(SphericalChain),
     /// A spherical joint.
-    Ball,
+    Ball(Ball),
     /// Two coaxial joints.
     Cylindrical(CylindricalChain),
     /// Two sliders in a plane.
@@ -196,7 +196,7 @@ impl Chain {
                 PlanarChain::new(planar_joints(subspace, &joints)?).map(Self::Planar)
             }
             SubspaceKind::Spherical => match joints {
-                [ChainJoint::Ball] => Ok(Self::Ball),
+                [ChainJoint::Ball] => Ok(Self::Ball(Ball { axes: subspace.axes })),
                 _ => {
                     let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
                     SphericalChain::new(spherical_axes(subspace, joints)?).map(Self::Spherical)
@@ -218,14 +218,14 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.has_choice(),
             Self::Spherical(_) => true,
-            Self::Ball | Self::Cylindrical(_) | Self::Translational(_) => false,
+            Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => false,
         }
     }
 
     /// Number of freedoms, which is the number of amounts that mean anything.
     pub fn freedoms(&self) -> usize {
         match self {
-            Self::Planar(_) | Self::Spherical(_) | Self::Ball => 3,
+            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
             Self::Cylindrical(_) | Self::Translational(_) => 2,
         }
     }
@@ -244,7 +244,7 @@ impl Chain {
         match (self, target) {
             (Self::Planar(chain), Displacement::Planar(g)) => chain.inverse(g, branch),
             (Self::Spherical(chain), Displacement::Spherical(r)) => chain.inverse(r, branch),
-            (Self::Ball, Displacement::Spherical(r)) => Ok(spherical::ball_inverse(r)),
+            (Self::Ball(ball), Displacement::Spherical(r)) => Ok(ball.inverse(r)),
             (Self::Cylindrical(chain), Displacement::Cylindrical(g)) => Ok(pad(chain.inverse(g))),
             (Self::Translational(chain), Displacement::Translational(t)) => {
                 Ok(pad(chain.inverse(*t)))

@@ -5,7 +5,7 @@
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
 use opm_core::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint, forward};
-use opm_core::chain::spherical::{SphericalChain, ball_forward, ball_inverse};
+use opm_core::chain::spherical::{Ball, SphericalChain};
 use opm_core::chain::translational::TranslationalChain;
 use opm_core::chain::{Amount, Branch, ChainError};
 use proptest::prelude::*;
@@ -257,8 +257,14 @@ proptest! {
     }
 
     #[test]
-    fn ball(target in rotation()) {
-        prop_assert!((ball_forward(&ball_inverse(&target)) - target).norm() < TOLERANCE);
+    fn ball(target in rotation(), axes in rotation()) {
+        let ball = Ball { axes };
+        let amounts = ball.inverse(&target);
+        prop_assert!((ball.forward(&amounts) - target).norm() < TOLERANCE);
+        // In base coordinates the rotation is axes · target · axesᵀ, about an axis that it keeps.
+        let vector = Vector3::from_fn(|i, _| amounts[i].value());
+        let kept = axes * target * axes.transpose() * vector;
+        prop_assert!((kept - vector).norm() < TOLERANCE);
     }
 
     #[test]

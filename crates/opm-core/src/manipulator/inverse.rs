@@ -51,6 +51,8 @@ pub struct Solution {
     pub joints: Vec<f64>,
     /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
     pub imaginary: Vec<f64>,
+    /// Every leg's displacement along the intersection motion, reported or not.
+    cuts: Vec<f64>,
     /// All joint coordinates are within their limits.
     pub within_limits: bool,
     /// The legs that are out of reach. Where there are any, the rest is not to be read.
@@ -89,6 +91,7 @@ impl Manipulator {
         Solution {
             joints: vec![0.0; self.coordinates.len()],
             imaginary: vec![0.0; self.imaginary.len()],
+            cuts: vec![0.0; self.legs.len()],
             within_limits: false,
             unreachable: Vec::with_capacity(self.legs.len()),
         }
@@ -151,7 +154,8 @@ impl Manipulator {
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let Ok(solution) = leg.solve(&self.task, &v, &b, branches, leg.needs_upper()) else {
+            let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, leg.needs_upper(), 0.0)
+            else {
                 return Ok(false);
             };
             for (section, amounts) in [(&leg.lower, &solution.lower), (&leg.upper, &solution.upper)]
@@ -187,7 +191,7 @@ impl Manipulator {
             modes.unreachable = None;
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
                 let branches = self.modes.branches(mode, number);
-                match leg.solve(&self.task, &v, &b, branches, true) {
+                match leg.solve(&self.task, [&v, &b], branches, true, 0.0) {
                     Ok(solution) => modes.solutions[part] = Some(solution),
                     Err((section, gap)) => {
                         let unreachable = Unreachable { leg: number, section, gap };
@@ -243,7 +247,9 @@ impl Manipulator {
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
-            match leg.solve(&self.task, v, b, self.modes.branches(mode, number), true) {
+            let branches = self.modes.branches(mode, number);
+            let near = reference(out.cuts[number], 0.0);
+            match leg.solve(&self.task, [v, b], branches, true, near) {
                 Ok(solution) => self.write(number, &solution, out, reference),
                 Err((section, gap)) => {
                     out.unreachable.push(Unreachable { leg: number, section, gap });
@@ -265,6 +271,7 @@ impl Manipulator {
         let leg = &self.legs[number];
         self.write_section(&leg.lower, &solution.lower, out, reference);
         self.write_section(&leg.upper, &solution.upper, out, reference);
+        out.cuts[number] = solution.tau.nearest(reference(out.cuts[number], 0.0));
         if let Some(imaginary) = leg.imaginary {
             let joint = &self.imaginary[imaginary];
             let near = reference(out.imaginary[imaginary], joint.home);
@@ -285,7 +292,7 @@ impl Manipulator {
             let home = self.coordinates[coordinate].home;
             reference(held, home) - home
         };
-        if matches!(section.chain, Chain::Ball) {
+        if matches!(section.chain, Chain::Ball(_)) {
             let first = section.slots[0].map_or(0, |slot| slot.coordinate);
             let near = Vector3::from_fn(|i, _| near(first + i, out.joints[first + i]));
             let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);

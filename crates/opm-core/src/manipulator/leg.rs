@@ -5,7 +5,7 @@ use crate::decomposition::{Freedom, LegSplit};
 use crate::joint::JointKind;
 use crate::leg::Leg;
 use crate::limits::Limits;
-use crate::task::{Displacement, Subspace, Task};
+use crate::task::{Displacement, Subspace, SubspaceKind, Task};
 use nalgebra::{Unit, Vector3};
 use std::fmt;
 
@@ -84,6 +84,8 @@ pub(super) struct CompiledLeg {
     pub cut: Section,
     /// Number of its imaginary joint.
     pub imaginary: Option<usize>,
+    /// The cut is a turn, and the section that it is handed on to counts whole turns.
+    unwinds: bool,
 }
 
 /// One solution of a leg: displacements from home.
@@ -146,6 +148,8 @@ impl CompiledLeg {
             upper: compile(Section::Upper, &task.upper, &split.upper)?,
             cut,
             imaginary: None,
+            unwinds: task.cut_point.is_some()
+                && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
     }
 
@@ -168,22 +172,24 @@ impl CompiledLeg {
     pub fn needs_upper(&self) -> bool {
         self.upper.limited
             || self.upper.driven
-            || (self.cut == Section::Lower && !matches!(self.upper.chain, Chain::Ball))
+            || (self.cut == Section::Lower && !matches!(self.upper.chain, Chain::Ball(_)))
     }
 
-    /// Solves the closure for `v · b`; the upper section's own joints only where `whole`.
+    /// Solves the closure for `v · b`; the upper section's own joints only where `whole`. Where
+    /// whole turns count, the cut is taken nearest to `near`.
     #[inline]
     pub fn solve(
         &self,
         task: &Task,
-        v: &Displacement,
-        b: &Displacement,
+        [v, b]: [&Displacement; 2],
         branches: LegBranches,
         whole: bool,
+        near: f64,
     ) -> Result<LegSolution, (Section, Gap)> {
         match self.cut {
             Section::Upper => {
                 let (tau, upper) = self.solve_upper(b, branches.upper, whole)?;
+                let tau = self.unwound(tau, near);
                 let lower = self.solve_lower(task, v, tau, branches.lower)?;
                 Ok(LegSolution { lower, upper, tau })
             }
@@ -191,7 +197,7 @@ impl CompiledLeg {
                 let lower = (self.lower.chain.inverse(v, branches.lower))
                     .map_err(|gap| (Section::Lower, gap))?;
                 // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
-                let cut = lower[self.lower.chain.freedoms() - 1];
+                let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
                 let upper = if whole {
                     let target = task.upper_cut.before(b, cut);
                     (self.upper.chain.inverse(&target, branches.upper))
@@ -202,6 +208,11 @@ impl CompiledLeg {
                 Ok(LegSolution { lower, upper, tau: cut.inverse() })
             }
         }
+    }
+
+    #[inline]
+    fn unwound(&self, cut: Amount, near: f64) -> Amount {
+        if self.unwinds { Amount::Value(cut.nearest(near)) } else { cut }
     }
 
     /// `exp(I τ) · U = b`: the imaginary joint, and the upper joints where `whole`.

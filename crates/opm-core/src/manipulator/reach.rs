@@ -81,12 +81,12 @@ impl Manipulator {
             Some(tau) => leg
                 .solve_lower(&self.task, v, tau, way.branches.lower)
                 .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
-            None => leg.solve(&self.task, v, &way.b, way.branches, leg.needs_upper()).is_ok_and(
-                |solution| {
+            None => leg
+                .solve(&self.task, [v, &way.b], way.branches, leg.needs_upper(), 0.0)
+                .is_ok_and(|solution| {
                     leg.lower.admits(&self.limits, &solution.lower)
                         && leg.upper.admits(&self.limits, &solution.upper)
-                },
-            ),
+                }),
         }
     }
 
