@@ -87,10 +87,8 @@ fn bennett_s_linkage_is_a_regular_single_loop_of_one_freedom() {
     let screws: Vec<Screw> = mechanism.legs.iter().flat_map(|leg| leg.screws()).collect();
     assert_eq!(screws.len(), 6);
     // In units of the distance of the centres, so that both halves of a screw weigh alike.
-    let columns: Vec<_> = screws
-        .iter()
-        .map(|s| Screw { linear: s.linear / 0.2, ..*s }.to_vector())
-        .collect();
+    let columns: Vec<_> =
+        screws.iter().map(|s| Screw { linear: s.linear / 0.2, ..*s }.to_vector()).collect();
     let mut singular: Vec<f64> = DMatrix::from_fn(6, 6, |row, column| columns[column][row])
         .singular_values()
         .iter()
