@@ -215,7 +215,7 @@ impl<'a> Value<'a> {
     /// A point of the plane or of space.
     pub(in crate::mechanism) fn point<const N: usize>(&self) -> Option<[f64; N]> {
         let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
-        self.each(expected, |item| item.length())
+        self.each(expected, Self::length)
     }
 
     /// A direction: three numbers without a unit, of any size but zero; returned with size 1.
@@ -360,7 +360,7 @@ impl UniqueNames {
 
 /// The values, if there are all. Every one is read before the first failure ends it: each has its
 /// own problem to report.
-fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+pub(super) fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     read.collect::<Vec<_>>().into_iter().collect()
 }
 
@@ -368,9 +368,10 @@ fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
 fn expected_one_of(found: &str, words: &[&str]) -> String {
     let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let expected = if words.len() == 1 { "expected" } else { "expected one of" };
-    // A third of the letters wrong is a slip; more is another word.
-    let allowed = found.chars().count().max(3) / 3;
-    let nearest = words.iter().map(|word| (edits(found, word), word)).min();
+    // Two letters exchanged are two edits: a slip in a word of four letters; more is another word.
+    let allowed = found.chars().count().div_ceil(3).max(1);
+    let nearest =
+        words.iter().map(|word| (edits(found, word), word)).min_by_key(|&(distance, _)| distance);
     match nearest {
         Some((distance, word)) if distance <= allowed => {
             format!("did you mean `{word}`? {expected} {list}")
