@@ -107,6 +107,8 @@ fn text_that_is_not_toml() {
     let errors = problems("format = 1\n[[leg]\n");
     assert_eq!(errors.problems[0].line, 2, "{errors}");
     assert!(errors.in_file("a.toml").starts_with("a.toml:2:"), "{errors}");
+    let errors = problems(&format!("{JOINTS}\"a\\nb\" = 1\n"));
+    assert!(errors.to_string().starts_with("25:1: unknown key `a\\nb`"), "one line: {errors}");
     assert_eq!(problems("").to_string(), "1:1: `format` is missing, expected format = 1");
 }
 
