@@ -18,8 +18,13 @@ pub mod spherical;
 pub mod translational;
 
 use crate::joint::Quantity;
-use nalgebra::Complex;
+use crate::task::{Displacement, Subspace, SubspaceKind};
+use cylindrical::{CoaxialJoint, CylindricalChain};
+use nalgebra::{Complex, Point3, Unit, Vector3};
+use planar::{PlanarChain, PlanarJoint};
+use spherical::{Ball, SphericalChain};
 use std::f64::consts::TAU;
+use translational::TranslationalChain;
 
 /// How far beyond its reach a chain still answers, as a share of its size: rounding in a target
 /// that lies on the rim is of the order of 1e-15 and must not decide, and a pose on the rim counts
@@ -133,9 +138,17 @@ pub enum ChainError {
     /// The freedoms are dependent in every configuration.
     #[error("{0}")]
     Dependent(&'static str),
-    /// No closed form covers this order of joints.
-    #[error("no closed form for {0}")]
-    NotCovered(&'static str),
+    /// Too few joints to reach every displacement of the subspace, or more than it can fix.
+    #[error("{given} joints where the subspace has {needed} dimensions")]
+    Count {
+        /// Dimensions of the subspace.
+        needed: usize,
+        /// Freedoms given, the cut included.
+        given: usize,
+    },
+    /// A kind of joint that no chain of the subspace takes.
+    #[error("a joint that no {0} chain takes")]
+    Foreign(&'static str),
 }
 
 /// `e(angle)`, the unit vector at an angle.
@@ -152,4 +165,201 @@ fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
     // `z` is a product of two lengths: each may be as short as RIM.
     let shortest = RIM * RIM * size;
     if square > shortest * shortest { z * square.sqrt().recip() } else { Complex::new(1.0, 0.0) }
+}
+
+/// The closed form of one section of a leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Chain {
+    /// Three joints in a plane.
+    Planar(PlanarChain),
+    /// Three revolutes through a point.
+    Spherical(SphericalChain),
+    /// A spherical joint.
+    Ball(Ball),
+    /// Two coaxial joints.
+    Cylindrical(CylindricalChain),
+    /// Two sliders in a plane.
+    Translational(TranslationalChain),
+}
+
+impl Chain {
+    /// The closed form of joints given at home in base coordinates, base first, inside `subspace`.
+    /// They are laid exactly into the subspace: what they are off it by is dropped.
+    ///
+    /// # Errors
+    /// A wrong number of joints for the subspace, or joints that are dependent everywhere.
+    pub fn new(subspace: &Subspace, joints: &[ChainJoint]) -> Result<Self, ChainError> {
+        let needs = |needed| ChainError::Count { needed, given: joints.len() };
+        match subspace.kind {
+            SubspaceKind::Planar => {
+                let joints: [_; 3] = joints.try_into().map_err(|_| needs(3))?;
+                PlanarChain::new(planar_joints(subspace, &joints)?).map(Self::Planar)
+            }
+            SubspaceKind::Spherical => match joints {
+                [ChainJoint::Ball] => Ok(Self::Ball(Ball { axes: subspace.axes })),
+                _ => {
+                    let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+                    SphericalChain::new(spherical_axes(subspace, joints)?).map(Self::Spherical)
+                }
+            },
+            SubspaceKind::Cylindrical => {
+                let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+                CylindricalChain::new(coaxial_joints(subspace, joints)?).map(Self::Cylindrical)
+            }
+            SubspaceKind::TranslationalPlane => {
+                let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+                TranslationalChain::new(slides(subspace, joints)?).map(Self::Translational)
+            }
+        }
+    }
+
+    /// Whether a target has two solutions.
+    pub fn has_choice(&self) -> bool {
+        match self {
+            Self::Planar(chain) => chain.has_choice(),
+            Self::Spherical(_) => true,
+            Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => false,
+        }
+    }
+
+    /// Number of freedoms, which is the number of amounts that mean anything.
+    pub fn freedoms(&self) -> usize {
+        match self {
+            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
+            Self::Cylindrical(_) | Self::Translational(_) => 2,
+        }
+    }
+
+    /// The joints' displacements that move the outer link by `target`, base first; those past
+    /// [`Chain::freedoms`] are zero.
+    ///
+    /// # Errors
+    /// Out of reach: by how much.
+    ///
+    /// # Panics
+    /// If `target` is a displacement of another kind of subspace.
+    #[inline]
+    pub fn inverse(&self, target: &Displacement, branch: Branch) -> Result<[Amount; 3], Gap> {
+        let pad = |[a, b]: [Amount; 2]| [a, b, Amount::Value(0.0)];
+        match (self, target) {
+            (Self::Planar(chain), Displacement::Planar(g)) => chain.inverse(g, branch),
+            (Self::Spherical(chain), Displacement::Spherical(r)) => chain.inverse(r, branch),
+            (Self::Ball(ball), Displacement::Spherical(r)) => Ok(ball.inverse(r)),
+            (Self::Cylindrical(chain), Displacement::Cylindrical(g)) => Ok(pad(chain.inverse(g))),
+            (Self::Translational(chain), Displacement::Translational(t)) => {
+                Ok(pad(chain.inverse(*t)))
+            }
+            _ => unreachable!("a chain and a target of two kinds of subspace"),
+        }
+    }
+
+    /// The first joint's displacement alone, where that is all that is wanted.
+    ///
+    /// # Errors
+    /// Out of reach: by how much.
+    #[inline]
+    pub fn first(&self, target: &Displacement, branch: Branch) -> Result<Amount, Gap> {
+        match (self, target) {
+            (Self::Spherical(chain), Displacement::Spherical(r)) => {
+                chain.first(&(r * chain.third_axis()), branch).map(Amount::Turn)
+            }
+            _ => self.inverse(target, branch).map(|amounts| amounts[0]),
+        }
+    }
+}
+
+/// A joint to build a chain from, at home in base coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChainJoint {
+    /// Rotation about the line through `point` along `axis`, with `pitch` metres of advance a radian.
+    Screw {
+        /// Direction.
+        axis: Unit<Vector3<f64>>,
+        /// A point of the line.
+        point: Point3<f64>,
+        /// Zero for a revolute joint.
+        pitch: f64,
+    },
+    /// Translation.
+    Slide {
+        /// Direction.
+        axis: Unit<Vector3<f64>>,
+    },
+    /// A spherical joint.
+    Ball,
+}
+
+fn planar_joints(
+    subspace: &Subspace,
+    joints: &[ChainJoint; 3],
+) -> Result<[PlanarJoint; 3], ChainError> {
+    let mut planar = [PlanarJoint::Prismatic { along: Complex::new(1.0, 0.0) }; 3];
+    for (planar, joint) in planar.iter_mut().zip(joints) {
+        *planar = match joint {
+            ChainJoint::Screw { axis, point, pitch: 0.0 } => {
+                let at = subspace.point(point);
+                let reversed = subspace.direction(axis).z < 0.0;
+                PlanarJoint::Revolute { at: Complex::new(at.x, at.y), reversed }
+            }
+            ChainJoint::Slide { axis } => {
+                PlanarJoint::Prismatic { along: in_plane(subspace, axis)? }
+            }
+            _ => return Err(ChainError::Foreign("planar")),
+        };
+    }
+    Ok(planar)
+}
+
+fn spherical_axes(
+    subspace: &Subspace,
+    joints: &[ChainJoint; 3],
+) -> Result<[Unit<Vector3<f64>>; 3], ChainError> {
+    let mut axes = [Vector3::z_axis(); 3];
+    for (local, joint) in axes.iter_mut().zip(joints) {
+        match joint {
+            ChainJoint::Screw { axis, pitch: 0.0, .. } => {
+                *local = Unit::new_normalize(subspace.direction(axis));
+            }
+            _ => return Err(ChainError::Foreign("spherical")),
+        }
+    }
+    Ok(axes)
+}
+
+fn coaxial_joints(
+    subspace: &Subspace,
+    joints: &[ChainJoint; 2],
+) -> Result<[CoaxialJoint; 2], ChainError> {
+    let mut coaxial = [CoaxialJoint { turn: 0.0, advance: 0.0 }; 2];
+    for (coaxial, joint) in coaxial.iter_mut().zip(joints) {
+        let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
+        *coaxial = match joint {
+            ChainJoint::Screw { axis, pitch, .. } => {
+                CoaxialJoint { turn: sign(axis), advance: sign(axis) * pitch }
+            }
+            ChainJoint::Slide { axis } => CoaxialJoint { turn: 0.0, advance: sign(axis) },
+            ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
+        };
+    }
+    Ok(coaxial)
+}
+
+fn slides(subspace: &Subspace, joints: &[ChainJoint; 2]) -> Result<[Complex<f64>; 2], ChainError> {
+    match joints {
+        [ChainJoint::Slide { axis: a }, ChainJoint::Slide { axis: b }] => {
+            Ok([in_plane(subspace, a)?, in_plane(subspace, b)?])
+        }
+        _ => Err(ChainError::Foreign("translational")),
+    }
+}
+
+/// A direction of the base, laid into the plane.
+fn in_plane(subspace: &Subspace, axis: &Vector3<f64>) -> Result<Complex<f64>, ChainError> {
+    let d = subspace.direction(axis);
+    let along = Complex::new(d.x, d.y);
+    let length = along.norm();
+    if length <= DEGENERATE {
+        return Err(ChainError::Dependent("a slider square to the plane that it moves in"));
+    }
+    Ok(along / length)
 }

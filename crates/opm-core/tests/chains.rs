@@ -5,7 +5,7 @@
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
 use opm_core::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint, forward};
-use opm_core::chain::spherical::{SphericalChain, ball_forward, ball_inverse};
+use opm_core::chain::spherical::{Ball, SphericalChain};
 use opm_core::chain::translational::TranslationalChain;
 use opm_core::chain::{Amount, Branch, ChainError};
 use proptest::prelude::*;
@@ -47,7 +47,9 @@ fn check_planar(
     amounts: [f64; 3],
     random: PlanarDisplacement,
 ) -> Result<(), TestCaseError> {
-    let Ok(chain) = PlanarChain::new(joints) else { return Err(TestCaseError::reject("degenerate")) };
+    let Ok(chain) = PlanarChain::new(joints) else {
+        return Err(TestCaseError::reject("degenerate"));
+    };
     let made = std::array::from_fn(|i| match joints[i] {
         PlanarJoint::Revolute { .. } => Amount::Turn(e(amounts[i])),
         PlanarJoint::Prismatic { .. } => Amount::Value(amounts[i]),
@@ -118,21 +120,29 @@ planar_chains! {
 /// Whether a chain reaches a wrist, by geometry: which distances its first two joints can give.
 #[test]
 fn reach_is_what_geometry_says() {
-    let revolute = |x: f64, y: f64| PlanarJoint::Revolute { at: Complex::new(x, y), reversed: false };
+    let revolute =
+        |x: f64, y: f64| PlanarJoint::Revolute { at: Complex::new(x, y), reversed: false };
     let prismatic = |angle| PlanarJoint::Prismatic { along: e(angle) };
     let moved = |x: f64, y: f64| PlanarDisplacement {
         rotation: e(0.3),
         translation: Complex::new(x, y) - e(0.3) * Complex::new(3.0, 0.0),
     };
     // Links 2 and 1 from the origin: wrist distances 1 to 3.
-    let rrr = PlanarChain::new([revolute(0.0, 0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
+    let rrr =
+        PlanarChain::new([revolute(0.0, 0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
     let excess = |chain: &PlanarChain, x, y| {
         chain.inverse(&moved(x, y), Branch::Plus).err().map_or(0.0, |gap| gap.excess)
     };
     for angle in [0.0, 1.0, 4.0_f64] {
-        for (radius, expected) in
-            [(0.0, 1.0), (0.75, 0.25), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (3.5, 0.5), (1e6, 999_997.0)]
-        {
+        for (radius, expected) in [
+            (0.0, 1.0),
+            (0.75, 0.25),
+            (1.0, 0.0),
+            (2.0, 0.0),
+            (3.0, 0.0),
+            (3.5, 0.5),
+            (1e6, 999_997.0),
+        ] {
             let found = excess(&rrr, radius * angle.cos(), radius * angle.sin());
             assert!((found - expected).abs() < 1e-9, "radius {radius}: {found}, {expected}");
         }
@@ -193,7 +203,8 @@ fn axis() -> impl Strategy<Value = Unit<Vector3<f64>>> {
 }
 
 fn rotation() -> impl Strategy<Value = Matrix3<f64>> {
-    (axis(), 0.0..PI).prop_map(|(axis, angle)| Rotation3::from_axis_angle(&axis, angle).into_inner())
+    (axis(), 0.0..PI)
+        .prop_map(|(axis, angle)| Rotation3::from_axis_angle(&axis, angle).into_inner())
 }
 
 proptest! {
@@ -246,8 +257,14 @@ proptest! {
     }
 
     #[test]
-    fn ball(target in rotation()) {
-        prop_assert!((ball_forward(&ball_inverse(&target)) - target).norm() < TOLERANCE);
+    fn ball(target in rotation(), axes in rotation()) {
+        let ball = Ball { axes };
+        let amounts = ball.inverse(&target);
+        prop_assert!((ball.forward(&amounts) - target).norm() < TOLERANCE);
+        // In base coordinates the rotation is axes · target · axesᵀ, about an axis that it keeps.
+        let vector = Vector3::from_fn(|i, _| amounts[i].value());
+        let kept = axes * target * axes.transpose() * vector;
+        prop_assert!((kept - vector).norm() < TOLERANCE);
     }
 
     #[test]
@@ -287,10 +304,8 @@ fn the_rim_is_inside_and_both_branches_meet_there() {
     let chain = PlanarChain::new(joints).unwrap();
     for angle in (0..100).map(|i| 0.0628 * f64::from(i)) {
         for radius in [0.3_f64, 0.1] {
-            let target = PlanarDisplacement {
-                rotation: e(angle),
-                translation: e(angle) * (radius - 0.3),
-            };
+            let target =
+                PlanarDisplacement { rotation: e(angle), translation: e(angle) * (radius - 0.3) };
             for branch in Branch::BOTH {
                 let solution = chain.inverse(&target, branch).unwrap();
                 assert!(distance(&forward(&joints, &solution), &target) < 1e-10);
@@ -308,7 +323,8 @@ fn the_rim_is_inside_and_both_branches_meet_there() {
     let chain = SphericalChain::new(axes).unwrap();
     // Third axis straight up and straight down: on the first axis, in reach with arcs of 90 degrees.
     for angle in [-90.0_f64, 90.0] {
-        let target = Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians()).into_inner();
+        let target =
+            Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians()).into_inner();
         for branch in Branch::BOTH {
             let solution = chain.inverse(&target, branch).unwrap();
             assert!((chain.forward(&solution) - target).norm() < 1e-10, "{angle} {solution:?}");
@@ -334,7 +350,8 @@ fn an_angle_left_free_is_home() {
         Unit::new_normalize(Vector3::new(a.to_radians().sin(), 0.0, a.to_radians().cos()))
     });
     let chain = SphericalChain::new(axes).unwrap();
-    let target = Rotation3::from_axis_angle(&Vector3::y_axis(), -120.0_f64.to_radians()).into_inner();
+    let target =
+        Rotation3::from_axis_angle(&Vector3::y_axis(), -120.0_f64.to_radians()).into_inner();
     for branch in Branch::BOTH {
         let solution = chain.inverse(&target, branch).unwrap();
         assert!((chain.forward(&solution) - target).norm() < 1e-10);
@@ -384,10 +401,8 @@ fn nothing_that_is_not_a_number_gets_out() {
         for size in [0.0, 1e-300, 1e-20, 1e-12, 1.0, 1e12, 1e100] {
             for angle in [0.0, PI / 2.0, PI, 1e-9, 2.5] {
                 for direction in [0.0, PI / 2.0, 3.0] {
-                    let target = PlanarDisplacement {
-                        rotation: e(angle),
-                        translation: e(direction) * size,
-                    };
+                    let target =
+                        PlanarDisplacement { rotation: e(angle), translation: e(direction) * size };
                     for branch in Branch::BOTH {
                         match chain.inverse(&target, branch) {
                             Ok(amounts) => {

@@ -1,1 +1,27 @@
-//! MCAP recordings of workspaces.
+//! MCAP recordings of what a manipulator does, and reading them back.
+//!
+//! A recording opens in Foxglove, Lichtblick and Rerun. Its messages are of well-known schemas
+//! (`foxglove.PointCloud`), in chunks of about 1 MiB compressed with zstd on one thread. What is in a
+//! workspace recording is said in [`workspace`].
+//!
+//! * Numbers are SI and radians.
+//! * No clock is read: the same calls write the same bytes.
+//! * A recording is written as `NAME.partial` and gets its name when it is whole. Any error is
+//!   final, and a recording cut short never looks finished; what of it reached the disk can be read
+//!   ([`read`]).
+
+pub mod cloud;
+mod decode;
+mod error;
+mod file;
+mod log;
+mod reader;
+pub mod workspace;
+
+pub use cloud::CloudLayout;
+pub use decode::{Cloud, Column};
+pub use error::{ReadError, RecordError};
+pub use file::{PartialFile, Sink};
+pub use log::Metadata;
+pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use workspace::{MAX_SLICES, Workspace, WorkspaceRecorder};

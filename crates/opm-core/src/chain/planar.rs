@@ -183,11 +183,7 @@ impl PlanarChain {
     /// # Errors
     /// Out of reach: by how much.
     #[inline]
-    pub fn inverse(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
+    pub fn inverse(&self, target: &PlanarDisplacement, branch: Branch) -> Result<[Amount; 3], Gap> {
         match self {
             Self::Rrr(chain) => chain.inverse(target, branch),
             Self::Prr(chain) => chain.inverse(target, branch),
@@ -202,10 +198,9 @@ impl PlanarChain {
 
 /// The displacement of the outer link: the product of the joints' displacements, base first.
 pub fn forward(joints: &[PlanarJoint; 3], amounts: &[Amount; 3]) -> PlanarDisplacement {
-    joints
-        .iter()
-        .zip(amounts)
-        .fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| g.after(&joint.displacement(amount)))
+    joints.iter().zip(amounts).fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| {
+        g.after(&joint.displacement(amount))
+    })
 }
 
 /// `a × b`, the third component of the cross product.

@@ -103,16 +103,27 @@ impl SphericalChain {
     }
 }
 
-/// Any rotation, as the three components of its rotation vector.
-pub fn ball_inverse(target: &Matrix3<f64>) -> [Amount; 3] {
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*target));
-    let vector = rotation.scaled_axis();
-    [0, 1, 2].map(|i| Amount::Value(vector[i]))
+/// A spherical joint: any rotation, as a rotation vector in base coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// The base's coordinates of the frame that targets are given in.
+    pub axes: Matrix3<f64>,
 }
 
-/// The rotation of a ball whose rotation vector has these components.
-pub fn ball_forward(amounts: &[Amount; 3]) -> Matrix3<f64> {
-    Rotation3::new(Vector3::from_fn(|i, _| amounts[i].value())).into_inner()
+impl Ball {
+    /// The three components of the rotation vector of `target`, at most half a turn.
+    #[inline]
+    pub fn inverse(&self, target: &Matrix3<f64>) -> [Amount; 3] {
+        let rotation = Rotation3::from_matrix_unchecked(*target);
+        let vector = self.axes * UnitQuaternion::from_rotation_matrix(&rotation).scaled_axis();
+        [0, 1, 2].map(|i| Amount::Value(vector[i]))
+    }
+
+    /// The rotation with this rotation vector.
+    pub fn forward(&self, amounts: &[Amount; 3]) -> Matrix3<f64> {
+        let vector = Vector3::from_fn(|i, _| amounts[i].value());
+        Rotation3::new(self.axes.tr_mul(&vector)).into_inner()
+    }
 }
 
 /// `exp(-axis q) v`, with `q` as a unit vector.

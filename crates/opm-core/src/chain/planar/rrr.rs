@@ -73,11 +73,7 @@ impl Rrr {
         let reach = wrist - self.pivots[0].at;
         let r1 = direction(reach * bent.conj(), self.mean_square);
         let r3 = target.rotation * (r1 * r2).conj();
-        Ok([
-            self.pivots[0].amount(r1),
-            self.pivots[1].amount(r2),
-            self.pivots[2].amount(r3),
-        ])
+        Ok([self.pivots[0].amount(r1), self.pivots[1].amount(r2), self.pivots[2].amount(r3)])
     }
 
     #[cold]

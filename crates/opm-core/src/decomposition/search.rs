@@ -1,0 +1,131 @@
+//! Every way to cut every leg, depth first over the legs, without those that cannot become two
+//! proper subgroups.
+
+use super::Freedom;
+use crate::joint::JointKind;
+use crate::leg::Leg;
+use crate::subspace::{Basis, Frame};
+use nalgebra::Vector6;
+
+/// While screws are gathered, a bracket or screw counts as a new direction only if it is this far
+/// out. Larger than any rounding, even enlarged by brackets of screws at a small angle: a branch
+/// must never be cut by an error. Missing a true direction only costs time, since what is left at
+/// the end is fitted with the proper tolerance.
+const CLEARLY_NEW: f64 = 0.05;
+
+/// The freedoms of one leg in two parts, with their unit normalised screws.
+pub(super) struct Cut {
+    pub lower: Vec<Freedom>,
+    pub upper: Vec<Freedom>,
+    /// Screws of the lower part, then of the upper.
+    screws: Vec<Vector6<f64>>,
+}
+
+impl Cut {
+    pub fn lower_screws(&self) -> &[Vector6<f64>] {
+        &self.screws[..self.lower.len()]
+    }
+
+    pub fn upper_screws(&self) -> &[Vector6<f64>] {
+        &self.screws[self.lower.len()..]
+    }
+}
+
+/// The cuts of a leg, longest lower part first: between joints, within a universal joint, and
+/// within a cylindrical joint either way round, since its two freedoms commute. A spherical joint
+/// stays whole.
+pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
+    let freedoms: Vec<(Freedom, Vector6<f64>)> = leg
+        .joints
+        .iter()
+        .enumerate()
+        .flat_map(|(joint, j)| {
+            let freedom = move |index| Freedom { joint, index };
+            let unit = |(index, screw)| (freedom(index), frame.unit(&screw));
+            j.screws().into_iter().enumerate().map(unit).collect::<Vec<_>>()
+        })
+        .collect();
+    let cut = |freedoms: &[(Freedom, Vector6<f64>)], at: usize| {
+        let (lower, upper) = freedoms.split_at(at);
+        let names = |part: &[(Freedom, _)]| part.iter().map(|(freedom, _)| *freedom).collect();
+        let screws = freedoms.iter().map(|(_, screw)| *screw).collect();
+        Cut { lower: names(lower), upper: names(upper), screws }
+    };
+    let mut cuts = vec![];
+    for at in (0..=freedoms.len()).rev() {
+        let above = freedoms.get(at).map(|(freedom, _)| *freedom).filter(|above| above.index > 0);
+        match above.map(|above| leg.joints[above.joint].kind) {
+            Some(JointKind::Spherical) => {}
+            Some(JointKind::Cylindrical) => {
+                let mut swapped = freedoms.clone();
+                swapped.swap(at - 1, at);
+                cuts.push(cut(&freedoms, at));
+                cuts.push(cut(&swapped, at));
+            }
+            _ => cuts.push(cut(&freedoms, at)),
+        }
+    }
+    cuts
+}
+
+/// Calls `accept` with every split, one cut a leg, that may consist of two subgroups; stops when
+/// that returns false. Returns the number of partial splits looked at.
+pub(super) fn splits(
+    cuts: &[Vec<Cut>],
+    lambda: usize,
+    accept: &mut dyn FnMut(&[&Cut]) -> bool,
+) -> usize {
+    let mut search = Search { cuts, lambda, accept, chosen: vec![], visited: 0, stopped: false };
+    search.descend(Basis::EMPTY, Basis::EMPTY);
+    search.visited
+}
+
+struct Search<'a, 'f> {
+    cuts: &'a [Vec<Cut>],
+    lambda: usize,
+    accept: &'f mut dyn FnMut(&[&Cut]) -> bool,
+    chosen: Vec<&'a Cut>,
+    visited: usize,
+    stopped: bool,
+}
+
+impl<'a> Search<'a, '_> {
+    /// Cuts the next leg; `lower` and `upper` are closures of the screws gathered so far.
+    fn descend(&mut self, lower: Basis, upper: Basis) {
+        let Some(cuts) = self.cuts.get(self.chosen.len()) else {
+            self.stopped = !(self.accept)(&self.chosen);
+            return;
+        };
+        for cut in cuts {
+            if self.stopped {
+                return;
+            }
+            self.visited += 1;
+            let lower = enlarged(lower, cut.lower_screws());
+            let upper = enlarged(upper, cut.upper_screws());
+            if self.possible(&lower, &upper) {
+                self.chosen.push(cut);
+                self.descend(lower, upper);
+                self.chosen.pop();
+            }
+        }
+    }
+
+    /// Two proper subalgebras that meet in one dimension and together span lambda have lambda + 1
+    /// dimensions between them; their parts have no more, and meet in no more.
+    fn possible(&self, lower: &Basis, upper: &Basis) -> bool {
+        let (a, b) = (lower.dimension(), upper.dimension());
+        a < self.lambda
+            && b < self.lambda
+            && a + b <= self.lambda + 1
+            && lower.intersection(upper).dimension() <= 1
+    }
+}
+
+fn enlarged(mut basis: Basis, screws: &[Vector6<f64>]) -> Basis {
+    let before = basis.dimension();
+    for screw in screws {
+        basis.grow(screw, CLEARLY_NEW);
+    }
+    if basis.dimension() == before { basis } else { basis.closure(CLEARLY_NEW) }
+}

@@ -1,0 +1,148 @@
+//! Limits of a joint coordinate, tested without trigonometry.
+
+use crate::chain::{Amount, unit};
+use nalgebra::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// A coordinate this far past its limit, as a share of the limit (or of one radian), is on it: the
+/// rounding of a solution that lies on a limit must not decide, and on a limit counts as inside.
+const SLACK: f64 = 1e-12;
+
+/// The displacements from home that a coordinate may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limits {
+    /// All of them.
+    Free,
+    /// A range of a length, or of an angle that counts whole turns.
+    Range {
+        /// Lowest displacement from home.
+        low: f64,
+        /// Highest displacement from home.
+        high: f64,
+        /// The ends, slack included, as unit vectors: an arc counter-clockwise from the first;
+        /// `None` where it is a full turn.
+        arc: Option<Arc>,
+    },
+}
+
+/// An arc of the circle, counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    from: Complex<f64>,
+    to: Complex<f64>,
+    /// More than half a turn.
+    wide: bool,
+}
+
+impl Limits {
+    /// From the reported limits and the value reported at home.
+    pub fn new(limits: Option<[f64; 2]>, home: f64) -> Self {
+        let Some([low, high]) = limits else { return Self::Free };
+        let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(f64::MIN_POSITIVE);
+        let (low, high) = (low - home - slack, high - home + slack);
+        let slack = SLACK.max(slack);
+        let arc = (high - low + 2.0 * slack < TAU).then(|| Arc {
+            from: unit(low - slack),
+            to: unit(high + slack),
+            wide: high - low + 2.0 * slack > PI,
+        });
+        Self::Range { low, high, arc }
+    }
+
+    /// Whether a displacement from home is allowed. A turn is, when it is at any whole number of
+    /// turns.
+    #[inline]
+    pub fn admits(&self, amount: Amount) -> bool {
+        match (self, amount) {
+            (Self::Free, _) | (Self::Range { arc: None, .. }, Amount::Turn(_)) => true,
+            (Self::Range { low, high, .. }, Amount::Value(value)) => {
+                (*low..=*high).contains(&value)
+            }
+            (Self::Range { arc: Some(arc), .. }, Amount::Turn(e)) => arc.contains(e),
+        }
+    }
+
+    /// The value to report for an amount: the turn nearest to `reference`, but one within the limits
+    /// where there is one. All are displacements from home.
+    #[inline]
+    pub fn report(&self, amount: Amount, reference: f64) -> f64 {
+        let nearest = amount.nearest(reference);
+        let (Self::Range { low, high, .. }, Amount::Turn(_)) = (self, amount) else {
+            return nearest;
+        };
+        if nearest < *low {
+            let up = nearest + TAU * ((low - nearest) / TAU).ceil();
+            return if up <= *high { up } else { nearest };
+        }
+        if nearest > *high {
+            let down = nearest - TAU * ((nearest - high) / TAU).ceil();
+            return if down >= *low { down } else { nearest };
+        }
+        nearest
+    }
+
+    /// Lowest and highest value of a length, as a displacement from home.
+    #[inline]
+    pub fn range(&self) -> (f64, f64) {
+        match self {
+            Self::Free => (f64::NEG_INFINITY, f64::INFINITY),
+            Self::Range { low, high, .. } => (*low, *high),
+        }
+    }
+
+    /// Whether there are any.
+    pub fn any(&self) -> bool {
+        !matches!(self, Self::Free)
+    }
+}
+
+impl Arc {
+    /// Left of the first end and right of the second; of a wide arc either is enough.
+    #[inline]
+    fn contains(&self, e: Complex<f64>) -> bool {
+        let cross = |a: Complex<f64>, b: Complex<f64>| a.re * b.im - a.im * b.re;
+        let (after, before) = (cross(self.from, e) >= 0.0, cross(e, self.to) >= 0.0);
+        if self.wide { after || before } else { after && before }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// The arc test agrees with counting turns on the number line.
+        #[test]
+        fn arcs_are_ranges_modulo_a_turn(
+            home in -7.0..7.0_f64, low in -7.0..7.0_f64, width in 0.0..7.0_f64, angle in -7.0..7.0_f64,
+        ) {
+            let limits = Limits::new(Some([low, low + width]), home);
+            let from_low = (angle + home - low).rem_euclid(TAU);
+            let margin = (from_low - width).abs().min(from_low).min(TAU - from_low);
+            prop_assume!(margin > 1e-9);
+            let inside = from_low <= width;
+            prop_assert_eq!(limits.admits(Amount::Turn(unit(angle))), inside);
+            let reported = home + limits.report(Amount::Turn(unit(angle)), 0.0);
+            prop_assert!((unit(reported) - unit(home + angle)).norm() < 1e-9);
+            prop_assert_eq!(inside, (low..=low + width).contains(&reported));
+        }
+    }
+
+    #[test]
+    fn a_limit_is_inside() {
+        for (low, high, home) in
+            [(-0.3, 0.3, 0.1), (0.0, 0.0, 0.0), (-3.0, 3.0, 2.0), (1.0, 1.5, 1.2)]
+        {
+            let limits = Limits::new(Some([low, high]), home);
+            for end in [low, high] {
+                assert!(limits.admits(Amount::Value(end - home)), "{low} {high} {home}");
+                assert!(limits.admits(Amount::Turn(unit(end - home))), "{low} {high} {home}");
+            }
+            assert!(!limits.admits(Amount::Value(high - home + 1e-9)));
+            assert!(!limits.admits(Amount::Turn(unit(high - home + 1e-9))));
+        }
+    }
+}

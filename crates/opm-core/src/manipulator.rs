@@ -1,0 +1,258 @@
+//! A mechanism, decomposed and compiled to closed-form chains.
+//!
+//! With `g = v · b` the pose, a leg's closure `L(q_low) · U(q_up) = g` is cut in two by its
+//! displacement `exp(I τ)` along the intersection motion, the imaginary joint:
+//!
+//! * a leg whose *upper* section lacks one freedom gets the cut there: `exp(I τ) · U = b` gives τ
+//!   and the upper joints, then `L = v · exp(I τ)` the lower ones;
+//! * a leg whose *lower* section lacks one gets it there: `L · exp(-I τ) = v`, then
+//!   `U = exp(-I τ) · b`.
+//!
+//! Either way both sections have as many freedoms as their subspace, and each is one
+//! [`Chain`](crate::chain::Chain).
+
+mod inverse;
+mod leg;
+mod mode;
+mod reach;
+
+pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
+pub use leg::{RefusedLeg, Section};
+pub use mode::{Mode, ModeError};
+pub use reach::{Follow, Row};
+
+use crate::chain::Amount;
+use crate::decomposition::{DecomposeError, Decomposition, decompose};
+use crate::joint::{JointCoordinate, Quantity};
+use crate::leg::Leg;
+use crate::limits::Limits;
+use crate::mechanism::Mechanism;
+use crate::task::{Task, TaskCoordinate, TaskError};
+use leg::CompiledLeg;
+use mode::ModeLayout;
+
+/// Choices that a [`Mode`] has room for.
+const MOST_CHOICES: u32 = 63;
+
+/// An imaginary joint as it is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImaginaryJoint {
+    /// Name.
+    pub name: String,
+    /// Number of the leg that it belongs to.
+    pub leg: usize,
+    /// Angle or length.
+    pub quantity: Quantity,
+    /// Value at home, radians or metres.
+    pub home: f64,
+    /// `1` or `-1`: which way along the intersection motion counts as positive.
+    sign: f64,
+}
+
+/// Why a mechanism cannot be compiled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompileError {
+    /// It does not decompose.
+    #[error(transparent)]
+    Decompose(#[from] DecomposeError),
+    /// A leg has no closed form.
+    #[error("leg {leg}: {reason}")]
+    Leg {
+        /// The leg's name.
+        leg: String,
+        /// Why.
+        reason: RefusedLeg,
+    },
+    /// Its pose has no coordinates.
+    #[error(transparent)]
+    Task(#[from] TaskError),
+    /// More two-valued choices than a mode has room for.
+    #[error("{0} two-valued choices, at most {MOST_CHOICES} are supported")]
+    Choices(u32),
+}
+
+/// A mechanism compiled for closed-form inverse kinematics. Immutable; share it between threads.
+#[derive(Clone, Debug)]
+pub struct Manipulator {
+    mechanism: Mechanism,
+    decomposition: Decomposition,
+    task: Task,
+    legs: Vec<CompiledLeg>,
+    coordinates: Vec<JointCoordinate>,
+    limits: Vec<Limits>,
+    actuated: Vec<usize>,
+    imaginary: Vec<ImaginaryJoint>,
+    modes: ModeLayout,
+    home_mode: Mode,
+}
+
+impl Manipulator {
+    /// Decomposes a mechanism and compiles the first of its decompositions that closed forms cover.
+    ///
+    /// # Errors
+    /// Where it does not decompose, or what stands in the way of its preferred decomposition.
+    pub fn new(mechanism: Mechanism) -> Result<Self, CompileError> {
+        let decompositions = decompose(&mechanism)?;
+        let mut refused = None;
+        for decomposition in decompositions {
+            match Self::with_decomposition(mechanism.clone(), decomposition) {
+                Ok(manipulator) => return Ok(manipulator),
+                Err(error) => refused = refused.or(Some(error)),
+            }
+        }
+        Err(refused.expect("decompose gives at least one decomposition, or an error"))
+    }
+
+    /// Compiles a mechanism by one of its decompositions.
+    ///
+    /// # Errors
+    /// A leg that no pair of chains covers, or subspaces without coordinates.
+    pub fn with_decomposition(
+        mechanism: Mechanism,
+        decomposition: Decomposition,
+    ) -> Result<Self, CompileError> {
+        let task = Task::new(&mechanism, &decomposition)?;
+        let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect();
+        let mut actuated = Vec::new();
+        let mut drives = Vec::with_capacity(coordinates.len());
+        for joint in mechanism.joints() {
+            for _ in &joint.coordinates {
+                drives.push(joint.actuated.then_some(actuated.len()));
+                if joint.actuated {
+                    actuated.push(drives.len() - 1);
+                }
+            }
+        }
+
+        let mut legs = Vec::with_capacity(mechanism.legs.len());
+        let mut imaginary = Vec::new();
+        let mut first = 0;
+        for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
+            let mut compiled = CompiledLeg::new(leg, split, &task, first, &drives, &limits)
+                .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
+            if split.imaginary {
+                compiled.imaginary = Some(imaginary.len());
+                imaginary.push(ImaginaryJoint::new(leg, number, &task));
+            }
+            first += leg.coordinates().count();
+            legs.push(compiled);
+        }
+        let modes = ModeLayout::new(&legs);
+        if modes.count() > MOST_CHOICES {
+            return Err(CompileError::Choices(modes.count()));
+        }
+        let mut manipulator = Self {
+            mechanism,
+            decomposition,
+            task,
+            legs,
+            coordinates,
+            limits,
+            actuated,
+            imaginary,
+            modes,
+            home_mode: Mode::default(),
+        };
+        manipulator.home_mode = manipulator.mode_at_home();
+        Ok(manipulator)
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// How it was decomposed.
+    pub fn decomposition(&self) -> &Decomposition {
+        &self.decomposition
+    }
+
+    /// Its subspaces' frames and the conversions of its pose.
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// The coordinates of its pose, in order.
+    pub fn task_coordinates(&self) -> &[TaskCoordinate] {
+        &self.task.coordinates
+    }
+
+    /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
+    pub fn coordinates(&self) -> &[JointCoordinate] {
+        &self.coordinates
+    }
+
+    /// Numbers of the actuated coordinates, ascending: the order of [`Drives::actuated`].
+    pub fn actuated(&self) -> &[usize] {
+        &self.actuated
+    }
+
+    /// Its imaginary joints, leg by leg: the order of [`Solution::imaginary`].
+    pub fn imaginary(&self) -> &[ImaginaryJoint] {
+        &self.imaginary
+    }
+
+    /// Number of two-valued choices; there are `2^choices` working modes.
+    pub fn choices(&self) -> u32 {
+        self.modes.count()
+    }
+
+    /// The working mode that the mechanism is assembled in.
+    pub fn home_mode(&self) -> Mode {
+        self.home_mode
+    }
+
+    /// Reads a working mode: a sign for every choice.
+    ///
+    /// # Errors
+    /// A character that is not a sign, or another number of signs.
+    pub fn parse_mode(&self, text: &str) -> Result<Mode, ModeError> {
+        self.modes.parse(text)
+    }
+
+    /// Writes a working mode: a sign for every choice, a group a leg.
+    pub fn format_mode(&self, mode: Mode) -> String {
+        self.modes.format(mode)
+    }
+
+    /// Of each leg's solutions at home, the one that leaves its joints where they are.
+    fn mode_at_home(&self) -> Mode {
+        let home = self.task.home();
+        let (v, b) = (self.task.lower(&home), self.task.upper(&home[self.task.lower_count..]));
+        let moved = |number: usize, mode: Mode| -> f64 {
+            let branches = self.modes.branches(mode, number);
+            match self.legs[number].solve(&self.task, [&v, &b], branches, true, 0.0) {
+                Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
+                Err(_) => f64::INFINITY,
+            }
+        };
+        (0..self.legs.len())
+            .filter_map(|number| {
+                self.modes
+                    .leg_modes(number)
+                    .min_by(|&a, &b| moved(number, a).total_cmp(&moved(number, b)))
+            })
+            .fold(Mode::default(), |mode, leg| Mode(mode.0 | leg.0))
+    }
+}
+
+impl ImaginaryJoint {
+    fn new(leg: &Leg, number: usize, task: &Task) -> Self {
+        let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
+        let (name, home, sign) = match &leg.imaginary {
+            Some(label) => {
+                (label.name.clone(), label.home, label.positive.dot(&task.direction).signum())
+            }
+            None => (format!("tau.{}", leg.name), 0.0, 1.0),
+        };
+        Self { name, leg: number, quantity, home, sign }
+    }
+
+    /// The value to report for a displacement along the intersection motion; of a turn, the one
+    /// nearest to `reference`.
+    #[inline]
+    fn value(&self, tau: Amount, reference: f64) -> f64 {
+        self.home + self.sign * tau.nearest(self.sign * (reference - self.home))
+    }
+}

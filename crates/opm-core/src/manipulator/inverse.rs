@@ -1,0 +1,341 @@
+//! Inverse kinematics: one working mode, all of them, or just what drives the platform.
+//!
+//! None of it allocates: results go into buffers that [`Manipulator`] makes once.
+
+use super::leg::{CompiledSection, LegSolution, Section, Slot};
+use super::{Manipulator, Mode};
+use crate::chain::{Amount, Chain, Gap};
+use crate::task::Displacement;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Coordinates beyond this size are refused: their squares would overflow.
+const LARGEST: f64 = 1e100;
+
+/// A pose that cannot be computed with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PoseError {
+    /// Another number of coordinates than the manipulator has.
+    #[error("{given} coordinates, expected {expected}")]
+    Length {
+        /// How many were given.
+        given: usize,
+        /// How many there are.
+        expected: usize,
+    },
+    /// Not a number, infinite, or too large.
+    #[error("{name} is {value}, expected a finite number")]
+    NotFinite {
+        /// The coordinate.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// A leg that a pose is out of reach of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unreachable {
+    /// Number of the leg.
+    pub leg: usize,
+    /// Which of its sections does not close.
+    pub section: Section,
+    /// By how much.
+    pub gap: Gap,
+}
+
+/// Every joint of one working mode; made by [`Manipulator::solution`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Every joint coordinate, in the order of [`Manipulator::coordinates`]; radians and metres.
+    pub joints: Vec<f64>,
+    /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
+    pub imaginary: Vec<f64>,
+    /// Every leg's displacement along the intersection motion, reported or not.
+    cuts: Vec<f64>,
+    /// All joint coordinates are within their limits.
+    pub within_limits: bool,
+    /// The legs that are out of reach. Where there are any, the rest is not to be read.
+    pub unreachable: Vec<Unreachable>,
+}
+
+/// The actuated and the imaginary joints of one working mode; made by [`Manipulator::drives`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drives {
+    /// Actuated coordinates, in the order of [`Manipulator::actuated`]; radians and metres.
+    pub actuated: Vec<f64>,
+    /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
+    pub imaginary: Vec<f64>,
+    /// All joint coordinates, passive ones too, are within their limits.
+    pub within_limits: bool,
+}
+
+/// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
+#[derive(Clone, Debug)]
+pub struct AllModes {
+    legs: Vec<LegModes>,
+    count: u32,
+}
+
+/// A leg's solutions, by [`super::mode::ModeLayout::of_leg`].
+#[derive(Clone, Debug)]
+struct LegModes {
+    solutions: [Option<LegSolution>; 4],
+    /// Of the first combination, where none closes.
+    unreachable: Option<Unreachable>,
+}
+
+impl Manipulator {
+    /// A buffer for [`Manipulator::inverse`].
+    pub fn solution(&self) -> Solution {
+        Solution {
+            joints: vec![0.0; self.coordinates.len()],
+            imaginary: vec![0.0; self.imaginary.len()],
+            cuts: vec![0.0; self.legs.len()],
+            within_limits: false,
+            unreachable: Vec::with_capacity(self.legs.len()),
+        }
+    }
+
+    /// A buffer for [`Manipulator::inverse_drives`].
+    pub fn drives(&self) -> Drives {
+        Drives {
+            actuated: vec![0.0; self.actuated.len()],
+            imaginary: vec![0.0; self.imaginary.len()],
+            within_limits: false,
+        }
+    }
+
+    /// A buffer for [`Manipulator::inverse_all`].
+    pub fn all_modes(&self) -> AllModes {
+        let leg = LegModes { solutions: [None; 4], unreachable: None };
+        AllModes { legs: vec![leg; self.legs.len()], count: self.modes.count() }
+    }
+
+    /// Every joint at a pose in one working mode, angles within half a turn of home; `false` where
+    /// the pose is out of reach in that mode (`out.unreachable` says of which legs).
+    ///
+    /// # Errors
+    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    pub fn inverse(&self, pose: &[f64], mode: Mode, out: &mut Solution) -> Result<bool, PoseError> {
+        let (v, b) = self.displacements(pose)?;
+        self.solve_legs(&v, &b, mode, out, |_, home| home);
+        Ok(out.unreachable.is_empty())
+    }
+
+    /// As [`Manipulator::inverse`], but each angle is the one nearest to what `out` held before:
+    /// along a trajectory no joint jumps by a turn. Out of reach, `out` keeps the last good values.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    pub fn inverse_near(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Solution,
+    ) -> Result<bool, PoseError> {
+        let (v, b) = self.displacements(pose)?;
+        self.solve_legs(&v, &b, mode, out, |held, _| held);
+        Ok(out.unreachable.is_empty())
+    }
+
+    /// The actuated and the imaginary joints at a pose in one working mode, and nothing else;
+    /// `false` where the pose is out of reach. Angles are within half a turn of home.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    pub fn inverse_drives(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Drives,
+    ) -> Result<bool, PoseError> {
+        let (v, b) = self.displacements(pose)?;
+        out.within_limits = true;
+        for (number, leg) in self.legs.iter().enumerate() {
+            let branches = self.modes.branches(mode, number);
+            let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, leg.needs_upper(), 0.0)
+            else {
+                return Ok(false);
+            };
+            for (section, amounts) in [(&leg.lower, &solution.lower), (&leg.upper, &solution.upper)]
+            {
+                out.within_limits &= section.admits(&self.limits, amounts);
+                if !section.driven {
+                    continue;
+                }
+                for (slot, &amount) in section.slots.iter().zip(amounts) {
+                    if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
+                        let home = self.coordinates[coordinate].home;
+                        out.actuated[drive] = home + self.limits[coordinate].report(amount, 0.0);
+                    }
+                }
+            }
+            if let Some(imaginary) = leg.imaginary {
+                let joint = &self.imaginary[imaginary];
+                out.imaginary[imaginary] = joint.value(solution.tau, joint.home);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Every working mode at a pose: fills `out`, and returns whether there is any that reaches.
+    /// Then [`AllModes::modes`] lists them and [`Manipulator::pick`] gives the joints of one.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    pub fn inverse_all(&self, pose: &[f64], out: &mut AllModes) -> Result<bool, PoseError> {
+        let (v, b) = self.displacements(pose)?;
+        for (number, (leg, modes)) in self.legs.iter().zip(&mut out.legs).enumerate() {
+            modes.solutions = [None; 4];
+            modes.unreachable = None;
+            for (part, mode) in self.modes.leg_modes(number).enumerate() {
+                let branches = self.modes.branches(mode, number);
+                match leg.solve(&self.task, [&v, &b], branches, true, 0.0) {
+                    Ok(solution) => modes.solutions[part] = Some(solution),
+                    Err((section, gap)) => {
+                        let unreachable = Unreachable { leg: number, section, gap };
+                        modes.unreachable.get_or_insert(unreachable);
+                    }
+                }
+            }
+        }
+        Ok(out.unreachable().next().is_none())
+    }
+
+    /// The joints of one working mode out of `all`, angles within half a turn of home; `false` where
+    /// the pose is out of reach in that mode.
+    pub fn pick(&self, all: &AllModes, mode: Mode, out: &mut Solution) -> bool {
+        out.unreachable.clear();
+        out.within_limits = true;
+        for (number, modes) in all.legs.iter().enumerate() {
+            match (&modes.solutions[self.modes.of_leg(mode, number)], modes.unreachable) {
+                (Some(solution), _) => self.write(number, solution, out, |_, home| home),
+                (None, Some(unreachable)) => out.unreachable.push(unreachable),
+                (None, None) => unreachable!("a combination of signs that the leg does not have"),
+            }
+        }
+        out.unreachable.is_empty()
+    }
+
+    /// `v` and `b` of a pose, which must have finite coordinates.
+    pub(super) fn displacements(
+        &self,
+        pose: &[f64],
+    ) -> Result<(Displacement, Displacement), PoseError> {
+        let coordinates = &self.task.coordinates;
+        if pose.len() != coordinates.len() {
+            return Err(PoseError::Length { given: pose.len(), expected: coordinates.len() });
+        }
+        for (coordinate, &value) in coordinates.iter().zip(pose) {
+            // Also false for NaN.
+            if !(value.abs() <= LARGEST) {
+                return Err(PoseError::NotFinite { name: coordinate.name, value });
+            }
+        }
+        Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
+    }
+
+    fn solve_legs(
+        &self,
+        v: &Displacement,
+        b: &Displacement,
+        mode: Mode,
+        out: &mut Solution,
+        reference: impl Fn(f64, f64) -> f64 + Copy,
+    ) {
+        out.unreachable.clear();
+        out.within_limits = true;
+        for (number, leg) in self.legs.iter().enumerate() {
+            let branches = self.modes.branches(mode, number);
+            let near = reference(out.cuts[number], 0.0);
+            match leg.solve(&self.task, [v, b], branches, true, near) {
+                Ok(solution) => self.write(number, &solution, out, reference),
+                Err((section, gap)) => {
+                    out.unreachable.push(Unreachable { leg: number, section, gap });
+                }
+            }
+        }
+    }
+
+    /// Reports a leg's solution; `reference` says near which value an angle is to be, from the value
+    /// that `out` holds and the one at home.
+    #[inline]
+    fn write(
+        &self,
+        number: usize,
+        solution: &LegSolution,
+        out: &mut Solution,
+        reference: impl Fn(f64, f64) -> f64 + Copy,
+    ) {
+        let leg = &self.legs[number];
+        self.write_section(&leg.lower, &solution.lower, out, reference);
+        self.write_section(&leg.upper, &solution.upper, out, reference);
+        out.cuts[number] = solution.tau.nearest(reference(out.cuts[number], 0.0));
+        if let Some(imaginary) = leg.imaginary {
+            let joint = &self.imaginary[imaginary];
+            let near = reference(out.imaginary[imaginary], joint.home);
+            out.imaginary[imaginary] = joint.value(solution.tau, near);
+        }
+    }
+
+    #[inline]
+    fn write_section(
+        &self,
+        section: &CompiledSection,
+        amounts: &[Amount; 3],
+        out: &mut Solution,
+        reference: impl Fn(f64, f64) -> f64,
+    ) {
+        out.within_limits &= section.admits(&self.limits, amounts);
+        let near = |coordinate: usize, held: f64| {
+            let home = self.coordinates[coordinate].home;
+            reference(held, home) - home
+        };
+        if matches!(section.chain, Chain::Ball(_)) {
+            let first = section.slots[0].map_or(0, |slot| slot.coordinate);
+            let near = Vector3::from_fn(|i, _| near(first + i, out.joints[first + i]));
+            let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
+            for i in 0..3 {
+                out.joints[first + i] = self.coordinates[first + i].home + vector[i];
+            }
+            return;
+        }
+        for (slot, &amount) in section.slots.iter().zip(amounts) {
+            let Some(Slot { coordinate, .. }) = *slot else { continue };
+            let reference = near(coordinate, out.joints[coordinate]);
+            let value = self.limits[coordinate].report(amount, reference);
+            out.joints[coordinate] = self.coordinates[coordinate].home + value;
+        }
+    }
+}
+
+impl AllModes {
+    /// The legs that are out of reach in every mode.
+    pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
+        self.legs
+            .iter()
+            .filter(|leg| leg.solutions.iter().all(Option::is_none))
+            .filter_map(|leg| leg.unreachable)
+    }
+
+    /// The modes in which the pose is in reach, all-plus first.
+    pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
+        let layout = &manipulator.modes;
+        (0..1u64 << self.count).map(Mode).filter(move |&mode| {
+            let mut legs = self.legs.iter().enumerate();
+            legs.all(|(number, leg)| leg.solutions[layout.of_leg(mode, number)].is_some())
+        })
+    }
+}
+
+/// The rotation vector of the same rotation, whole turns added, that is nearest to `reference`.
+fn nearest_rotation(vector: Vector3<f64>, reference: &Vector3<f64>) -> Vector3<f64> {
+    let angle = vector.norm();
+    if angle == 0.0 {
+        return vector;
+    }
+    let axis = vector / angle;
+    let turns = ((reference.dot(&axis) - angle) / TAU).round();
+    axis * (angle + TAU * turns)
+}

@@ -1,0 +1,292 @@
+//! One leg, cut in two closed-form chains.
+
+use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap};
+use crate::decomposition::{Freedom, LegSplit};
+use crate::joint::JointKind;
+use crate::leg::Leg;
+use crate::limits::Limits;
+use crate::task::{Displacement, Subspace, SubspaceKind, Task};
+use nalgebra::{Unit, Vector3};
+use std::fmt;
+
+/// One of the two sections of a leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Section {
+    /// Base side, inside `A`.
+    Lower,
+    /// Platform side, inside `B`.
+    Upper,
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
+        })
+    }
+}
+
+/// Why a leg has no closed form.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RefusedLeg {
+    /// Its sections do not have the numbers of freedoms that fix them.
+    #[error(
+        "{lower} freedoms in its lower section and {upper} in its upper one; closed-form inverse \
+         kinematics needs {dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1
+    )]
+    Freedoms {
+        /// In its lower section.
+        lower: usize,
+        /// In its upper section.
+        upper: usize,
+        /// Dimensions of the lower subspace.
+        dim_lower: usize,
+        /// Dimensions of the upper subspace.
+        dim_upper: usize,
+    },
+    /// One of its sections has no closed form.
+    #[error("its {section} section has no closed form: {error}")]
+    Chain {
+        /// Which.
+        section: Section,
+        /// Why.
+        error: ChainError,
+    },
+}
+
+/// Where a chain's amount goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    /// Number of the joint coordinate in the mechanism.
+    pub coordinate: usize,
+    /// Its number among the actuated ones.
+    pub drive: Option<usize>,
+}
+
+/// One section: its chain, and where the chain's amounts go (`None`: the cut).
+#[derive(Clone, Debug)]
+pub(super) struct CompiledSection {
+    pub chain: Chain,
+    pub slots: [Option<Slot>; 3],
+    /// Any of its coordinates has limits.
+    pub limited: bool,
+    /// Any of its coordinates is actuated.
+    pub driven: bool,
+}
+
+/// A leg cut in two.
+#[derive(Clone, Debug)]
+pub(super) struct CompiledLeg {
+    pub lower: CompiledSection,
+    pub upper: CompiledSection,
+    /// The section that takes the cut, and so is solved first when it is the upper one.
+    pub cut: Section,
+    /// Number of its imaginary joint.
+    pub imaginary: Option<usize>,
+    /// The cut is a turn, and the section that it is handed on to counts whole turns.
+    unwinds: bool,
+}
+
+/// One solution of a leg: displacements from home.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LegSolution {
+    pub lower: [Amount; 3],
+    /// Zero where it was not asked for.
+    pub upper: [Amount; 3],
+    /// Along the intersection motion.
+    pub tau: Amount,
+}
+
+impl CompiledLeg {
+    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism; `drives`
+    /// gives each coordinate's number among the actuated ones.
+    pub fn new(
+        leg: &Leg,
+        split: &LegSplit,
+        task: &Task,
+        first: usize,
+        drives: &[Option<usize>],
+        limits: &[Limits],
+    ) -> Result<Self, RefusedLeg> {
+        let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
+        let (lower, upper) = (split.lower.len(), split.upper.len());
+        let cut = if (lower, upper) == (dim_lower, dim_upper - 1) {
+            Section::Upper
+        } else if (lower, upper) == (dim_lower - 1, dim_upper) {
+            Section::Lower
+        } else {
+            return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper });
+        };
+        let cut_joint = match task.cut_point {
+            Some(point) => ChainJoint::Screw { axis: task.direction, point, pitch: 0.0 },
+            None => ChainJoint::Slide { axis: task.direction },
+        };
+        let compile = |section: Section, subspace: &Subspace, freedoms: &[Freedom]| {
+            let mut joints = chain_joints(leg, freedoms);
+            let mut slots = [None; 3];
+            let shift = usize::from(section == Section::Upper && cut == Section::Upper);
+            for (slot, freedom) in slots[shift..].iter_mut().zip(freedoms) {
+                let coordinate = first + coordinate_number(leg, *freedom);
+                *slot = Some(Slot { coordinate, drive: drives[coordinate] });
+            }
+            if section == cut {
+                joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);
+            }
+            let chain = Chain::new(subspace, &joints)
+                .map_err(|error| RefusedLeg::Chain { section, error })?;
+            let slot = || slots.iter().flatten();
+            Ok(CompiledSection {
+                chain,
+                slots,
+                limited: slot().any(|s| limits[s.coordinate].any()),
+                driven: slot().any(|s| s.drive.is_some()),
+            })
+        };
+        Ok(Self {
+            lower: compile(Section::Lower, &task.lower, &split.lower)?,
+            upper: compile(Section::Upper, &task.upper, &split.upper)?,
+            cut,
+            imaginary: None,
+            unwinds: task.cut_point.is_some()
+                && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
+        })
+    }
+
+    /// The sections in the order in which they are solved.
+    pub fn order(&self) -> [Section; 2] {
+        match self.cut {
+            Section::Upper => [Section::Upper, Section::Lower],
+            Section::Lower => [Section::Lower, Section::Upper],
+        }
+    }
+
+    pub fn section(&self, section: Section) -> &CompiledSection {
+        match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        }
+    }
+
+    /// Whether the upper section must be solved for the limits, or for the drives.
+    pub fn needs_upper(&self) -> bool {
+        self.upper.limited
+            || self.upper.driven
+            || (self.cut == Section::Lower && !matches!(self.upper.chain, Chain::Ball(_)))
+    }
+
+    /// Solves the closure for `v · b`; the upper section's own joints only where `whole`. Where
+    /// whole turns count, the cut is taken nearest to `near`.
+    #[inline]
+    pub fn solve(
+        &self,
+        task: &Task,
+        [v, b]: [&Displacement; 2],
+        branches: LegBranches,
+        whole: bool,
+        near: f64,
+    ) -> Result<LegSolution, (Section, Gap)> {
+        match self.cut {
+            Section::Upper => {
+                let (tau, upper) = self.solve_upper(b, branches.upper, whole)?;
+                let tau = self.unwound(tau, near);
+                let lower = self.solve_lower(task, v, tau, branches.lower)?;
+                Ok(LegSolution { lower, upper, tau })
+            }
+            Section::Lower => {
+                let lower = (self.lower.chain.inverse(v, branches.lower))
+                    .map_err(|gap| (Section::Lower, gap))?;
+                // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
+                let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
+                let upper = if whole {
+                    let target = task.upper_cut.before(b, cut);
+                    (self.upper.chain.inverse(&target, branches.upper))
+                        .map_err(|gap| (Section::Upper, gap))?
+                } else {
+                    [Amount::Value(0.0); 3]
+                };
+                Ok(LegSolution { lower, upper, tau: cut.inverse() })
+            }
+        }
+    }
+
+    #[inline]
+    fn unwound(&self, cut: Amount, near: f64) -> Amount {
+        if self.unwinds { Amount::Value(cut.nearest(near)) } else { cut }
+    }
+
+    /// `exp(I τ) · U = b`: the imaginary joint, and the upper joints where `whole`.
+    #[inline]
+    pub fn solve_upper(
+        &self,
+        b: &Displacement,
+        branch: Branch,
+        whole: bool,
+    ) -> Result<(Amount, [Amount; 3]), (Section, Gap)> {
+        let solved = if whole {
+            self.upper.chain.inverse(b, branch).map(|upper| (upper[0], upper))
+        } else {
+            self.upper.chain.first(b, branch).map(|tau| (tau, [Amount::Value(0.0); 3]))
+        };
+        solved.map_err(|gap| (Section::Upper, gap))
+    }
+
+    /// `L = v · exp(I τ)`: the lower joints.
+    #[inline]
+    pub fn solve_lower(
+        &self,
+        task: &Task,
+        v: &Displacement,
+        tau: Amount,
+        branch: Branch,
+    ) -> Result<[Amount; 3], (Section, Gap)> {
+        let target = task.lower_cut.after(v, tau);
+        self.lower.chain.inverse(&target, branch).map_err(|gap| (Section::Lower, gap))
+    }
+}
+
+impl CompiledSection {
+    /// Whether the amounts of this section's chain are within the limits.
+    #[inline]
+    pub fn admits(&self, limits: &[Limits], amounts: &[Amount; 3]) -> bool {
+        !self.limited
+            || self.slots.iter().zip(amounts).all(|(slot, &amount)| match slot {
+                Some(slot) => limits[slot.coordinate].admits(amount),
+                None => true,
+            })
+    }
+}
+
+/// The branch of each section's chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LegBranches {
+    pub lower: Branch,
+    pub upper: Branch,
+}
+
+/// The freedoms of a section as chain joints; the three of a spherical joint are one.
+fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
+    let mut joints = Vec::with_capacity(3);
+    for freedom in freedoms {
+        let joint = &leg.joints[freedom.joint];
+        let screw =
+            |axis: Unit<Vector3<f64>>, pitch| ChainJoint::Screw { axis, point: joint.point, pitch };
+        joints.push(match (joint.kind, freedom.index) {
+            (JointKind::Spherical, 0) => ChainJoint::Ball,
+            (JointKind::Spherical, _) => continue,
+            (JointKind::Prismatic, _) | (JointKind::Cylindrical, 1) => {
+                ChainJoint::Slide { axis: joint.axis }
+            }
+            (JointKind::Universal { second }, 1) => screw(second, 0.0),
+            (JointKind::Helical { pitch }, _) => screw(joint.axis, pitch),
+            _ => screw(joint.axis, 0.0),
+        });
+    }
+    joints
+}
+
+/// Number of a freedom among the leg's coordinates.
+fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
+    let before: usize = leg.joints[..freedom.joint].iter().map(crate::joint::Joint::freedoms).sum();
+    before + freedom.index
+}

@@ -1,0 +1,142 @@
+//! Working modes: one sign for every two-valued choice.
+
+use super::leg::{CompiledLeg, LegBranches, Section};
+use crate::chain::Branch;
+
+/// One sign for every two-valued choice of a manipulator, a set bit for a minus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Mode(pub(super) u64);
+
+/// A mode string that does not fit the manipulator.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "working mode `{given}`: {problem}, expected one sign (+ or -) for every choice, a group a leg: `{example}`"
+)]
+pub struct ModeError {
+    /// What was given.
+    pub given: String,
+    /// What is wrong with it.
+    pub problem: String,
+    /// A mode that fits.
+    pub example: String,
+}
+
+/// Which choices each leg has, and their bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ModeLayout {
+    legs: Vec<LegChoices>,
+    count: u32,
+}
+
+/// The bits of a leg's choices; `None` where a section has one solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct LegChoices {
+    lower: Option<u32>,
+    upper: Option<u32>,
+    upper_first: bool,
+}
+
+impl LegChoices {
+    /// Bits in the order in which they are written: as the sections are solved.
+    fn written(&self) -> impl Iterator<Item = u32> {
+        let order =
+            if self.upper_first { [self.upper, self.lower] } else { [self.lower, self.upper] };
+        order.into_iter().flatten()
+    }
+}
+
+impl ModeLayout {
+    pub fn new(legs: &[CompiledLeg]) -> Self {
+        let mut count = 0;
+        let legs = legs
+            .iter()
+            .map(|leg| {
+                let mut choices =
+                    LegChoices { lower: None, upper: None, upper_first: leg.cut == Section::Upper };
+                for section in leg.order() {
+                    if leg.section(section).chain.has_choice() {
+                        let bit = match section {
+                            Section::Lower => &mut choices.lower,
+                            Section::Upper => &mut choices.upper,
+                        };
+                        *bit = Some(count);
+                        count += 1;
+                    }
+                }
+                choices
+            })
+            .collect();
+        Self { legs, count }
+    }
+
+    /// Number of two-valued choices.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    #[inline]
+    pub fn branches(&self, mode: Mode, leg: usize) -> LegBranches {
+        let branch = |bit: Option<u32>| match bit {
+            Some(bit) if mode.0 >> bit & 1 == 1 => Branch::Minus,
+            _ => Branch::Plus,
+        };
+        let choices = &self.legs[leg];
+        LegBranches { lower: branch(choices.lower), upper: branch(choices.upper) }
+    }
+
+    /// Every combination of a leg's own choices, as modes that are plus elsewhere.
+    pub fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
+        let mut bits = [0; 2];
+        let mut len = 0;
+        for bit in self.legs[leg].written() {
+            bits[len] = bit;
+            len += 1;
+        }
+        (0..1u64 << len).map(move |combination| {
+            Mode((0..len).fold(0, |mode, i| mode | (combination >> i & 1) << bits[i]))
+        })
+    }
+
+    /// The part of a mode that is one leg's.
+    #[inline]
+    pub fn of_leg(&self, mode: Mode, leg: usize) -> usize {
+        self.legs[leg]
+            .written()
+            .enumerate()
+            .fold(0, |part, (i, bit)| part | ((mode.0 >> bit & 1) as usize) << i)
+    }
+
+    pub fn format(&self, mode: Mode) -> String {
+        let groups: Vec<String> = self
+            .legs
+            .iter()
+            .map(|leg| {
+                leg.written().map(|bit| if mode.0 >> bit & 1 == 1 { '-' } else { '+' }).collect()
+            })
+            .filter(|group: &String| !group.is_empty())
+            .collect();
+        groups.join(" ")
+    }
+
+    /// Reads signs; the spaces between them are free.
+    pub fn parse(&self, text: &str) -> Result<Mode, ModeError> {
+        let error = |problem: String| ModeError {
+            given: text.to_owned(),
+            problem,
+            example: self.format(Mode::default()),
+        };
+        let mut signs = Vec::new();
+        for c in text.chars().filter(|c| !c.is_whitespace()) {
+            match c {
+                '+' => signs.push(false),
+                '-' | '\u{2212}' => signs.push(true),
+                other => return Err(error(format!("`{other}` is not a sign"))),
+            }
+        }
+        if signs.len() != self.count as usize {
+            return Err(error(format!("{} signs for {} choices", signs.len(), self.count)));
+        }
+        let bits = self.legs.iter().flat_map(LegChoices::written);
+        Ok(Mode(bits.zip(signs).fold(0, |mode, (bit, minus)| mode | u64::from(minus) << bit)))
+    }
+}

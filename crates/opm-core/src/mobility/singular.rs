@@ -1,0 +1,176 @@
+//! Is home a singular pose? Its ranks beside those of assembled poses nearby.
+//!
+//! Ranks drop in special poses and never rise, so a pose is singular if some pose nearby has a
+//! higher rank. A pose nearby is found by a first-order motion of finite size, projected back onto
+//! the loop closure by Levenberg-Marquardt steps damped by the remaining gap, which converge
+//! quadratically also where the closure's rank is deficient, as it is in every overconstrained
+//! mechanism (Fan and Yuan, Computing 74, 2005).
+
+use super::linkage::{Linkage, Pose, Ranks};
+use crate::mechanism::Mechanism;
+use crate::screw::Screw;
+use crate::subspace::TOLERANCE;
+use crate::svd::Svd;
+use nalgebra::{DVector, Isometry3, Vector6};
+use std::fmt;
+
+/// Size of the motion to a nearby pose: radians, and shares of the characteristic length.
+const NEARBY: f64 = 0.1;
+/// First-order motions tried; each is generic by itself, more only guard against a coincidence.
+const SAMPLES: usize = 3;
+/// Steps of the projection, and what counts as closed. Coordinates with six digits close an
+/// overconstrained mechanism no better than the tolerance of ranks.
+const MAX_STEPS: usize = 40;
+const CLOSED: f64 = 1e-12;
+/// A step that leaves more than this share of the gap has met the rounding of the input.
+const STALLED: f64 = 0.99;
+/// A singular value that is zero at home is of the order of [`NEARBY`] nearby; what is larger than
+/// this many tolerances is not rounding.
+const CLEARLY_NONZERO: f64 = 10.0 * TOLERANCE;
+
+/// One respect in which the home pose is more degenerate than assembled poses nearby.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HomeSingularity {
+    /// Serial singularity: a leg's joint screws are dependent, so the leg cannot move the platform
+    /// in some direction, and two of its working modes meet.
+    Serial {
+        /// Name of the leg.
+        leg: String,
+        /// Dimension of the span of its screws at home.
+        home: usize,
+        /// The same nearby.
+        nearby: usize,
+    },
+    /// Parallel singularity: more motions are left with the actuators locked than nearby.
+    Parallel {
+        /// Freedoms with the actuators locked at home.
+        home: usize,
+        /// The same nearby.
+        nearby: usize,
+    },
+    /// The mobility `N` at home is not that of the mechanism (constraint singularity).
+    Constraint {
+        /// `N` at home.
+        home: usize,
+        /// `N` nearby.
+        nearby: usize,
+    },
+    /// All joint screws together span less than they do nearby.
+    Span {
+        /// `lambda` at home.
+        home: usize,
+        /// `lambda` nearby.
+        nearby: usize,
+    },
+}
+
+impl fmt::Display for HomeSingularity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { leg, home, nearby } => write!(
+                f,
+                "serial: the joints of leg {leg:?} have {home} independent screws at home, \
+                 {nearby} nearby"
+            ),
+            Self::Parallel { home, nearby } => write!(
+                f,
+                "parallel: locked actuators leave {home} freedoms at home, {nearby} nearby"
+            ),
+            Self::Constraint { home, nearby } => {
+                write!(f, "constraint: mobility N is {home} at home, {nearby} nearby")
+            }
+            Self::Span { home, nearby } => {
+                write!(f, "span: all joint screws have rank lambda {home} at home, {nearby} nearby")
+            }
+        }
+    }
+}
+
+/// Every respect in which home, with its `ranks`, is singular.
+pub(super) fn singularities(
+    linkage: &Linkage,
+    ranks: &Ranks,
+    mechanism: &Mechanism,
+) -> Vec<HomeSingularity> {
+    let mut found = vec![];
+    let Some(generic) = generic_ranks(linkage, ranks) else { return found };
+    for (i, leg) in mechanism.legs.iter().enumerate() {
+        let (home, nearby) = (ranks.legs[i], generic.legs[i]);
+        if home < nearby {
+            found.push(HomeSingularity::Serial { leg: leg.name.clone(), home, nearby });
+        }
+    }
+    if ranks.locked > generic.locked {
+        let (home, nearby) = (ranks.locked, generic.locked);
+        found.push(HomeSingularity::Parallel { home, nearby });
+    }
+    if ranks.mobility > generic.mobility {
+        let (home, nearby) = (ranks.mobility, generic.mobility);
+        found.push(HomeSingularity::Constraint { home, nearby });
+    }
+    if ranks.lambda < generic.lambda {
+        let (home, nearby) = (ranks.lambda, generic.lambda);
+        found.push(HomeSingularity::Span { home, nearby });
+    }
+    found
+}
+
+/// The least degenerate ranks met nearby; `None` if no pose nearby closes (a rigid mechanism).
+fn generic_ranks(linkage: &Linkage, home: &Ranks) -> Option<Ranks> {
+    if home.mobility == 0 {
+        return None;
+    }
+    let regular = |a: Ranks, b: Ranks| Ranks {
+        lambda: a.lambda.max(b.lambda),
+        mobility: a.mobility.min(b.mobility),
+        locked: a.locked.min(b.locked),
+        legs: a.legs.iter().zip(&b.legs).map(|(x, y)| *x.max(y)).collect(),
+    };
+    (0..SAMPLES)
+        .filter_map(|sample| nearby(linkage, sample))
+        .map(|pose| linkage.ranks(&pose, CLEARLY_NONZERO))
+        .reduce(regular)
+}
+
+/// An assembled pose about [`NEARBY`] away from home, another one for every sample.
+fn nearby(linkage: &Linkage, sample: usize) -> Option<Pose> {
+    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+    // Fixed coefficients without a pattern: multiples of the golden ratio, modulo one.
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let coefficient =
+        |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
+    let motion = &kernel * DVector::from_fn(kernel.ncols(), coefficient);
+    let motion = &motion * (NEARBY / motion.amax());
+    project(linkage, &motion)
+}
+
+/// The assembled pose near given coordinates and platform twist, stacked.
+fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
+    let n = linkage.actuated.len();
+    let mut q = start.rows(0, n).into_owned();
+    let mut platform = displacement(&start.rows(n, 6).into_owned());
+    let mut pose = linkage.pose(q.as_slice());
+    let mut gaps = pose.gaps(&platform);
+    for _ in 0..MAX_STEPS {
+        let gap = gaps.norm();
+        if gap <= CLOSED {
+            break;
+        }
+        let svd = Svd::new(pose.derivative());
+        let along = svd.image.tr_mul(&gaps);
+        let damped = DVector::from_fn(n + 6, |i, _| along[i] / (svd.values[i].powi(2) + gap));
+        let step = -(&svd.right * damped);
+        q += step.rows(0, n);
+        platform = displacement(&step.rows(n, 6).into_owned()) * platform;
+        pose = linkage.pose(q.as_slice());
+        gaps = pose.gaps(&platform);
+        if gaps.norm() > STALLED * gap {
+            break;
+        }
+    }
+    (gaps.norm() <= TOLERANCE).then_some(pose)
+}
+
+fn displacement(twist: &DVector<f64>) -> Isometry3<f64> {
+    Screw::from_vector(&Vector6::from_column_slice(twist.as_slice())).exp(1.0)
+}

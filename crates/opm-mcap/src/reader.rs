@@ -1,0 +1,312 @@
+//! Reading recordings back, whole or cut short, in the memory of one message.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+use mcap::McapError;
+use mcap::records::{self, Record, op};
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
+use crate::cloud::COLOR_FIELDS;
+use crate::decode::Cloud;
+use crate::{Metadata, ReadError};
+
+/// Longest record or chunk that is taken for real. Ours are a quarter of it; a length beyond it
+/// in a damaged file must not become an allocation.
+const RECORD_LIMIT: usize = 512 << 20;
+
+/// What a recording holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Topics in the order of their names.
+    pub topics: Vec<TopicInfo>,
+    /// Time of the first and of the last message, in nanoseconds. None without messages.
+    pub time_range: Option<[u64; 2]>,
+    /// Range of every field of the clouds (colours left out), in the order of the fields.
+    pub extents: Vec<Extent>,
+    /// Metadata records in the order of the file.
+    pub metadata: Vec<(String, Metadata)>,
+    /// Attachments in the order of the file.
+    pub attachments: Vec<AttachmentInfo>,
+    /// The file has its end, and a metadata record in it says `complete = "true"`. Otherwise the
+    /// run that wrote it was cut short, and this is what reached the file.
+    pub complete: bool,
+}
+
+impl Recording {
+    /// The last metadata record of this name.
+    pub fn metadata(&self, name: &str) -> Option<&Metadata> {
+        self.metadata.iter().rev().find(|(found, _)| found == name).map(|(_, record)| record)
+    }
+
+    /// The topic of this name.
+    pub fn topic(&self, name: &str) -> Option<&TopicInfo> {
+        self.topics.iter().find(|topic| topic.name == name)
+    }
+}
+
+/// A topic of a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TopicInfo {
+    /// Its name.
+    pub name: String,
+    /// Name of its messages' schema, for example `foxglove.PointCloud`; empty without one.
+    pub schema: String,
+    /// Its messages.
+    pub messages: u64,
+    /// Points in these messages; None where they are not point clouds.
+    pub points: Option<u64>,
+}
+
+/// The range of one field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extent {
+    /// Name of the field.
+    pub field: String,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+/// An attached file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AttachmentInfo {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Its size in bytes.
+    pub size: u64,
+}
+
+/// A message of a recording.
+#[derive(Debug, Clone, Copy)]
+pub struct Message<'a> {
+    /// The topic's name.
+    pub topic: &'a str,
+    /// The name of the topic's schema; empty without one.
+    pub schema: &'a str,
+    /// When it was logged, in nanoseconds.
+    pub time: u64,
+    /// The message, encoded.
+    pub data: &'a [u8],
+}
+
+impl<'a> Message<'a> {
+    /// The point cloud in this message; None when it is of another schema.
+    ///
+    /// # Errors
+    /// A message that claims the schema and does not decode.
+    pub fn cloud(&self) -> Result<Option<Cloud<'a>>, ReadError> {
+        if self.schema != Cloud::SCHEMA {
+            return Ok(None);
+        }
+        Cloud::decode(self.data).map(Some).map_err(|reason| ReadError::Malformed {
+            what: format!("{} at {} ns", self.topic, self.time),
+            reason,
+        })
+    }
+}
+
+/// Reads a recording from front to back, showing every message to `visit`, and says what is in it.
+///
+/// A file that ends early is read as far as it is whole. Checksums are verified before anything is
+/// shown. Memory: about one message, at most half a GiB.
+///
+/// # Errors
+/// A file that cannot be read, is not MCAP, is damaged before its end, or whose clouds do not decode;
+/// and whatever `visit` returns.
+pub fn read<E: From<ReadError>>(
+    path: &Path,
+    mut visit: impl FnMut(&Message<'_>) -> Result<(), E>,
+) -> Result<Recording, E> {
+    let failed = |source| ReadError::Io { path: path.into(), source };
+    let mut file = File::open(path).map_err(failed)?;
+    let options = LinearReaderOptions::default()
+        .with_validate_data_section_crc(true)
+        .with_validate_summary_section_crc(true)
+        .with_record_length_limit(RECORD_LIMIT);
+    let options = LinearReaderOptions { prevalidate_chunk_crcs: true, ..options };
+    let mut reader = LinearReader::new_with_options(options);
+    let mut contents = Contents::default();
+    let mut offset = 0;
+    let mut begun = false;
+
+    let ended = loop {
+        match reader.next_event() {
+            None => break true,
+            Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
+                // More at a time than asked for: the requests inside a chunk are small.
+                let count = file.read(reader.insert(wanted.max(1 << 16))).map_err(failed)?;
+                reader.notify_read(count);
+                offset += count as u64;
+            }
+            Some(Ok(LinearReadEvent::Record { opcode, data })) => {
+                begun = true;
+                contents.record(opcode, data, &mut visit)?;
+            }
+            Some(Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)) if begun => break false,
+            Some(Err(McapError::BadMagic | McapError::UnexpectedEof)) if !begun => {
+                return Err(ReadError::NotMcap { path: path.into() }.into());
+            }
+            Some(Err(source)) => {
+                return Err(ReadError::Damaged { path: path.into(), offset, source }.into());
+            }
+        }
+    };
+    Ok(contents.finish(ended))
+}
+
+/// What was found so far.
+#[derive(Default)]
+struct Contents {
+    schemas: BTreeMap<u16, Arc<str>>,
+    channels: BTreeMap<u16, Channel>,
+    time_range: Option<[u64; 2]>,
+    extents: Vec<Extent>,
+    metadata: Vec<(String, Metadata)>,
+    attachments: Vec<AttachmentInfo>,
+}
+
+struct Channel {
+    topic: Arc<str>,
+    schema: Arc<str>,
+    messages: u64,
+    points: Option<u64>,
+}
+
+impl Contents {
+    fn record<E: From<ReadError>>(
+        &mut self,
+        opcode: u8,
+        data: &[u8],
+        visit: &mut impl FnMut(&Message<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        match opcode {
+            op::ATTACHMENT => self.attachments.push(attachment(data)?),
+            op::SCHEMA | op::CHANNEL | op::METADATA | op::MESSAGE => match parse(opcode, data)? {
+                Record::Schema { header, .. } => {
+                    self.schemas.insert(header.id, header.name.into());
+                }
+                Record::Channel(channel) => self.channel(channel),
+                Record::Metadata(record) => self.metadata.push((record.name, record.metadata)),
+                Record::Message { header, data } => self.message(header, &data, visit)?,
+                _ => {}
+            },
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Channels are declared a second time behind the data.
+    fn channel(&mut self, channel: records::Channel) {
+        let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
+        self.channels.entry(channel.id).or_insert_with(|| Channel {
+            topic: channel.topic.into(),
+            points: (&*schema == Cloud::SCHEMA).then_some(0),
+            schema,
+            messages: 0,
+        });
+    }
+
+    fn message<E: From<ReadError>>(
+        &mut self,
+        header: records::MessageHeader,
+        data: &[u8],
+        visit: &mut impl FnMut(&Message<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Some(channel) = self.channels.get_mut(&header.channel_id) else {
+            let what = format!("message at {} ns", header.log_time);
+            let reason = format!("channel {} is not declared", header.channel_id);
+            return Err(ReadError::Malformed { what, reason }.into());
+        };
+        let time = header.log_time;
+        let [first, last] = self.time_range.get_or_insert([time, time]);
+        (*first, *last) = ((*first).min(time), (*last).max(time));
+        channel.messages += 1;
+
+        let (topic, schema) = (channel.topic.clone(), channel.schema.clone());
+        let message = Message { topic: &topic, schema: &schema, time, data };
+        if let Some(cloud) = message.cloud()? {
+            *channel.points.get_or_insert(0) += cloud.len() as u64;
+            self.extend(&cloud);
+        }
+        visit(&message)
+    }
+
+    fn extend(&mut self, cloud: &Cloud<'_>) {
+        for name in cloud.fields().filter(|name| !COLOR_FIELDS.contains(name)) {
+            let Some((min, max)) = range(cloud.column(name)) else { continue };
+            match self.extents.iter_mut().find(|extent| extent.field == name) {
+                Some(extent) => {
+                    extent.min = extent.min.min(min);
+                    extent.max = extent.max.max(max);
+                }
+                None => self.extents.push(Extent { field: name.into(), min, max }),
+            }
+        }
+    }
+
+    fn finish(self, ended: bool) -> Recording {
+        let mut topics: Vec<TopicInfo> = (self.channels.into_values())
+            .map(|Channel { topic, schema, messages, points }| TopicInfo {
+                name: topic.to_string(),
+                schema: schema.to_string(),
+                messages,
+                points,
+            })
+            .collect();
+        topics.sort_by(|a, b| a.name.cmp(&b.name));
+        let done = |record: &Metadata| record.get("complete").is_some_and(|value| value == "true");
+        Recording {
+            topics,
+            time_range: self.time_range,
+            extents: self.extents,
+            complete: ended && self.metadata.iter().any(|(_, record)| done(record)),
+            metadata: self.metadata,
+            attachments: self.attachments,
+        }
+    }
+}
+
+/// Smallest and largest value; None when there are none.
+fn range(values: Option<impl Iterator<Item = f64>>) -> Option<(f64, f64)> {
+    values?.fold(None, |range, value| match range {
+        None => Some((value, value)),
+        Some((min, max)) => Some((value.min(min), value.max(max))),
+    })
+}
+
+fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
+    mcap::parse_record(opcode, data).map_err(|reason| ReadError::Malformed {
+        what: format!("record of type {opcode:#04x}"),
+        reason: reason.to_string(),
+    })
+}
+
+/// Name, media type and size of an attachment record, whose content stays unread. (The parser of
+/// `mcap` takes for granted that the record is long enough.)
+fn attachment(record: &[u8]) -> Result<AttachmentInfo, ReadError> {
+    /// Log time and creation time.
+    const TIMES: usize = 16;
+    fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+        let (length, tail) = rest.split_first_chunk()?;
+        let (text, tail) = tail.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+        *rest = tail;
+        Some(text)
+    }
+    let parts = |mut rest: &[u8]| {
+        let name = String::from_utf8_lossy(text(&mut rest)?).into_owned();
+        let media_type = String::from_utf8_lossy(text(&mut rest)?).into_owned();
+        let size = u64::from_le_bytes(*rest.first_chunk()?);
+        Some(AttachmentInfo { name, media_type, size })
+    };
+    record.get(TIMES..).and_then(parts).ok_or_else(|| ReadError::Malformed {
+        what: "attachment".into(),
+        reason: format!("{} bytes do not hold its header", record.len()),
+    })
+}

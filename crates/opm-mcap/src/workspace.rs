@@ -1,0 +1,313 @@
+//! The recording of a workspace sweep: an overview, and every point slice by slice.
+//!
+//! | topic | messages |
+//! |---|---|
+//! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
+//! | `/workspace/slices` | one a slice, [`SLICE_STEP`] apart; together they hold every point |
+//!
+//! A viewer shows the newest message of a topic. So the overview, which comes first, is always in
+//! view, and moving the playhead walks through the slices; a slice without points has its message
+//! too, an empty one, or the slice before it would stay in view. A slice with more points than
+//! [`MAX_MESSAGE_POINTS`] continues in further messages, each [`PART_STEP`] after the one before.
+//!
+//! Time starts at [`START`] and counts slices; no clock is read. Metadata records: `run` (what the
+//! caller tells of the run), `clouds` (what x, y, z and the colour are, how the overview was
+//! decimated), and last `result`, with `complete = "true"`. The mechanism file is an attachment.
+
+use std::path::Path;
+
+use foxglove::messages::{PointCloud, Timestamp};
+
+use crate::cloud::CloudEncoder;
+use crate::log::{Log, Topic};
+use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
+
+/// Topic of the overview.
+pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
+/// Topic of the slices.
+pub const SLICES_TOPIC: &str = "/workspace/slices";
+/// Time of the first message, in nanoseconds: one second. Not zero, which viewers take for unset.
+pub const START: u64 = 1_000_000_000;
+/// Time between slices, in nanoseconds.
+pub const SLICE_STEP: u64 = 100_000_000;
+/// Time between the messages of one slice, in nanoseconds.
+pub const PART_STEP: u64 = 100_000;
+/// Most points of the overview.
+pub const MAX_OVERVIEW_POINTS: u64 = 2_000_000;
+/// Most points of one message of a slice.
+pub const MAX_MESSAGE_POINTS: u64 = 4_000_000;
+/// Most bytes of the points of one message. Clouds of more than four scalars meet this limit before
+/// those in points; it bounds the recorder's memory.
+pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
+/// Most slices. Each is a message, points or not; a million play for a day.
+pub const MAX_SLICES: u64 = 1_000_000;
+
+/// Parts into which the slices are divided by flushes: a recording that is cut short lacks at most
+/// one of them, or the last MiB of points where that is less. Counted in slices, not in seconds, so
+/// that the bytes do not depend on the machine's speed.
+const FLUSHES: u64 = 100;
+
+/// The slice that a message of [`SLICES_TOPIC`] belongs to, by its time in nanoseconds.
+pub fn slice_at(time: u64) -> Option<u64> {
+    Some(time.checked_sub(START)? / SLICE_STEP)
+}
+
+/// What a workspace recording is of.
+#[derive(Debug, Clone)]
+pub struct Workspace<'a> {
+    /// What its points are made of.
+    pub layout: CloudLayout,
+    /// Name of the mechanism file.
+    pub mechanism_name: &'a str,
+    /// The mechanism file itself (TOML).
+    pub mechanism: &'a [u8],
+    /// The run: grid, mode, version.
+    pub run: Metadata,
+    /// Points that the slices will hold together.
+    pub points: u64,
+    /// Slices: combinations of the slowest grid axes.
+    pub slices: u64,
+}
+
+/// How often, and how large: the numbers that the memory bound and the point count give.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    points: u64,
+    slices: u64,
+    overview_every: u64,
+    overview_points: u64,
+    message_points: usize,
+}
+
+impl Plan {
+    fn new(points: u64, slices: u64, stride: usize) -> Self {
+        let fitting = (MAX_MESSAGE_BYTES / stride as u64).max(1);
+        let overview_every = points.div_ceil(MAX_OVERVIEW_POINTS.min(fitting)).max(1);
+        Self {
+            points,
+            slices,
+            overview_every,
+            overview_points: points.div_ceil(overview_every),
+            message_points: MAX_MESSAGE_POINTS.min(fitting) as usize,
+        }
+    }
+
+    /// Points of the largest cloud to come.
+    fn capacity(&self) -> usize {
+        self.message_points.min(usize::try_from(self.points).unwrap_or(usize::MAX))
+    }
+}
+
+/// The slice that points go to.
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    slice: u64,
+    /// Messages of this slice already written.
+    parts: u64,
+}
+
+/// Writes a workspace recording.
+///
+/// The points come twice, both times in the order of their grid index: first every k-th
+/// ([`overview_every`](Self::overview_every)) to [`overview`](Self::overview), then all, with the
+/// number of their slice, to [`push`](Self::push). In what portions they come makes no difference
+/// to the file. Any error is final. Memory: one message, at most [`MAX_MESSAGE_BYTES`].
+pub struct WorkspaceRecorder<W: Sink = PartialFile> {
+    log: Log<W>,
+    encoder: CloudEncoder,
+    plan: Plan,
+    overview: Topic,
+    slices: Topic,
+    /// None while the overview is being gathered.
+    open: Option<Open>,
+    pushed: u64,
+}
+
+impl WorkspaceRecorder {
+    /// Starts a recording that will appear as the file `path`; see [`PartialFile`].
+    ///
+    /// # Errors
+    /// A layout that contradicts itself, too many slices, or a file that cannot be written.
+    pub fn create(path: &Path, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
+        Self::new(PartialFile::create(path)?, workspace)
+    }
+}
+
+impl<W: Sink> WorkspaceRecorder<W> {
+    /// Starts a recording that goes to `sink`.
+    ///
+    /// # Errors
+    /// As [`create`](WorkspaceRecorder::create).
+    pub fn new(sink: W, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
+        let Workspace { layout, slices, points, .. } = workspace;
+        if *slices > MAX_SLICES {
+            return Err(RecordError::TooManySlices { slices: *slices, limit: MAX_SLICES });
+        }
+        let plan = Plan::new(*points, *slices, layout.stride());
+        let encoder = CloudEncoder::new(layout, plan.capacity())?;
+
+        let mut log = Log::new(sink)?;
+        log.attach(workspace.mechanism_name, "application/toml", START, workspace.mechanism)?;
+        log.metadata("run", &workspace.run)?;
+        log.metadata("clouds", &describe(layout, &plan))?;
+        let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
+        let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
+        Ok(Self { log, encoder, plan, overview, slices, open: None, pushed: 0 })
+    }
+
+    /// The k of the overview's every k-th point: points number 0, k, 2k, ... belong to it.
+    pub fn overview_every(&self) -> u64 {
+        self.plan.overview_every
+    }
+
+    /// Adds points of the overview, as rows of [`CloudLayout::columns`].
+    ///
+    /// # Errors
+    /// Points that do not fit the layout, are not finite, too many, or after the first slice.
+    pub fn overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+        let result = self.try_overview(rows);
+        self.settle(result)
+    }
+
+    /// Adds points of a slice, as rows of [`CloudLayout::columns`]. Slices may be skipped, but not
+    /// returned to.
+    ///
+    /// # Errors
+    /// Points that do not fit the layout or are not finite, a slice out of order, an overview with
+    /// too few points, or a failed write.
+    pub fn push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
+        let result = self.try_push(slice, rows);
+        self.settle(result)
+    }
+
+    /// Completes the recording: `result` is the last metadata record, with `complete = "true"`
+    /// added. Only now does the file get its name.
+    ///
+    /// # Errors
+    /// Fewer or more points than announced, or a failed write.
+    pub fn finish(mut self, result: &Metadata) -> Result<(), RecordError> {
+        let open = self.open_slices()?;
+        self.close_until(open, self.plan.slices)?;
+        if self.pushed != self.plan.points {
+            let (found, expected) = (self.pushed, self.plan.points);
+            return Err(RecordError::Count { what: "slices", found, expected });
+        }
+        let mut result = result.clone();
+        result.insert("complete".into(), "true".into());
+        self.log.metadata("result", &result)?;
+        self.log.finish()
+    }
+
+    /// After an error nothing more may be written, whatever the error was.
+    fn settle(&mut self, result: Result<(), RecordError>) -> Result<(), RecordError> {
+        if result.is_err() {
+            self.log.give_up();
+        }
+        result
+    }
+
+    fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+        if self.open.is_some() {
+            return Err(RecordError::OverviewClosed);
+        }
+        let found = (self.encoder.len() + rows.len() / self.encoder.columns()) as u64;
+        let expected = self.plan.overview_points;
+        if found > expected {
+            return Err(RecordError::Count { what: "overview", found, expected });
+        }
+        self.encoder.push(rows)
+    }
+
+    fn try_push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
+        let mut open = self.open_slices()?;
+        if slice < open.slice || slice >= self.plan.slices {
+            let (first, end) = (open.slice, self.plan.slices);
+            return Err(RecordError::Slice { slice, first, end });
+        }
+        if slice > open.slice {
+            open = self.close_until(open, slice)?;
+        }
+        let columns = self.encoder.columns();
+        self.pushed += (rows.len() / columns) as u64;
+        let mut rest = rows;
+        while !rest.is_empty() {
+            if self.encoder.len() == self.plan.message_points {
+                open = self.write_part(open)?;
+            }
+            let room = (self.plan.message_points - self.encoder.len()) * columns;
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            self.encoder.push(now)?;
+            rest = later;
+        }
+        Ok(())
+    }
+
+    /// Writes the overview, unless that is done, and opens the first slice.
+    fn open_slices(&mut self) -> Result<Open, RecordError> {
+        if let Some(open) = self.open {
+            return Ok(open);
+        }
+        let (found, expected) = (self.encoder.len() as u64, self.plan.overview_points);
+        if found != expected {
+            return Err(RecordError::Count { what: "overview", found, expected });
+        }
+        self.log.message(&mut self.overview, START, self.encoder.message(stamp(START)?)?)?;
+        self.encoder.clear();
+        Ok(*self.open.insert(Open { slice: 0, parts: 0 }))
+    }
+
+    /// Closes slices, those without points too, until `end` is open.
+    fn close_until(&mut self, mut open: Open, end: u64) -> Result<Open, RecordError> {
+        while open.slice < end {
+            let slice = open.slice;
+            self.write_part(open)?;
+            if (slice + 1).is_multiple_of(self.plan.slices.div_ceil(FLUSHES)) {
+                self.log.flush()?;
+            }
+            open = *self.open.insert(Open { slice: slice + 1, parts: 0 });
+        }
+        Ok(open)
+    }
+
+    /// Writes the gathered points as the open slice's next message.
+    fn write_part(&mut self, open: Open) -> Result<Open, RecordError> {
+        const LIMIT: u64 = SLICE_STEP / PART_STEP;
+        let Open { slice, parts } = open;
+        if parts == LIMIT {
+            return Err(RecordError::SliceTooLarge { slice, limit: LIMIT });
+        }
+        let time = START + slice * SLICE_STEP + parts * PART_STEP;
+        self.log.message(&mut self.slices, time, self.encoder.message(stamp(time)?)?)?;
+        self.encoder.clear();
+        Ok(*self.open.insert(Open { slice, parts: parts + 1 }))
+    }
+}
+
+fn stamp(nanoseconds: u64) -> Result<Timestamp, RecordError> {
+    const SECOND: u64 = 1_000_000_000;
+    u32::try_from(nanoseconds / SECOND)
+        .ok()
+        .and_then(|seconds| Timestamp::new_checked(seconds, (nanoseconds % SECOND) as u32))
+        .ok_or_else(|| RecordError::Layout(format!("{nanoseconds} ns do not fit a timestamp")))
+}
+
+fn describe(layout: &CloudLayout, plan: &Plan) -> Metadata {
+    let [low, high] = layout.color_range;
+    [
+        ("axes", layout.axes.join(",")),
+        ("scalars", layout.scalars.join(",")),
+        ("color", layout.color.clone()),
+        ("color_map", "viridis".into()),
+        ("color_min", low.to_string()),
+        ("color_max", high.to_string()),
+        ("points", plan.points.to_string()),
+        ("slices", plan.slices.to_string()),
+        ("slice_seconds", (SLICE_STEP as f64 * 1e-9).to_string()),
+        ("message_points_max", plan.message_points.to_string()),
+        ("overview_points", plan.overview_points.to_string()),
+        ("overview_every", plan.overview_every.to_string()),
+        ("overview_decimated", (plan.overview_every > 1).to_string()),
+    ]
+    .map(|(key, value)| (key.to_string(), value))
+    .into()
+}

@@ -1,0 +1,332 @@
+//! Random mechanisms of every pair of partial subspaces, with the decomposition that they were made
+//! from.
+
+use fastrand::Rng;
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
+use opm_core::joint::{Joint, JointKind};
+use opm_core::leg::Leg;
+use opm_core::mechanism::{Mechanism, TaskHints};
+use opm_core::subspace::SubspaceClass;
+use std::f64::consts::{PI, TAU};
+
+/// Every pair of subspaces with closed-form chains that meets in one dimension: lower, upper.
+pub const PAIRS: [[Kind; 2]; 16] = {
+    use Kind::{Cylindrical, Planar, Spherical, TranslationalPlane};
+    use Meet::{Rotation, Translation};
+    [
+        [Planar(Rotation), Spherical],
+        [Spherical, Planar(Rotation)],
+        [Spherical, Spherical],
+        [Planar(Rotation), Cylindrical(Rotation)],
+        [Cylindrical(Rotation), Planar(Rotation)],
+        [Spherical, Cylindrical(Rotation)],
+        [Cylindrical(Rotation), Spherical],
+        [Planar(Translation), Planar(Translation)],
+        [Planar(Translation), Cylindrical(Translation)],
+        [Cylindrical(Translation), Planar(Translation)],
+        [Planar(Translation), TranslationalPlane],
+        [TranslationalPlane, Planar(Translation)],
+        [Cylindrical(Translation), Cylindrical(Translation)],
+        [Cylindrical(Translation), TranslationalPlane],
+        [TranslationalPlane, Cylindrical(Translation)],
+        [TranslationalPlane, TranslationalPlane],
+    ]
+};
+
+/// What the intersection motion is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meet {
+    /// A rotation about z.
+    Rotation,
+    /// A translation along z.
+    Translation,
+}
+
+/// A subspace, before it is displaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// With its normal along z, or with z in the plane.
+    Planar(Meet),
+    /// With its centre on z.
+    Spherical,
+    /// Along z, or parallel to it.
+    Cylindrical(Meet),
+    /// With z in the plane.
+    TranslationalPlane,
+}
+
+impl Kind {
+    fn dimension(self) -> usize {
+        match self {
+            Self::Planar(_) | Self::Spherical => 3,
+            Self::Cylindrical(_) | Self::TranslationalPlane => 2,
+        }
+    }
+
+    fn meet(self) -> Option<Meet> {
+        match self {
+            Self::Planar(meet) | Self::Cylindrical(meet) => Some(meet),
+            Self::Spherical => Some(Meet::Rotation),
+            Self::TranslationalPlane => Some(Meet::Translation),
+        }
+    }
+}
+
+/// A subspace of random geometry.
+struct Place {
+    kind: Kind,
+    /// Normal of a plane, axis of a cylinder.
+    normal: Vector3<f64>,
+    point: Point3<f64>,
+}
+
+/// How to draw a mechanism.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Most limits: each coordinate gets some with this probability.
+    pub limited: f64,
+    /// Spherical joints in place of three revolutes, where they fit.
+    pub balls: bool,
+}
+
+/// A random mechanism of a pair of subspaces, and its decomposition.
+pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism, Decomposition) {
+    let meet = pair[0].meet().or(pair[1].meet()).unwrap_or(Meet::Rotation);
+    let azimuth = rng.f64() * PI;
+    let apart = azimuth + 0.5 + rng.f64() * (PI - 1.0);
+    let places = [place(rng, pair[0], azimuth), place(rng, pair[1], apart)];
+    let displacement = Isometry3::from_parts(
+        Translation3::from(vector(rng) * 2.0),
+        UnitQuaternion::from_axis_angle(&direction(rng), rng.f64() * PI),
+    );
+    let mut legs = Vec::new();
+    let mut splits = Vec::new();
+    for number in 1..=2 + rng.usize(..3) {
+        let cut_above = rng.bool();
+        let counts = [
+            places[0].kind.dimension() - usize::from(!cut_above),
+            places[1].kind.dimension() - usize::from(cut_above),
+        ];
+        let mut joints = Vec::new();
+        let mut split = [Vec::new(), Vec::new()];
+        for (section, place) in places.iter().enumerate() {
+            let cut = (counts[section] < place.kind.dimension()).then_some(meet);
+            for joint in section_joints(rng, place, cut, section == 1, options) {
+                for index in 0..joint.freedoms() {
+                    split[section].push(Freedom { joint: joints.len(), index });
+                }
+                let name = format!("{}{number}", (b'a' + joints.len() as u8) as char);
+                joints.push(displaced(rng, &joint, name, &displacement, options));
+            }
+        }
+        joints[0].actuated = true;
+        let [lower, upper] = split;
+        splits.push(LegSplit { lower, upper, imaginary: cut_above });
+        legs.push(Leg::new(format!("leg{number}"), joints));
+    }
+    let axis = displacement * Vector3::z_axis();
+    let origin = displacement * Point3::origin();
+    let [lower, upper] = places.map(|place| place.class(&displacement));
+    let intersection = match meet {
+        Meet::Rotation => SubspaceClass::Rotation { axis, point: origin },
+        Meet::Translation => SubspaceClass::Translation { axis },
+    };
+    let imaginary_joints = splits.iter().filter(|split| split.imaginary).count();
+    let decomposition = Decomposition {
+        lambda: pair[0].dimension() + pair[1].dimension() - 1,
+        mobility: pair[0].dimension() + pair[1].dimension() - 1,
+        lower,
+        upper,
+        intersection,
+        legs: splits,
+        imaginary_joints,
+        first_section_motions: 0,
+        upper_mobility: 0,
+        redundancy: 0,
+        deviation: 0.0,
+    };
+    let mechanism = Mechanism {
+        name: format!("{pair:?}"),
+        legs,
+        platform: displacement * Point3::from(vector(rng)),
+        task: TaskHints::default(),
+    };
+    (mechanism, decomposition)
+}
+
+fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
+    let side = Vector3::new(azimuth.cos(), azimuth.sin(), 0.0);
+    let (normal, point) = match kind {
+        Kind::Planar(Meet::Rotation) | Kind::Cylindrical(Meet::Rotation) => {
+            (Vector3::z(), Point3::origin())
+        }
+        Kind::Planar(Meet::Translation) | Kind::TranslationalPlane => (side, Point3::origin()),
+        Kind::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
+        Kind::Spherical => {
+            (Vector3::z(), Point3::new(0.0, 0.0, rng.f64() * 2.0 - 1.0 + 3.0 * azimuth))
+        }
+    };
+    Place { kind, normal, point }
+}
+
+impl Place {
+    fn class(&self, g: &Isometry3<f64>) -> SubspaceClass {
+        let normal = Unit::new_normalize(g * self.normal);
+        let point = g * self.point;
+        match self.kind {
+            Kind::Planar(_) => SubspaceClass::Planar { normal },
+            Kind::Spherical => SubspaceClass::Spherical { centre: point },
+            Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
+            Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
+        }
+    }
+}
+
+/// Joints that make a full chain with the cut, which is last in a lower section, first in an upper.
+fn section_joints(
+    rng: &mut Rng,
+    place: &Place,
+    cut: Option<Meet>,
+    upper: bool,
+    options: Options,
+) -> Vec<Joint> {
+    let count = place.kind.dimension() - usize::from(cut.is_some());
+    let joint =
+        |kind, axis: Vector3<f64>, point| Joint::new("", kind, Unit::new_normalize(axis), point);
+    let (revolute, prismatic) = (JointKind::Revolute, JointKind::Prismatic);
+    let sign = |rng: &mut Rng| if rng.bool() { 1.0 } else { -1.0 };
+    match place.kind {
+        Kind::Spherical if cut.is_none() && options.balls && rng.bool() => {
+            vec![joint(JointKind::Spherical, Vector3::z(), place.point)]
+        }
+        Kind::Spherical => {
+            let mut joints: Vec<Joint> = Vec::new();
+            while joints.len() < count {
+                let axis = direction(rng).into_inner();
+                let before = match joints.last() {
+                    Some(last) => last.axis.into_inner(),
+                    None if cut.is_some() && upper => Vector3::z(),
+                    None => Vector3::zeros(),
+                };
+                let after = if cut.is_some() && !upper && joints.len() + 1 == count {
+                    Vector3::z()
+                } else {
+                    Vector3::zeros()
+                };
+                // Neighbours at least 20 degrees from parallel.
+                if before.dot(&axis).abs().max(after.dot(&axis).abs()) < 0.94 {
+                    joints.push(joint(revolute, axis, place.point + axis * rng.f64()));
+                }
+            }
+            joints
+        }
+        Kind::Planar(meet) => {
+            let (u, v) = beside(&place.normal);
+            let mut sliders = usize::from(cut.is_some() && meet == Meet::Translation);
+            let mut angles: Vec<f64> = Vec::new();
+            if sliders == 1 {
+                angles.push(Vector3::z().dot(&v).atan2(Vector3::z().dot(&u)));
+            }
+            let mut joints = Vec::new();
+            while joints.len() < count {
+                if sliders < 2 && rng.f64() < 0.4 {
+                    let angle = rng.f64() * TAU;
+                    if angles.iter().all(|other| (angle - other).sin().abs() > 0.3) {
+                        sliders += 1;
+                        angles.push(angle);
+                        joints.push(joint(
+                            prismatic,
+                            u * angle.cos() + v * angle.sin(),
+                            Point3::origin(),
+                        ));
+                    }
+                } else {
+                    let at = u * (rng.f64() * 2.0 - 1.0) + v * (rng.f64() * 2.0 - 1.0);
+                    let off = place.normal * rng.f64();
+                    joints.push(joint(revolute, place.normal * sign(rng), place.point + at + off));
+                }
+            }
+            joints
+        }
+        Kind::Cylindrical(meet) => {
+            // With a revolute cut the joint must advance, with a prismatic one it must turn.
+            let kinds: &[JointKind] = match (cut, meet) {
+                (Some(_), Meet::Rotation) => &[prismatic, JointKind::Helical { pitch: 0.2 }],
+                (Some(_), Meet::Translation) => &[revolute, JointKind::Helical { pitch: 0.2 }],
+                (None, _) => &[revolute, prismatic, JointKind::Helical { pitch: -0.3 }],
+            };
+            let first = rng.usize(..kinds.len());
+            let mut picks = vec![kinds[first]];
+            if count == 2 {
+                if options.balls && rng.bool() {
+                    return vec![joint(
+                        JointKind::Cylindrical,
+                        place.normal * sign(rng),
+                        place.point,
+                    )];
+                }
+                picks.push(kinds[(first + 1 + rng.usize(..kinds.len() - 1)) % kinds.len()]);
+            }
+            picks
+                .into_iter()
+                .map(|kind| {
+                    let along = place.normal * rng.f64();
+                    joint(kind, place.normal * sign(rng), place.point + along)
+                })
+                .collect()
+        }
+        Kind::TranslationalPlane => {
+            let other = place.normal.cross(&Vector3::z());
+            let first = 0.3 + rng.f64() * 0.9;
+            let angles = [first, -0.3 - rng.f64() * 0.9];
+            angles[..count]
+                .iter()
+                .map(|a| {
+                    let axis = (other * a.sin() + Vector3::z() * a.cos()) * sign(rng);
+                    joint(prismatic, axis, Point3::origin())
+                })
+                .collect()
+        }
+    }
+}
+
+fn displaced(
+    rng: &mut Rng,
+    joint: &Joint,
+    name: String,
+    g: &Isometry3<f64>,
+    options: Options,
+) -> Joint {
+    let mut displaced = Joint::new(name, joint.kind, g * joint.axis, g * joint.point);
+    for coordinate in &mut displaced.coordinates {
+        coordinate.home = rng.f64() * 2.0 - 1.0;
+        if rng.f64() < options.limited {
+            let (below, above) = (rng.f64() * 1.5, rng.f64() * 1.5);
+            coordinate.limits = Some([coordinate.home - below, coordinate.home + above]);
+        }
+    }
+    displaced
+}
+
+/// Two directions that make a right-handed triad with a third.
+fn beside(normal: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let base = if normal.x.abs() > 0.9 { Vector3::y() } else { Vector3::x() };
+    let u = (base - normal * normal.dot(&base)).normalize();
+    (u, normal.cross(&u))
+}
+
+/// A uniform direction.
+pub fn direction(rng: &mut Rng) -> Unit<Vector3<f64>> {
+    loop {
+        let v = vector(rng);
+        if (0.01..1.0).contains(&v.norm_squared()) {
+            return Unit::new_normalize(v);
+        }
+    }
+}
+
+/// Uniform in a cube of side two about the origin.
+pub fn vector(rng: &mut Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| rng.f64() * 2.0 - 1.0)
+}

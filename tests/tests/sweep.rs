@@ -1,0 +1,148 @@
+//! Sweeps against one inverse-kinematics call per pose: the same poses, the same ranges, with one
+//! thread or several.
+
+use fastrand::Rng;
+use opm_core::manipulator::Manipulator;
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Sweep};
+
+/// A grid about home with more values along the coordinates of the lower section.
+fn grid(rng: &mut Rng, manipulator: &Manipulator) -> Grid {
+    let lower = manipulator.task().lower_count;
+    let axes = manipulator.task_coordinates().iter().enumerate().map(|(number, c)| {
+        let (below, above) = (rng.f64() * 1.5, rng.f64() * 1.5);
+        let count = if number < lower { 2 + rng.u64(..9) } else { 1 + rng.u64(..3) };
+        if count == 1 {
+            Axis::fixed(c.name, c.home + below - above)
+        } else {
+            Axis::new(c.name, c.home - below, c.home + above, count)
+        }
+    });
+    Grid::new(manipulator, axes.collect()).unwrap()
+}
+
+/// The reachable poses and imaginary ranges by one IK call per pose and mode.
+fn by_inverse(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> (Vec<Vec<f64>>, Count) {
+    let mut all = manipulator.all_modes();
+    let mut solution = manipulator.solution();
+    let mut reached = Vec::new();
+    let mut imaginary: Vec<Option<[f64; 2]>> = vec![None; manipulator.imaginary().len()];
+    for index in 0..grid.poses() {
+        let pose = grid.pose(index);
+        let mut inside = false;
+        manipulator.inverse_all(&pose, &mut all).unwrap();
+        for mode in all.modes(manipulator) {
+            if modes != Modes::Any && modes != Modes::One(mode) {
+                continue;
+            }
+            assert!(manipulator.pick(&all, mode, &mut solution));
+            if solution.within_limits {
+                inside = true;
+                for (range, &value) in imaginary.iter_mut().zip(&solution.imaginary) {
+                    let [low, high] = range.unwrap_or([value; 2]);
+                    *range = Some([low.min(value), high.max(value)]);
+                }
+            }
+        }
+        if inside {
+            reached.push(pose);
+        }
+    }
+    let count = Count { poses: grid.poses(), reachable: reached.len() as u64, imaginary };
+    (reached, count)
+}
+
+fn points(sweep: &Sweep<'_>) -> Vec<Vec<f64>> {
+    let mut reached = Vec::new();
+    let make = |hits: &opm_workspace::Hits<'_>, made: &mut Vec<Vec<f64>>| {
+        made.extend(hits.first.iter().map(|&x| {
+            let mut pose = vec![x];
+            pose.extend_from_slice(hits.others);
+            pose
+        }));
+    };
+    sweep
+        .points(&Progress::default(), make, Vec::new, |made| {
+            reached.extend(made);
+            Ok::<(), Cancelled>(())
+        })
+        .unwrap();
+    reached
+}
+
+#[test]
+fn a_sweep_finds_what_inverse_kinematics_finds() {
+    let mut rng = Rng::with_seed(10);
+    let (mut poses, mut reachable, mut partly) = (0, 0, 0);
+    for round in 0..60 {
+        for pair in PAIRS {
+            let limited = if round % 2 == 0 { 0.0 } else { 0.4 };
+            let options = Options { limited, balls: round % 3 != 0 };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let grid = grid(&mut rng, &manipulator);
+            let modes = match rng.u8(..3) {
+                0 => Modes::Any,
+                1 => Modes::One(manipulator.home_mode()),
+                _ => Modes::One(Default::default()),
+            };
+            let (reached, expected) = by_inverse(&manipulator, &grid, modes);
+            let sweep = Sweep::new(&manipulator, &grid, modes);
+            let count = sweep.count(&Progress::default()).unwrap();
+            assert_eq!(count, expected, "{pair:?} {modes:?}");
+            assert_eq!(points(&sweep), reached, "{pair:?} {modes:?}");
+            poses += count.poses;
+            reachable += count.reachable;
+            partly += u32::from(count.reachable > 0 && count.reachable < count.poses);
+        }
+    }
+    println!("{reachable} of {poses} poses; {partly} grids in part");
+    assert!(partly > 300, "{partly} grids were reached in part");
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let mut rng = Rng::with_seed(11);
+    for pair in PAIRS {
+        let options = Options { limited: 0.1, balls: true };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let axes = manipulator.task_coordinates().iter().enumerate().map(|(number, c)| {
+            // The first row is longer than a segment.
+            let count = if number == 0 { 5_000 } else { 3 };
+            Axis::new(c.name, c.home - 1.0, c.home + 1.3, count)
+        });
+        let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+        let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| (sweep.count(&Progress::default()).unwrap(), points(&sweep)))
+        };
+        let one = with(1);
+        assert_eq!(one.0.reachable, one.1.len() as u64);
+        assert!(one == with(2) && one == with(7), "{pair:?}");
+    }
+}
+
+#[test]
+fn a_cancelled_sweep_stops() {
+    let mut rng = Rng::with_seed(12);
+    let (mechanism, decomposition) =
+        mechanism(&mut rng, PAIRS[0], Options { limited: 0.0, balls: true });
+    let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+    let axes = manipulator.task_coordinates().iter();
+    let axes = axes.map(|c| Axis::new(c.name, c.home - 1.0, c.home + 1.0, 1_000));
+    let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+    let progress = Progress::default();
+    let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
+    let counted = std::thread::scope(|scope| {
+        let sweeping = scope.spawn(|| sweep.count(&progress));
+        while progress.done() < 100_000 {
+            std::thread::yield_now();
+        }
+        progress.cancel();
+        sweeping.join().unwrap()
+    });
+    assert_eq!(counted, Err(Cancelled));
+    assert!(progress.done() < grid.poses() / 1_000);
+}
