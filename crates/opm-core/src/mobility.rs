@@ -16,8 +16,9 @@ use crate::svd::Svd;
 use nalgebra::{DMatrix, Vector6};
 use thiserror::Error;
 
-/// Most single freedoms of all joints together: beyond, the matrices here would take minutes.
-pub const MAX_FREEDOMS: usize = 192;
+/// Most single freedoms of all joints together: the time grows with the fourth power of their
+/// number, and these take about a second.
+pub const MAX_FREEDOMS: usize = 96;
 
 /// A mechanism that has no mobility to speak of: something is missing or is not a number.
 #[derive(Clone, Debug, Error, PartialEq)]
