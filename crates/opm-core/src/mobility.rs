@@ -24,7 +24,7 @@ pub const MAX_FREEDOMS: usize = 96;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MobilityError {
     /// A loop takes two legs.
-    #[error("mechanism {mechanism:?} has {legs} legs; a parallel mechanism has at least 2")]
+    #[error("mechanism {mechanism:?}: number of legs is {legs}, at least 2 are needed")]
     TooFewLegs {
         /// Name of the mechanism.
         mechanism: String,

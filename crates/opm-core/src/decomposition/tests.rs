@@ -232,7 +232,7 @@ fn legs_that_are_missing_are_told() {
     assert_eq!(error.to_string(), "leg \"leg2\" has no joints");
     mechanism.legs.pop();
     let error = decompose(&mechanism).unwrap_err();
-    assert!(error.to_string().contains("\"bennett\" has 1 legs"), "{error}");
+    assert!(error.to_string().contains("\"bennett\": number of legs is 1"), "{error}");
 }
 
 #[test]

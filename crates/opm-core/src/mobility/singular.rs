@@ -83,7 +83,7 @@ impl fmt::Display for HomeSingularity {
             ),
             Self::Parallel { home, nearby } => write!(
                 f,
-                "parallel: locked actuators leave {home} freedoms at home, {nearby} nearby"
+                "parallel: with the actuators locked, mobility is {home} at home, {nearby} nearby"
             ),
             Self::Constraint { home, nearby } => {
                 write!(f, "constraint: mobility N is {home} at home, {nearby} nearby")

@@ -83,7 +83,7 @@ fn links_in_line_are_a_parallel_singularity() {
     let singular = report(&mechanism).singular;
     assert_eq!(singular, [HomeSingularity::Parallel { home: 1, nearby: 0 }]);
     let error = decompose(&mechanism).unwrap_err();
-    let text = "parallel: locked actuators leave 1 freedoms at home, 0 nearby";
+    let text = "parallel: with the actuators locked, mobility is 1 at home, 0 nearby";
     assert!(error.to_string().contains(text), "{error}");
 }
 
