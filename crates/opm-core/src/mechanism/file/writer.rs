@@ -48,8 +48,7 @@ fn entries(joint: &Joint, units: FileUnits) -> Vec<String> {
         JointKind::Universal { second } => ("universal", Some(second), None),
         JointKind::Spherical => ("spherical", None, None),
     };
-    let mut entries =
-        vec![format!("name = {}", quoted(&joint.name)), format!("type = \"{kind}\"")];
+    let mut entries = vec![format!("name = {}", quoted(&joint.name)), format!("type = \"{kind}\"")];
     if joint.kind != JointKind::Spherical {
         entries.push(format!("axis = {}", direction(&joint.axis)));
     }
@@ -89,7 +88,12 @@ fn array(values: &[f64]) -> String {
 }
 
 fn direction(axis: &Vector3<f64>) -> String {
-    format!("[{}, {}, {}]", rounded(axis.x, UNIT_DECIMALS), rounded(axis.y, UNIT_DECIMALS), rounded(axis.z, UNIT_DECIMALS))
+    format!(
+        "[{}, {}, {}]",
+        rounded(axis.x, UNIT_DECIMALS),
+        rounded(axis.y, UNIT_DECIMALS),
+        rounded(axis.z, UNIT_DECIMALS)
+    )
 }
 
 fn number(value: f64) -> String {
