@@ -215,6 +215,24 @@ impl Manipulator {
         out.unreachable.is_empty()
     }
 
+    /// The first working mode, all-plus first, that reaches the pose of `all` within the limits, and
+    /// its joints; `None` where there is none.
+    pub fn pick_within_limits(&self, all: &AllModes, out: &mut Solution) -> Option<Mode> {
+        let mut picked = Mode::default();
+        for (number, (leg, modes)) in self.legs.iter().zip(&all.legs).enumerate() {
+            let within = |solution: &LegSolution| {
+                leg.lower.admits(&self.limits, &solution.lower)
+                    && leg.upper.admits(&self.limits, &solution.upper)
+            };
+            // No two legs share a choice, so that the first mode is made of each leg's first.
+            let mode = (self.modes.leg_modes(number).zip(&modes.solutions))
+                .find(|(_, solution)| solution.as_ref().is_some_and(within))?
+                .0;
+            picked.0 |= mode.0;
+        }
+        self.pick(all, picked, out).then_some(picked)
+    }
+
     /// `v` and `b` of a pose, which must have finite coordinates.
     pub(super) fn displacements(
         &self,
