@@ -25,6 +25,7 @@
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Whatever a file does not need to have
 //! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
 
+mod hint;
 mod joints;
 mod problem;
 mod reader;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::joint::Joint;
+use crate::leg::Leg;
 use crate::mechanism::Mechanism;
 use crate::mechanism::file::{self, writer};
 use crate::screw::Screw;
@@ -84,7 +85,7 @@ fn bennett_s_linkage_has_the_arcs_that_its_file_says() {
 #[test]
 fn bennett_s_linkage_is_a_regular_single_loop_of_one_freedom() {
     let mechanism = read("bennett-double-spherical-6r").mechanism;
-    let screws: Vec<Screw> = mechanism.legs.iter().flat_map(|leg| leg.screws()).collect();
+    let screws: Vec<Screw> = mechanism.legs.iter().flat_map(Leg::screws).collect();
     assert_eq!(screws.len(), 6);
     // In units of the distance of the centres, so that both halves of a screw weigh alike.
     let columns: Vec<_> =

@@ -10,7 +10,7 @@ use std::fmt;
 
 /// How far outside its limits a joint may be at home, metres or radians: home values are computed,
 /// and one that belongs on a limit counts as inside.
-const ON_LIMIT: f64 = 1e-9;
+const ON_LIMIT: f64 = 1e-12;
 
 /// Why a parameter set does not assemble: every problem, at least one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! The form of a mechanism file that lists the joints at the assembled home pose.
 
 use super::leg_name;
-use super::reader::{Table, UniqueNames, Value};
+use super::reader::{Table, UniqueNames, Value, all};
 use crate::joint::{Joint, JointKind, Quantity};
 use crate::leg::Leg;
 use crate::mechanism::{Mechanism, TaskHints};
@@ -64,32 +64,39 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
     let tables = root.tables("leg", LEG_KEYS);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
     let mut legs = Vec::new();
+    let mut complete = !tables.is_empty();
     for (index, table) in tables.iter().enumerate() {
         let name = leg_name(table, index);
         leg_names.add(&name, root.reader, table.place_of("name"));
-        legs.push(Leg::new(name, read_joints(table, platform, &mut joint_names)));
+        let joints = read_joints(table, platform, &mut joint_names);
+        complete &= joints.is_some();
+        legs.push(Leg::new(name, joints.unwrap_or_default()));
     }
     let at = root.place_of("leg");
     if legs.len() < 2 && !root.reader.has_problem(at) {
         let count = legs.len();
         root.reader.report(at, format!("{count} of [[leg]], expected at least two legs"));
     }
-    let mut joints = legs.iter().flat_map(|leg| &leg.joints).peekable();
-    if joints.peek().is_some() && !joints.any(|joint| joint.actuated) {
+    if complete && !legs.iter().flat_map(|leg| &leg.joints).any(|joint| joint.actuated) {
         root.reader.report(at, "no joint is actuated, expected `actuated = true` in at least one");
     }
     let task = TaskHints { axis: axis.map(Unit::into_inner), home: Vec::new() };
     Mechanism { name: name.to_owned(), legs, platform, task }
 }
 
-fn read_joints(leg: &Table<'_>, platform: Point3<f64>, names: &mut UniqueNames) -> Vec<Joint> {
+/// The joints of a leg; `None` where one of them has no known type.
+fn read_joints(
+    leg: &Table<'_>,
+    platform: Point3<f64>,
+    names: &mut UniqueNames,
+) -> Option<Vec<Joint>> {
     let expected = "an array of joints, from base to platform";
-    let Some(value) = leg.require("joints", expected) else { return Vec::new() };
-    let Some(items) = value.items(expected) else { return Vec::new() };
+    let value = leg.require("joints", expected)?;
+    let items = value.items(expected)?;
     if items.is_empty() {
         value.report("is empty, expected at least one joint");
     }
-    items.iter().filter_map(|item| read_joint(item, platform, names)).collect()
+    all(items.iter().map(|item| read_joint(item, platform, names)))
 }
 
 /// A joint; `None` without a type, which decides what else there is to check.
@@ -113,7 +120,7 @@ fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames)
     let joint_kind = joint_kind(&table, kind, axis);
     let mut joint =
         Joint::new(name.unwrap_or_default(), joint_kind, axis.unwrap_or(Vector3::z_axis()), point);
-    joint.actuated = table.get("actuated").and_then(|value| value.boolean()).unwrap_or_default();
+    joint.actuated = table.get("actuated").is_some_and(|value| value.boolean().unwrap_or(true));
     if name.is_some() {
         let at = table.place_of("name");
         names.add(&joint.name, table.reader, at);

@@ -2,6 +2,7 @@
 //!
 //! A method that returns `None` has already reported why: its caller only has to do without.
 
+use super::hint::expected_one_of;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
 use crate::joint::Quantity;
@@ -215,7 +216,7 @@ impl<'a> Value<'a> {
     /// A point of the plane or of space.
     pub(in crate::mechanism) fn point<const N: usize>(&self) -> Option<[f64; N]> {
         let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
-        self.each(expected, |item| item.length())
+        self.each(expected, Self::length)
     }
 
     /// A direction: three numbers without a unit, of any size but zero; returned with size 1.
@@ -302,8 +303,8 @@ impl<'a> Table<'a> {
         for key in self.entries.keys() {
             let name: &str = key.get_ref();
             if !keys.contains(&name) {
-                let expected = expected_one_of(name, keys);
-                self.reader.report(key.span().start, format!("unknown key `{name}`, {expected}"));
+                let (shown, expected) = (name.escape_debug(), expected_one_of(name, keys));
+                self.reader.report(key.span().start, format!("unknown key `{shown}`, {expected}"));
             }
         }
     }
@@ -360,58 +361,6 @@ impl UniqueNames {
 
 /// The values, if there are all. Every one is read before the first failure ends it: each has its
 /// own problem to report.
-fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+pub(super) fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     read.collect::<Vec<_>>().into_iter().collect()
-}
-
-/// `expected A` or `did you mean A? Expected one of A, B, C`.
-fn expected_one_of(found: &str, words: &[&str]) -> String {
-    let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
-    let expected = if words.len() == 1 { "expected" } else { "expected one of" };
-    // A third of the letters wrong is a slip; more is another word.
-    let allowed = found.chars().count().max(3) / 3;
-    let nearest = words.iter().map(|word| (edits(found, word), word)).min();
-    match nearest {
-        Some((distance, word)) if distance <= allowed => {
-            format!("did you mean `{word}`? {expected} {list}")
-        }
-        _ => format!("{expected} {list}"),
-    }
-}
-
-/// Letters to insert, delete or replace to make one word of the other (Levenshtein); upper and
-/// lower case are alike.
-fn edits(a: &str, b: &str) -> usize {
-    let (a, b) = (a.to_lowercase(), b.to_lowercase());
-    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.chars().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.chars().count()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn edit_distances_of_known_words() {
-        assert_eq!(edits("kitten", "sitting"), 3);
-        assert_eq!(edits("", "abc"), 3);
-        assert_eq!(edits("Alpha", "alpha"), 0);
-        assert_eq!(edits("flaw", "lawn"), 2);
-    }
-
-    #[test]
-    fn a_slip_is_recognised_and_another_word_is_not() {
-        assert!(
-            expected_one_of("lenght", &["length", "angle"]).starts_with("did you mean `length`")
-        );
-        assert!(expected_one_of("colour", &["length", "angle"]).starts_with("expected one of"));
-    }
 }

@@ -1,0 +1,54 @@
+//! What stands for a word that is not known: the words that are, and the one that was meant.
+
+/// `expected A` or `did you mean A? Expected one of A, B, C`.
+pub(super) fn expected_one_of(found: &str, words: &[&str]) -> String {
+    let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    let expected = if words.len() == 1 { "expected" } else { "expected one of" };
+    // Two letters exchanged are two edits: a slip in a word of four letters; more is another word.
+    let allowed = found.chars().count().div_ceil(3).max(1);
+    let nearest =
+        words.iter().map(|word| (edits(found, word), word)).min_by_key(|&(distance, _)| distance);
+    match nearest {
+        Some((distance, word)) if distance <= allowed => {
+            format!("did you mean `{word}`? {expected} {list}")
+        }
+        _ => format!("{expected} {list}"),
+    }
+}
+
+/// Letters to insert, delete or replace to make one word of the other (Levenshtein); upper and
+/// lower case are alike.
+fn edits(a: &str, b: &str) -> usize {
+    let (a, b) = (a.to_lowercase(), b.to_lowercase());
+    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.chars().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.chars().count()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edit_distances_of_known_words() {
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "abc"), 3);
+        assert_eq!(edits("Alpha", "alpha"), 0);
+        assert_eq!(edits("flaw", "lawn"), 2);
+    }
+
+    #[test]
+    fn a_slip_is_recognised_and_another_word_is_not() {
+        assert!(
+            expected_one_of("lenght", &["length", "angle"]).starts_with("did you mean `length`")
+        );
+        assert!(expected_one_of("colour", &["length", "angle"]).starts_with("expected one of"));
+    }
+}

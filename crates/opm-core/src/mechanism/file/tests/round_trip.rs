@@ -1,0 +1,145 @@
+//! A random mechanism, written and read again, is the same.
+
+use crate::joint::{Joint, JointKind};
+use crate::leg::Leg;
+use crate::mechanism::file::{AngleUnit, FileUnits, LengthUnit, read, writer};
+use crate::mechanism::{Mechanism, TaskHints};
+use nalgebra::{Point3, Unit, Vector3};
+use proptest::prelude::*;
+
+/// Files have 12 decimals, of metres at worst.
+const WRITTEN: f64 = 1e-12;
+
+fn direction() -> impl Strategy<Value = Unit<Vector3<f64>>> {
+    [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64]
+        .prop_map(Vector3::from)
+        .prop_filter("a direction", |v| v.norm() > 0.1)
+        .prop_map(Unit::new_normalize)
+}
+
+fn point() -> impl Strategy<Value = Point3<f64>> {
+    [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64].prop_map(Point3::from)
+}
+
+fn kind() -> impl Strategy<Value = JointKind> {
+    prop_oneof![
+        Just(JointKind::Revolute),
+        Just(JointKind::Prismatic),
+        Just(JointKind::Cylindrical),
+        Just(JointKind::Spherical),
+        prop_oneof![-1.0..-0.01, 0.01..1.0].prop_map(|pitch| JointKind::Helical { pitch }),
+        direction().prop_map(|second| JointKind::Universal { second }),
+    ]
+}
+
+prop_compose! {
+    /// A joint whose name is yet to be given.
+    fn joint()(
+        kind in kind(), axis in direction(), point in point(), actuated in any::<bool>(),
+        home in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
+        room in proptest::option::of([0.0..1.0, 0.0..1.0_f64]),
+    ) -> Joint {
+        let axis = match kind {
+            JointKind::Spherical => Vector3::z_axis(),
+            JointKind::Universal { second } if axis.cross(&second).norm() < 0.01 => {
+                // Any direction that is not the second's.
+                Unit::new_normalize(Vector3::new(second.y, second.z, second.x) + Vector3::x() * 2.0)
+            }
+            _ => axis,
+        };
+        let mut joint = Joint::new("", kind, axis, point);
+        joint.actuated = actuated;
+        for (coordinate, home) in joint.coordinates.iter_mut().zip(home) {
+            coordinate.home = home;
+            coordinate.limits = room.map(|[below, above]| [home - below, home + above]);
+        }
+        joint
+    }
+}
+
+fn mechanism() -> impl Strategy<Value = Mechanism> {
+    let legs = prop::collection::vec(prop::collection::vec(joint(), 1..6), 2..6);
+    // Names from all letters that a name may have.
+    let names = proptest::string::string_regex(r#"[^\pC\s,="](.{0,8}[^\pC\s,="])?"#);
+    let names = names.unwrap().prop_filter("a name", |name| {
+        !name.contains(|c: char| c.is_control() || ",=\"".contains(c))
+    });
+    let axis = proptest::option::of(direction());
+    (names, legs, point(), axis).prop_map(|(name, legs, platform, axis)| {
+        let mut number = 0;
+        let mut legs: Vec<Leg> = legs
+            .into_iter()
+            .enumerate()
+            .map(|(i, joints)| {
+                let named = joints.into_iter().map(|joint| {
+                    number += 1;
+                    let mut named =
+                        Joint::new(format!("{name}{number}"), joint.kind, joint.axis, joint.point);
+                    named.actuated = joint.actuated;
+                    for (to, from) in named.coordinates.iter_mut().zip(joint.coordinates) {
+                        (to.home, to.limits) = (from.home, from.limits);
+                    }
+                    named
+                });
+                Leg::new(format!("{name} {i}"), named.collect())
+            })
+            .collect();
+        legs[0].joints[0].actuated = true;
+        let task = TaskHints { axis: axis.map(Unit::into_inner), home: Vec::new() };
+        Mechanism { name, legs, platform, task }
+    })
+}
+
+fn units() -> impl Strategy<Value = FileUnits> {
+    (prop::sample::select(&LengthUnit::ALL[..]), prop::sample::select(&AngleUnit::ALL[..]))
+        .prop_map(|(length, angle)| FileUnits { length, angle })
+}
+
+/// Every number of a joint, and everything else.
+fn numbers(joint: &Joint) -> (Vec<f64>, impl PartialEq + std::fmt::Debug) {
+    let mut numbers: Vec<f64> = joint.axis.iter().chain(joint.point.iter()).copied().collect();
+    let kind = match joint.kind {
+        JointKind::Helical { pitch } => {
+            numbers.push(pitch);
+            JointKind::Helical { pitch: 0.0 }
+        }
+        JointKind::Universal { second } => {
+            numbers.extend(second.iter());
+            JointKind::Universal { second: Vector3::x_axis() }
+        }
+        kind => kind,
+    };
+    for coordinate in &joint.coordinates {
+        numbers.push(coordinate.home);
+        numbers.extend(coordinate.limits.into_iter().flatten());
+    }
+    let names: Vec<_> = joint.coordinates.iter().map(|c| (c.name.clone(), c.quantity)).collect();
+    (numbers, (joint.name.clone(), kind, joint.actuated, names))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_written_is_read(mechanism in mechanism(), units in units()) {
+        let text = writer::write(&mechanism, units);
+        let file = read(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(file.units, units);
+        let read = file.mechanism;
+        prop_assert_eq!(&read.name, &mechanism.name);
+        prop_assert!((read.platform - mechanism.platform).norm() < WRITTEN);
+        prop_assert_eq!(read.task.axis.is_some(), mechanism.task.axis.is_some());
+        let names = |m: &Mechanism| -> Vec<_> {
+            m.legs.iter().map(|leg| (leg.name.clone(), leg.joints.len())).collect()
+        };
+        prop_assert_eq!(names(&read), names(&mechanism));
+        for (read, written) in read.joints().zip(mechanism.joints()) {
+            let ((found, rest), (expected, other)) = (numbers(read), numbers(written));
+            prop_assert_eq!(rest, other);
+            prop_assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(expected) {
+                prop_assert!((found - expected).abs() < WRITTEN, "{found} {expected}\n{text}");
+            }
+        }
+    }
+}
