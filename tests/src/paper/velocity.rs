@@ -41,8 +41,8 @@ impl PlanoSpherical {
         [direct, Matrix3::from_diagonal(&direct.column(2).into_owned())]
     }
 
-    /// `J_x,p` and `J_q,p` of Eq. 23, with its entry (5,4): `J_x,p (theta1..3, Px, Py)` =
-    /// `J_q,p (S1..3, phi14, phi24)`, all of them rates.
+    /// `J_x,p` and `J_q,p` of Eq. 23, with the entry (5,4): the first times the rates of
+    /// `theta1..3, Px, Py` is the second times those of `S1..3, phi14, phi24`.
     pub fn planar_jacobians(&self, p: [f64; 2], joints: &Joints) -> [Matrix5<f64>; 2] {
         let mut direct = Matrix5::zeros();
         let mut inverse = Matrix5::zeros();
