@@ -1,1 +1,41 @@
-fn main() {}
+//! `opm`: kinematics and workspaces of overconstrained parallel manipulators, from a mechanism file.
+
+mod args;
+mod batch;
+mod completions;
+mod decompose;
+mod examples;
+mod failure;
+mod ik;
+mod inspect;
+mod load;
+mod output;
+mod pose;
+mod progress;
+mod record;
+mod text;
+mod workspace;
+
+use crate::args::{Args, Command};
+use crate::failure::Failure;
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(args: &Args) -> Result<(), Failure> {
+    let output = &args.output;
+    match &args.command {
+        Command::Decompose(command) => decompose::run(command, output),
+        Command::Ik(command) => ik::run(command, output),
+        Command::Workspace(command) => workspace::run(command, output),
+        Command::Inspect(command) => inspect::run(command, output),
+        Command::Examples(command) => examples::run(command, output),
+        Command::Completions(command) => completions::run(command),
+    }
+}

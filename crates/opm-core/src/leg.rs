@@ -32,6 +32,14 @@ impl Leg {
         Self { name: name.into(), joints, imaginary: None }
     }
 
+    /// What the leg's imaginary joint is called, should it get one.
+    pub fn imaginary_name(&self) -> String {
+        match &self.imaginary {
+            Some(label) => label.name.clone(),
+            None => format!("tau.{}", self.name),
+        }
+    }
+
     /// One unit screw a freedom, base first, at home.
     pub fn screws(&self) -> Vec<Screw> {
         self.joints.iter().flat_map(Joint::screws).collect()

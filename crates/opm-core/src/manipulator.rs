@@ -222,7 +222,7 @@ impl Manipulator {
         let (v, b) = (self.task.lower(&home), self.task.upper(&home[self.task.lower_count..]));
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
-            match self.legs[number].solve(&self.task, [&v, &b], branches, true, 0.0) {
+            match self.legs[number].solve(&self.task, [&v, &b], branches, 0.0) {
                 Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
                 Err(_) => f64::INFINITY,
             }
@@ -240,13 +240,11 @@ impl Manipulator {
 impl ImaginaryJoint {
     fn new(leg: &Leg, number: usize, task: &Task) -> Self {
         let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
-        let (name, home, sign) = match &leg.imaginary {
-            Some(label) => {
-                (label.name.clone(), label.home, label.positive.dot(&task.direction).signum())
-            }
-            None => (format!("tau.{}", leg.name), 0.0, 1.0),
+        let (home, sign) = match &leg.imaginary {
+            Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
+            None => (0.0, 1.0),
         };
-        Self { name, leg: number, quantity, home, sign }
+        Self { name: leg.imaginary_name(), leg: number, quantity, home, sign }
     }
 
     /// The value to report for a displacement along the intersection motion; of a turn, the one

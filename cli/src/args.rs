@@ -1,0 +1,221 @@
+//! Every argument of the command line; the doc comments are the help.
+
+use crate::pose::{GridAxis, Pose};
+use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+use std::path::PathBuf;
+
+/// Kinematics and workspaces of overconstrained parallel manipulators
+///
+/// Reads a mechanism file, finds its partial subspaces and imaginary joints from the joint screws
+/// alone, and solves joint values and workspaces in closed form.
+///
+/// Numbers without a unit are metres and radians; 10mm, 2.5cm, 1in, 15deg and 0.2rad carry theirs.
+/// JSON, CSV and MCAP are always SI; text is in the units of the mechanism file.
+///
+/// Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted.
+#[derive(Debug, Parser)]
+#[command(name = "opm", version, max_term_width = 100, after_long_help = ROOT_EXAMPLES)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// How to say it.
+    #[command(flatten)]
+    pub output: Output,
+}
+
+const ROOT_EXAMPLES: &str = "\
+Examples:
+  opm examples                                         what comes with opm
+  opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
+  opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
+  opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm inspect cloud.mcap                               what a recording holds";
+
+/// Options of every subcommand.
+#[derive(Debug, clap::Args)]
+pub struct Output {
+    /// How results are printed
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    /// No progress, notes or warnings: only results and errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Tables for people, in the units of the mechanism file
+    Text,
+    /// One JSON object, in metres and radians
+    Json,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Decompose(DecomposeArgs),
+    Ik(IkArgs),
+    Workspace(WorkspaceArgs),
+    Inspect(InspectArgs),
+    Examples(ExamplesArgs),
+    Completions(CompletionsArgs),
+}
+
+/// Find the partial subspaces and the imaginary joints of a mechanism
+///
+/// Splits every leg into a lower part, which moves in one subspace, and an upper part, which moves in
+/// another; the two subspaces share one motion. A leg whose upper part cannot make that motion gets
+/// an imaginary joint. Of several decompositions the preferred one comes first.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm decompose plano-spherical-5dof
+  opm decompose my-mechanism.toml --format json")]
+pub struct DecomposeArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}
+
+/// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
+///
+/// A task coordinate that is not given has its home value; `opm decompose` lists them. Out of reach
+/// is an answer (exit status 0): it names the legs and by how much.
+///
+/// CSV in: a header of task coordinates in any order, then one pose a row, in metres and radians. CSV
+/// out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
+/// the actuated joints. A pose out of reach keeps its row, its joint cells empty.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm ik plano-spherical-5dof --pose x=10mm,y=0,xi=15deg
+  opm ik plano-spherical-5dof --pose xi=15deg --mode \"-+ ++ ++ +\"
+  opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
+  opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
+  generate-poses | opm ik plano-spherical-5dof --poses - | head")]
+#[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses"]))]
+pub struct IkArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// One pose, for example x=10mm,y=0,xi=15deg
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub pose: Option<Pose>,
+    /// A CSV file of poses; - reads standard input
+    #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
+    pub poses: Option<PathBuf>,
+    /// Every working mode in which the pose is in reach, not just one
+    #[arg(long, conflicts_with = "mode")]
+    pub all_modes: bool,
+    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Where the CSV goes; - or nothing is standard output
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv",
+        requires = "poses",
+        conflicts_with = "pose",
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
+}
+
+/// Sweep a grid of poses: how many are in reach, and where they are
+///
+/// Without --grid the grid is fitted to the workspace; with it, a coordinate that is not given stays
+/// at home. Counts the poses in reach and within all joint limits; with -o, records them as point
+/// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
+/// slice.
+///
+/// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
+/// more than one value. `seconds` is the time of the count.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm workspace plano-spherical-5dof
+  opm workspace plano-spherical-5dof -o cloud.mcap --color theta11
+  opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
+  opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
+  opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
+pub struct WorkspaceArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Values of one task coordinate: MIN, MAX and how many, or one value alone
+    #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
+    pub grid: Vec<GridAxis>,
+    /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Record the points in this MCAP file
+    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// What x, y and z of the cloud are: three task coordinates, or `tip`, the platform's point
+    #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
+    pub axes: Vec<String>,
+    /// What the colour shows: a task coordinate, an imaginary joint or an actuated joint
+    #[arg(long, value_name = "NAME", requires = "output")]
+    pub color: Option<String>,
+    /// Values stored with every point, named like those of --color
+    #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
+    pub scalars: Option<Vec<String>>,
+    /// Threads to use, instead of one a processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Say what a recording holds
+///
+/// Topics with their schemas and counts, the extent of every value of the points, the run that made
+/// it, and whether it is whole. What reached an unfinished .partial file can be read too.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm inspect cloud.mcap
+  opm inspect cloud.mcap.partial --format json")]
+pub struct InspectArgs {
+    /// MCAP file
+    #[arg(value_name = "FILE.mcap", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}
+
+/// List the mechanism files that come with opm, or print one
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm examples
+  opm examples plano-spherical-5dof > my-mechanism.toml")]
+pub struct ExamplesArgs {
+    /// The example to print
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+}
+
+/// Print a completion script for a shell
+///
+/// It is always the script itself, whatever --format says.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm completions bash > ~/.local/share/bash-completion/completions/opm
+  opm completions fish > ~/.config/fish/completions/opm.fish")]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_name = "SHELL", value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Args;
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_do_not_contradict_each_other() {
+        Args::command().debug_assert();
+    }
+}

@@ -1,0 +1,309 @@
+//! `opm ik --poses`: a CSV file of poses in, one of joint values out, row by row.
+
+use crate::args::{Format, IkArgs, Output};
+use crate::failure::{Failure, chain};
+use crate::ik::Modes;
+use crate::load::Loaded;
+use crate::pose::find;
+use crate::progress::{interruptible, watch};
+use crate::text::{count, short};
+use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim, WriterBuilder};
+use opm_core::manipulator::{AllModes, Drives, Manipulator, PoseError, Solution};
+use opm_mcap::{PartialFile, Sink};
+use opm_workspace::Progress;
+use serde::Serialize;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Bytes read or written at a time.
+const BUFFER: usize = 1 << 16;
+
+/// What was done.
+#[derive(Debug, Serialize)]
+struct Summary {
+    poses: u64,
+    reachable: u64,
+    within_limits: u64,
+    seconds: f64,
+    poses_per_second: f64,
+}
+
+pub fn run(
+    args: &IkArgs,
+    output: &Output,
+    loaded: &Loaded,
+    manipulator: &Manipulator,
+    modes: Modes,
+) -> Result<(), Failure> {
+    let dash = Path::new("-");
+    let input = args.poses.as_deref().unwrap_or(dash);
+    let target = args.output.as_deref().filter(|path| *path != dash);
+    if output.format == Format::Json && target.is_none() {
+        let problem = "the CSV takes standard output; give it a file with --output";
+        return Err(Failure::flag("--format json", problem));
+    }
+    let (label, reader): (_, Box<dyn Read + Send>) = if input == dash {
+        ("standard input".to_owned(), Box::new(io::stdin()))
+    } else {
+        let label = input.display().to_string();
+        let file = File::open(input).map_err(|error| Failure::at(&label, &error))?;
+        (label, Box::new(file))
+    };
+    let batch = Batch { label: &label, manipulator, modes };
+    let progress = interruptible()?;
+    let rows = AtomicU64::new(0);
+
+    let Some(path) = target else {
+        // No bar: the rows themselves may be on the terminal.
+        return batch.solve(reader, io::stdout().lock(), &rows, &progress).map(|_| ()).map_err(
+            |error| match error {
+                Stop::Write(error) => Failure::stdout(&error),
+                Stop::Failure(failure) => failure,
+            },
+        );
+    };
+    loaded.refuse_as_output(path, &[input])?;
+    let place = path.display();
+    let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, &error))?;
+    let solve = || batch.solve(reader, &mut file, &rows, &progress);
+    let summary = watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve)
+        .and_then(|summary| file.commit().map(|()| summary).map_err(Stop::Write))
+        .map_err(|error| match error {
+            Stop::Write(error) => Failure::at(&place, &error),
+            Stop::Failure(Failure::Interrupted(message)) => {
+                Failure::Interrupted(format!("{message}; what was solved is in {place}.partial"))
+            }
+            Stop::Failure(failure) => failure,
+        })?;
+    output.note(format_args!(
+        "{place}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
+        count(summary.poses),
+        count(summary.reachable),
+        count(summary.within_limits),
+        short(summary.seconds),
+        count(summary.poses_per_second as u64),
+    ));
+    if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
+}
+
+/// Why a batch ends early.
+enum Stop {
+    Write(io::Error),
+    Failure(Failure),
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
+    }
+}
+
+impl From<csv::Error> for Stop {
+    fn from(error: csv::Error) -> Self {
+        Self::Write(error.into())
+    }
+}
+
+struct Batch<'a> {
+    /// What messages call the input.
+    label: &'a str,
+    manipulator: &'a Manipulator,
+    modes: Modes,
+}
+
+impl Batch<'_> {
+    fn solve(
+        &self,
+        input: impl Read,
+        output: impl Write,
+        rows: &AtomicU64,
+        progress: &Progress,
+    ) -> Result<Summary, Stop> {
+        let start = Instant::now();
+        let mut reader =
+            ReaderBuilder::new().trim(Trim::All).buffer_capacity(BUFFER).from_reader(input);
+        let header = reader.byte_headers().map_err(|error| self.unreadable(&error, &[]))?;
+        let columns = self.columns(header)?;
+        let writer =
+            WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
+        let mut table = Rows::new(self.manipulator, writer)?;
+
+        let home = self.manipulator.task().home();
+        let mut pose = home.clone();
+        let mut record = ByteRecord::new();
+        while reader
+            .read_byte_record(&mut record)
+            .map_err(|error| self.unreadable(&error, &columns))?
+        {
+            if progress.is_cancelled() {
+                return Err(Failure::Interrupted("interrupted".into()).into());
+            }
+            let line = record.position().map_or(0, csv::Position::line);
+            pose.copy_from_slice(&home);
+            for (field, &column) in record.iter().zip(&columns) {
+                pose[column] = self.number(field, line, column)?;
+            }
+            table.pose(&pose, self.modes, |error| self.at(line, error))?;
+            rows.fetch_add(1, Ordering::Relaxed);
+        }
+        table.writer.flush().map_err(Stop::Write)?;
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        let poses = rows.load(Ordering::Relaxed);
+        Ok(Summary {
+            poses,
+            reachable: table.reachable,
+            within_limits: table.within_limits,
+            seconds,
+            poses_per_second: poses as f64 / seconds,
+        })
+    }
+
+    /// The task coordinate of every column.
+    fn columns(&self, header: &ByteRecord) -> Result<Vec<usize>, Failure> {
+        let coordinates = self.manipulator.task_coordinates();
+        let expected = || coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(",");
+        let names: Vec<_> = header.iter().map(String::from_utf8_lossy).collect();
+        if names.is_empty() || names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let problem = format!("no header, expected names of task coordinates: {}", expected());
+            return Err(self.at(1, problem));
+        }
+        let mut columns = Vec::new();
+        for name in &names {
+            let column = find(name, coordinates)
+                .map_err(|error| self.at(1, format_args!("column {name:?}: {error}")))?;
+            if columns.contains(&column) {
+                return Err(self.at(1, format_args!("column {name:?}: given twice")));
+            }
+            columns.push(column);
+        }
+        Ok(columns)
+    }
+
+    fn number(&self, field: &[u8], line: u64, column: usize) -> Result<f64, Failure> {
+        let wrong = |problem: &str| {
+            let name = self.manipulator.task_coordinates()[column].name;
+            let field = String::from_utf8_lossy(field);
+            self.at(line, format_args!("column {name}: {field:?} {problem}"))
+        };
+        let text = std::str::from_utf8(field).map_err(|_| wrong("is not a number"))?;
+        let value: f64 = text.parse().map_err(|_| wrong("is not a number"))?;
+        if value.is_finite() { Ok(value) } else { Err(wrong("is not a finite number")) }
+    }
+
+    fn unreadable(&self, error: &csv::Error, columns: &[usize]) -> Failure {
+        match error.kind() {
+            ErrorKind::UnequalLengths { pos, expected_len, len } => {
+                let names: Vec<_> =
+                    columns.iter().map(|&i| self.manipulator.task_coordinates()[i].name).collect();
+                let line = pos.as_ref().map_or(0, csv::Position::line);
+                let names = names.join(",");
+                self.at(line, format_args!("{len} columns, expected {expected_len}: {names}"))
+            }
+            ErrorKind::Io(error) => Failure::at(self.label, error),
+            _ => Failure::Work(format!("{}: {}", self.label, chain(error))),
+        }
+    }
+
+    fn at(&self, line: u64, problem: impl Display) -> Failure {
+        Failure::Work(format!("{}:{line}: {problem}", self.label))
+    }
+}
+
+/// The rows of the result.
+struct Rows<'a, W: Write> {
+    manipulator: &'a Manipulator,
+    writer: csv::Writer<W>,
+    drives: Drives,
+    all: AllModes,
+    solution: Solution,
+    /// Imaginary, then actuated joints; empty out of reach.
+    cells: Vec<Option<f64>>,
+    reachable: u64,
+    within_limits: u64,
+}
+
+impl<'a, W: Write> Rows<'a, W> {
+    fn new(manipulator: &'a Manipulator, mut writer: csv::Writer<W>) -> Result<Self, Stop> {
+        let coordinates = manipulator.coordinates();
+        let header: Vec<&str> = (manipulator.task_coordinates().iter().map(|c| c.name))
+            .chain(["reachable", "within_limits", "mode"])
+            .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
+            .chain(manipulator.actuated().iter().map(|&i| &*coordinates[i].name))
+            .collect();
+        writer.write_record(header)?;
+        Ok(Self {
+            manipulator,
+            writer,
+            drives: manipulator.drives(),
+            all: manipulator.all_modes(),
+            solution: manipulator.solution(),
+            cells: Vec::new(),
+            reachable: 0,
+            within_limits: 0,
+        })
+    }
+
+    /// Writes the row of a pose; with all modes, one for each that reaches.
+    fn pose(
+        &mut self,
+        pose: &[f64],
+        modes: Modes,
+        wrong: impl Fn(PoseError) -> Failure,
+    ) -> Result<(), Stop> {
+        let manipulator = self.manipulator;
+        match modes {
+            Modes::One(mode) => {
+                let reachable =
+                    manipulator.inverse_drives(pose, mode, &mut self.drives).map_err(wrong)?;
+                let joints = self.drives.imaginary.iter().chain(&self.drives.actuated);
+                fill(&mut self.cells, joints.copied(), reachable);
+                let within = reachable && self.drives.within_limits;
+                self.reachable += u64::from(reachable);
+                self.within_limits += u64::from(within);
+                self.write(pose, reachable, within, &manipulator.format_mode(mode))
+            }
+            Modes::All => {
+                let reachable = manipulator.inverse_all(pose, &mut self.all).map_err(wrong)?;
+                self.reachable += u64::from(reachable);
+                if !reachable {
+                    let joints = self.drives.imaginary.iter().chain(&self.drives.actuated);
+                    fill(&mut self.cells, joints.copied(), false);
+                    return self.write(pose, false, false, "");
+                }
+                let mut any_within = false;
+                let found: Vec<_> = self.all.modes(manipulator).collect();
+                for mode in found {
+                    manipulator.pick(&self.all, mode, &mut self.solution);
+                    let solution = &self.solution;
+                    let actuated = manipulator.actuated().iter().map(|&i| solution.joints[i]);
+                    fill(&mut self.cells, solution.imaginary.iter().copied().chain(actuated), true);
+                    let within = solution.within_limits;
+                    any_within |= within;
+                    self.write(pose, true, within, &manipulator.format_mode(mode))?;
+                }
+                self.within_limits += u64::from(any_within);
+                Ok(())
+            }
+        }
+    }
+
+    fn write(
+        &mut self,
+        pose: &[f64],
+        reachable: bool,
+        within_limits: bool,
+        mode: &str,
+    ) -> Result<(), Stop> {
+        let row = (pose, u8::from(reachable), u8::from(within_limits), mode, &*self.cells);
+        Ok(self.writer.serialize(row)?)
+    }
+}
+
+fn fill(cells: &mut Vec<Option<f64>>, joints: impl Iterator<Item = f64>, reachable: bool) {
+    cells.clear();
+    cells.extend(joints.map(|value| reachable.then_some(value)));
+}

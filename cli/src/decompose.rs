@@ -1,0 +1,307 @@
+//! `opm decompose`: partial subspaces and imaginary joints.
+
+use crate::args::{DecomposeArgs, Output};
+use crate::failure::{Failure, chain};
+use crate::load::{self, Loaded};
+use crate::text::{self, Table, short};
+use nalgebra::Vector3;
+use opm_core::decomposition::{Decomposition, Freedom, decompose};
+use opm_core::joint::Quantity;
+use opm_core::leg::Leg;
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::FileUnits;
+use opm_core::mobility::{Mobility, mobility};
+use opm_core::subspace::SubspaceClass;
+use opm_core::task::{Task, TaskCoordinate};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::fmt::{Display, Write};
+
+/// A joint screw further than this from its subspace (the sine of an angle, lengths over the
+/// mechanism's size) is worth a warning: a file with nine digits stays well below.
+const ROUNDING: f64 = 1e-7;
+
+/// Alternatives that the text lists; JSON has them all.
+const LISTED: usize = 6;
+
+pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
+    let loaded = load::open(&args.file)?;
+    let mechanism = &loaded.file.mechanism;
+    let mobility = mobility(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
+    let decompositions =
+        decompose(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
+    let ways: Vec<Way<'_>> =
+        decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
+    let report = Report { loaded: &loaded, mobility, ways };
+    output.print(&report.json(), report.text())?;
+
+    let first = &report.ways[0];
+    if first.decomposition.deviation > ROUNDING {
+        output.warn(format_args!(
+            "{}: the joints are off their subspaces by {} (the sine of an angle, lengths over the \
+             mechanism's size); are its coordinates rounded?",
+            loaded.label,
+            short(first.decomposition.deviation)
+        ));
+    }
+    match Manipulator::new(mechanism.clone()) {
+        Err(error) => output.note(format_args!(
+            "{}: no closed-form inverse kinematics: {}",
+            loaded.label,
+            chain(&error)
+        )),
+        Ok(manipulator) => {
+            let used =
+                report.ways.iter().position(|w| w.decomposition == manipulator.decomposition());
+            if let Some(used @ 1..) = used {
+                output.note(format_args!(
+                    "{}: inverse kinematics uses alternative {used}: the first decomposition has no \
+                     closed form",
+                    loaded.label
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One decomposition, with its task coordinates.
+struct Way<'a> {
+    decomposition: &'a Decomposition,
+    legs: Vec<Parts<'a>>,
+    coordinates: Vec<TaskCoordinate>,
+}
+
+/// The parts of a leg.
+#[derive(Serialize)]
+struct Parts<'a> {
+    name: &'a str,
+    lower: Vec<&'a str>,
+    upper: Vec<&'a str>,
+    imaginary: Option<String>,
+}
+
+struct Report<'a> {
+    loaded: &'a Loaded,
+    mobility: Mobility,
+    ways: Vec<Way<'a>>,
+}
+
+impl<'a> Way<'a> {
+    fn new(loaded: &'a Loaded, decomposition: &'a Decomposition) -> Self {
+        let mechanism = &loaded.file.mechanism;
+        let legs = (mechanism.legs.iter().zip(&decomposition.legs))
+            .map(|(leg, split)| Parts {
+                name: &leg.name,
+                lower: joints(leg, &split.lower),
+                upper: joints(leg, &split.upper),
+                imaginary: split.imaginary.then(|| leg.imaginary_name()),
+            })
+            .collect();
+        // Without closed forms there are no coordinates; a note says so.
+        let task = Task::new(mechanism, decomposition);
+        Self { decomposition, legs, coordinates: task.map_or(vec![], |task| task.coordinates) }
+    }
+
+    fn json(&self) -> Value {
+        let d = self.decomposition;
+        let coordinate = |c: &TaskCoordinate| json!({ "name": c.name, "home": c.home, "unit": c.quantity.unit() });
+        json!({
+            "imaginary_joints": d.imaginary_joints,
+            "first_section_motions": d.first_section_motions,
+            "lower": { "subspace": d.lower.name() },
+            "upper": { "subspace": d.upper.name() },
+            "intersection": intersection(&d.intersection),
+            "task_coordinates": self.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
+            "legs": self.legs,
+        })
+    }
+
+    /// `J = 3, M = 2: planar + spherical, rotation in common, legs 3|2 3|2 3|2 2|3`.
+    fn summary(&self) -> String {
+        let d = self.decomposition;
+        let splits: Vec<String> =
+            d.legs.iter().map(|leg| format!("{}|{}", leg.lower.len(), leg.upper.len())).collect();
+        format!(
+            "J = {}, M = {}: {} + {}, {} in common, freedoms {}",
+            d.imaginary_joints,
+            d.first_section_motions,
+            d.lower.name(),
+            d.upper.name(),
+            d.intersection.name(),
+            splits.join(" ")
+        )
+    }
+}
+
+impl Report<'_> {
+    fn json(&self) -> Value {
+        let first = &self.ways[0];
+        let mut json = json!({
+            "name": self.loaded.file.mechanism.name,
+            "lambda": first.decomposition.lambda,
+            "mobility": first.decomposition.mobility,
+        });
+        if let (Value::Object(json), Value::Object(way)) = (&mut json, first.json()) {
+            json.extend(way);
+            if self.ways.len() > 1 {
+                let others = self.ways[1..].iter().map(Way::json).collect();
+                json.insert("alternatives".to_owned(), Value::Array(others));
+            }
+        }
+        json
+    }
+
+    fn text(&self) -> String {
+        let units = self.loaded.file.units;
+        let mechanism = &self.loaded.file.mechanism;
+        let way = &self.ways[0];
+        let d = way.decomposition;
+        let (n, j, m) = (d.mobility, d.imaginary_joints, d.first_section_motions);
+        let mut text = String::new();
+        let mut line = |line: &dyn Display| {
+            let _ = writeln!(text, "{line}");
+        };
+        line(&format_args!(
+            "{}: {} legs, joint screws of rank lambda = {}, mobility N = {n}\n",
+            mechanism.name,
+            mechanism.legs.len(),
+            d.lambda,
+        ));
+        line(&format_args!("lower section   {}", describe(&d.lower, units)));
+        line(&format_args!("upper section   {}", describe(&d.upper, units)));
+        line(&format_args!("in common       {}\n", describe(&d.intersection, units)));
+
+        let mut legs = Table::new(["leg", "lower", "|", "upper", "imaginary joint"]);
+        for leg in &way.legs {
+            let imaginary = leg.imaginary.clone().unwrap_or_default();
+            legs.row([leg.name, &leg.lower.join(" "), "|", &leg.upper.join(" "), &imaginary]);
+        }
+        line(&legs);
+        line(&format_args!("The imaginary joints give the upper section J = {j} motions."));
+        line(&format_args!(
+            "The lower section has M = N - J = {n} - {j} = {m} of its own (Eq. 1)."
+        ));
+        if d.upper_mobility > 0 {
+            line(&format_args!(
+                "The upper section is not passive: with the imaginary joints locked, {} motions are left.",
+                d.upper_mobility
+            ));
+        }
+        if d.redundancy > 0 {
+            line(&format_args!("Of the imaginary joints, {} are redundant.", d.redundancy));
+        }
+
+        if !way.coordinates.is_empty() {
+            let mut table = Table::new(["task coordinate", ">home", "unit"]);
+            for c in &way.coordinates {
+                let home = text::number(c.home, c.quantity, units);
+                table.row([c.name, &home, units.symbol(c.quantity)]);
+            }
+            line(&format_args!("\n{table}"));
+        }
+        line(&self.actuation());
+        if self.ways.len() > 1 {
+            line(&format_args!("\nalternatives: {}", self.ways.len() - 1));
+            for (number, way) in self.ways.iter().enumerate().skip(1).take(LISTED) {
+                line(&format_args!("  {number}. {}", way.summary()));
+            }
+            if self.ways.len() > LISTED + 1 {
+                line(&"  ... (--format json lists them all)");
+            }
+        }
+        text
+    }
+
+    /// What the motors do.
+    fn actuation(&self) -> String {
+        let report = &self.mobility;
+        let joints = self.loaded.file.mechanism.joints().filter(|joint| joint.actuated);
+        let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
+        let mut text = format!("actuated: {}; ", names.join(", "));
+        if report.redundant.is_empty() {
+            let _ = write!(text, "they control all {} freedoms", report.controlled);
+        } else {
+            let _ = write!(
+                text,
+                "{} for {} freedoms, any one of {} could be left out",
+                report.actuators,
+                report.controlled,
+                report.redundant.join(", ")
+            );
+        }
+        if report.idle > 0 {
+            let _ = write!(text, "; {} do not move the platform", report.idle);
+        }
+        text
+    }
+}
+
+/// Names of the joints of a part; of a joint that is divided, those of its coordinates.
+fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for freedom in part {
+        let joint = &leg.joints[freedom.joint];
+        let whole = part.iter().filter(|f| f.joint == freedom.joint).count() == joint.freedoms();
+        if !whole {
+            names.push(&*joint.coordinates[freedom.index].name);
+        } else if freedom.index == 0 {
+            names.push(&*joint.name);
+        }
+    }
+    names
+}
+
+fn intersection(class: &SubspaceClass) -> Value {
+    let (axis, point, pitch) = match class {
+        SubspaceClass::Rotation { axis, point } => (axis, Some(point), None),
+        SubspaceClass::Helical { axis, point, pitch } => (axis, Some(point), Some(*pitch)),
+        SubspaceClass::Translation { axis } => (axis, None, None),
+        other => return json!({ "kind": other.name(), "axis": null, "point": null, "pitch": null }),
+    };
+    let triple = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|c| c + 0.0);
+    json!({
+        "kind": class.name(),
+        "axis": triple(axis),
+        "point": point.map(|p| triple(&p.coords)),
+        "pitch": pitch,
+    })
+}
+
+/// A subspace in words, in the file's units.
+fn describe(class: &SubspaceClass, units: FileUnits) -> String {
+    let triple = |v: &Vector3<f64>, scale: f64| {
+        let [x, y, z] = [v.x, v.y, v.z].map(|c| (c / scale * 1e6).round() / 1e6 + 0.0);
+        format!("({x}, {y}, {z})")
+    };
+    let direction = |v: &Vector3<f64>| triple(v, 1.0);
+    let place = |v: &Vector3<f64>| {
+        let unit = units.length;
+        format!("{} {}", triple(v, unit.factor()), unit.symbol())
+    };
+    let advance = |pitch: f64| format!("{}/rad", units.show(pitch, Quantity::Length));
+    let name = class.name();
+    match class {
+        SubspaceClass::Rotation { axis, point } | SubspaceClass::Cylindrical { axis, point } => {
+            format!("{name}, axis {} through {}", direction(axis), place(&point.coords))
+        }
+        SubspaceClass::Translation { axis } => format!("{name} along {}", direction(axis)),
+        SubspaceClass::Helical { axis, point, pitch } => format!(
+            "{name}, axis {} through {}, pitch {}",
+            direction(axis),
+            place(&point.coords),
+            advance(*pitch)
+        ),
+        SubspaceClass::TranslationalPlane { normal } | SubspaceClass::Planar { normal } => {
+            format!("{name}, normal {}", direction(normal))
+        }
+        SubspaceClass::Spherical { centre } => format!("{name}, centre {}", place(&centre.coords)),
+        SubspaceClass::PlanarHelical { axis, pitch } => {
+            format!("{name}, axis {}, pitch {}", direction(axis), advance(*pitch))
+        }
+        SubspaceClass::Schoenflies { axis } => format!("{name}, axis {}", direction(axis)),
+        SubspaceClass::Identity | SubspaceClass::TranslationalSpace | SubspaceClass::Full => {
+            name.to_owned()
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! `opm ik`: inverse kinematics.
+
+use crate::args::{IkArgs, Output};
+use crate::batch;
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::output::named;
+use crate::text::{self, Table};
+use opm_core::chain::Amount;
+use opm_core::joint::{JointCoordinate, Quantity};
+use opm_core::limits::Limits;
+use opm_core::manipulator::{Manipulator, Mode, Solution, Unreachable};
+use opm_core::mechanism::file::FileUnits;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::fmt::Write;
+
+/// Most two-valued choices of which every combination is listed.
+const MOST_CHOICES: u32 = 16;
+
+pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
+    let loaded = load::open(&args.file)?;
+    let manipulator = loaded.compile()?;
+    let modes = Modes::new(args, &manipulator)?;
+    match &args.pose {
+        Some(pose) => {
+            let pose = pose.resolve(manipulator.task_coordinates())?;
+            let answer = Answer::new(&loaded, &manipulator, modes, pose)?;
+            output.print(&answer.json(), answer.text())
+        }
+        None => batch::run(args, output, &loaded, &manipulator, modes),
+    }
+}
+
+/// Which working modes are asked for.
+#[derive(Clone, Copy)]
+pub enum Modes {
+    All,
+    One(Mode),
+}
+
+impl Modes {
+    fn new(args: &IkArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
+        if !args.all_modes {
+            return load::mode(manipulator, &args.mode).map(Self::One);
+        }
+        let choices = manipulator.choices();
+        if choices > MOST_CHOICES {
+            return Err(Failure::flag(
+                "--all-modes",
+                format!("2^{choices} working modes, at most 2^{MOST_CHOICES}; use --mode"),
+            ));
+        }
+        Ok(Self::All)
+    }
+}
+
+/// The joints at one pose.
+struct Answer<'a> {
+    loaded: &'a Loaded,
+    manipulator: &'a Manipulator,
+    pose: Vec<f64>,
+    all: bool,
+    solutions: Vec<(Mode, Solution)>,
+    unreachable: Vec<Unreachable>,
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    pose: Map<String, Value>,
+    reachable: bool,
+    solutions: Vec<JsonSolution>,
+    unreachable: Vec<JsonUnreachable<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonSolution {
+    mode: String,
+    within_limits: bool,
+    joints: Map<String, Value>,
+    imaginary: Map<String, Value>,
+}
+
+#[derive(Serialize)]
+struct JsonUnreachable<'a> {
+    leg: &'a str,
+    reason: String,
+}
+
+impl<'a> Answer<'a> {
+    fn new(
+        loaded: &'a Loaded,
+        manipulator: &'a Manipulator,
+        modes: Modes,
+        pose: Vec<f64>,
+    ) -> Result<Self, Failure> {
+        let wrong = |error| Failure::flag("--pose", error);
+        let mut solution = manipulator.solution();
+        let (solutions, unreachable) = match modes {
+            Modes::One(mode) => {
+                let reached = manipulator.inverse(&pose, mode, &mut solution).map_err(wrong)?;
+                let unreachable = solution.unreachable.clone();
+                (if reached { vec![(mode, solution)] } else { vec![] }, unreachable)
+            }
+            Modes::All => {
+                let mut all = manipulator.all_modes();
+                manipulator.inverse_all(&pose, &mut all).map_err(wrong)?;
+                let solutions = all
+                    .modes(manipulator)
+                    .map(|mode| {
+                        manipulator.pick(&all, mode, &mut solution);
+                        (mode, solution.clone())
+                    })
+                    .collect();
+                (solutions, all.unreachable().collect())
+            }
+        };
+        let all = matches!(modes, Modes::All);
+        Ok(Self { loaded, manipulator, pose, all, solutions, unreachable })
+    }
+
+    fn json(&self) -> Json<'_> {
+        let coordinates = self.manipulator.task_coordinates();
+        let solution = |(mode, solution): &(Mode, Solution)| {
+            let joints = self.manipulator.coordinates().iter().map(|c| &*c.name);
+            let imaginary = self.manipulator.imaginary().iter().map(|j| &*j.name);
+            JsonSolution {
+                mode: self.manipulator.format_mode(*mode),
+                within_limits: solution.within_limits,
+                joints: named(joints.zip(solution.joints.iter().copied())),
+                imaginary: named(imaginary.zip(solution.imaginary.iter().copied())),
+            }
+        };
+        Json {
+            pose: named(coordinates.iter().map(|c| c.name).zip(self.pose.iter().copied())),
+            reachable: !self.solutions.is_empty(),
+            solutions: self.solutions.iter().map(solution).collect(),
+            unreachable: self
+                .unreachable
+                .iter()
+                .map(|u| JsonUnreachable { leg: self.leg(u), reason: reason(u, FileUnits::SI) })
+                .collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let units = self.loaded.file.units;
+        let mut text = format!("{} at ", self.manipulator.mechanism().name);
+        let pose: Vec<String> = (self.manipulator.task_coordinates().iter().zip(&self.pose))
+            .map(|(c, &value)| format!("{} = {}", c.name, units.show(value, c.quantity)))
+            .collect();
+        let _ = writeln!(text, "{}\n", pose.join(", "));
+        match &*self.solutions {
+            [] => {
+                let whose = if self.all { "in every mode" } else { "in this mode" };
+                let _ = writeln!(text, "out of reach {whose}");
+                for u in &self.unreachable {
+                    let _ = writeln!(text, "  {}: {}", self.leg(u), reason(u, units));
+                }
+            }
+            [(mode, solution)] if !self.all => {
+                let _ = writeln!(
+                    text,
+                    "{}, {}\n\n{}",
+                    self.mode_name(*mode),
+                    if solution.within_limits {
+                        "within limits"
+                    } else {
+                        "beyond limits (marked *)"
+                    },
+                    self.joint_table(solution)
+                );
+            }
+            solutions => {
+                let _ =
+                    writeln!(text, "{} working modes\n\n{}", solutions.len(), self.mode_table());
+            }
+        }
+        text
+    }
+
+    /// Every joint of one solution, leg by leg.
+    fn joint_table(&self, solution: &Solution) -> Table {
+        let units = self.loaded.file.units;
+        let mut table = Table::new(["leg", "joint", "", ">value", "unit", ">limits", ""]);
+        let mut row = |leg: &str, name: &str, kind: &str, value: f64, of: Of<'_>| {
+            let quantity = of.quantity();
+            let limits = of.limits().map_or(String::new(), |l| text::range(l, quantity, units));
+            table.row([
+                leg,
+                name,
+                kind,
+                &text::number(value, quantity, units),
+                units.symbol(quantity),
+                &limits,
+                if of.admits(value) { "" } else { "*" },
+            ]);
+        };
+        let mut number = 0;
+        let imaginary = || self.manipulator.imaginary().iter().zip(&solution.imaginary);
+        for (leg_number, leg) in self.manipulator.mechanism().legs.iter().enumerate() {
+            for joint in &leg.joints {
+                let kind = if joint.actuated { "actuated" } else { "passive" };
+                for coordinate in &joint.coordinates {
+                    let value = solution.joints[number];
+                    row(&leg.name, &coordinate.name, kind, value, Of::Joint(coordinate));
+                    number += 1;
+                }
+            }
+            for (joint, &value) in imaginary().filter(|(joint, _)| joint.leg == leg_number) {
+                row(&leg.name, &joint.name, "imaginary", value, Of::Imaginary(joint.quantity));
+            }
+        }
+        table
+    }
+
+    /// A row a mode: imaginary and actuated joints.
+    fn mode_table(&self) -> Table {
+        let units = self.loaded.file.units;
+        let manipulator = self.manipulator;
+        let actuated =
+            || manipulator.actuated().iter().map(|&i| (i, &manipulator.coordinates()[i]));
+        let imaginary = || manipulator.imaginary().iter();
+        let mut headers = vec!["mode".to_owned(), "within limits".to_owned()];
+        headers.extend(imaginary().map(|j| text::header(&j.name, j.quantity, units)));
+        headers.extend(actuated().map(|(_, c)| text::header(&c.name, c.quantity, units)));
+        let mut table = Table::new(headers);
+        for (mode, solution) in &self.solutions {
+            let within = if solution.within_limits { "yes" } else { "no" };
+            let mut row = vec![manipulator.format_mode(*mode), within.to_owned()];
+            row.extend(
+                imaginary()
+                    .zip(&solution.imaginary)
+                    .map(|(j, &value)| text::number(value, j.quantity, units)),
+            );
+            row.extend(
+                actuated().map(|(i, c)| text::number(solution.joints[i], c.quantity, units)),
+            );
+            table.row(row);
+        }
+        table
+    }
+
+    fn mode_name(&self, mode: Mode) -> String {
+        let signs = self.manipulator.format_mode(mode);
+        if signs.is_empty() { "the only working mode".to_owned() } else { format!("mode {signs}") }
+    }
+
+    fn leg(&self, unreachable: &Unreachable) -> &str {
+        &self.manipulator.mechanism().legs[unreachable.leg].name
+    }
+}
+
+/// Whose value it is.
+#[derive(Clone, Copy)]
+enum Of<'a> {
+    Joint(&'a JointCoordinate),
+    Imaginary(Quantity),
+}
+
+impl Of<'_> {
+    fn quantity(self) -> Quantity {
+        match self {
+            Self::Joint(coordinate) => coordinate.quantity,
+            Self::Imaginary(quantity) => quantity,
+        }
+    }
+
+    fn limits(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Joint(coordinate) => coordinate.limits,
+            Self::Imaginary(_) => None,
+        }
+    }
+
+    fn admits(self, value: f64) -> bool {
+        match self {
+            Self::Joint(c) => Limits::new(c.limits, c.home).admits(Amount::Value(value - c.home)),
+            Self::Imaginary(_) => true,
+        }
+    }
+}
+
+/// Which section of the leg does not close, and by how much.
+fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
+    let (section, gap) = (unreachable.section, unreachable.gap);
+    if gap.excess.is_finite() {
+        format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))
+    } else {
+        format!("{section} section out of reach")
+    }
+}

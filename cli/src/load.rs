@@ -1,0 +1,98 @@
+//! Mechanism files, by path or by the name of a shipped example.
+
+use crate::failure::Failure;
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::file::{self, MechanismFile};
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+/// Longest mechanism file: beyond, it is something else, an endless device for instance.
+const LONGEST: u64 = 16 << 20;
+
+/// A mechanism file that was read.
+pub struct Loaded {
+    /// What messages call it: the path or the name as given.
+    pub label: String,
+    /// The file's own name, to attach it under.
+    pub file_name: String,
+    /// Its path; `None` for a shipped example.
+    pub path: Option<PathBuf>,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub file: MechanismFile,
+}
+
+/// Reads a mechanism. An existing path wins over an example of the same name.
+pub fn open(given: &Path) -> Result<Loaded, Failure> {
+    let label = given.display().to_string();
+    let failed = |error| Failure::at(&label, &error);
+    let (text, path, file_name) = match File::open(given) {
+        Ok(source) => {
+            let mut bytes = Vec::new();
+            source.take(LONGEST + 1).read_to_end(&mut bytes).map_err(failed)?;
+            if bytes.len() as u64 > LONGEST {
+                return Err(Failure::Work(format!(
+                    "{label}: more than {} MiB, expected a mechanism file",
+                    LONGEST >> 20
+                )));
+            }
+            let text = String::from_utf8(bytes).map_err(|error| {
+                let place = error.utf8_error().valid_up_to();
+                let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
+                Failure::Work(format!("{label}:{line}: not UTF-8, expected a mechanism file"))
+            })?;
+            let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
+            (text, Some(given.to_owned()), name)
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => match find(&label) {
+            Some(example) => (example.text.to_owned(), None, format!("{}.toml", example.name)),
+            // A bare word is more likely a name than a path.
+            None if given.extension().is_none() && given.components().count() == 1 => {
+                return Err(Failure::Work(format!(
+                    "{label}: no such file, and no such example; there are {}",
+                    example_names()
+                )));
+            }
+            None => return Err(failed(error)),
+        },
+        Err(error) => return Err(failed(error)),
+    };
+    let file = file::read(&text).map_err(|errors| Failure::Work(errors.in_file(&label)))?;
+    Ok(Loaded { label, file_name, path, text, file })
+}
+
+impl Loaded {
+    /// The mechanism compiled for inverse kinematics.
+    pub fn compile(&self) -> Result<Manipulator, Failure> {
+        Manipulator::new(self.file.mechanism.clone()).map_err(|e| Failure::at(&self.label, &e))
+    }
+
+    /// Refuses to write over the mechanism file or another input.
+    pub fn refuse_as_output(&self, output: &Path, others: &[&Path]) -> Result<(), Failure> {
+        let target = output.canonicalize().ok();
+        let inputs = self.path.as_deref().into_iter().chain(others.iter().copied());
+        for input in inputs {
+            if target.is_some() && input.canonicalize().ok() == target {
+                let problem = format!("{} is also the input", output.display());
+                return Err(Failure::flag("--output", problem));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The working mode that `--mode` names.
+pub fn mode(manipulator: &Manipulator, given: &str) -> Result<Mode, Failure> {
+    match given {
+        "home" => Ok(manipulator.home_mode()),
+        signs => manipulator.parse_mode(signs).map_err(|e| Failure::flag("--mode", e)),
+    }
+}
+
+/// The names of the shipped examples, as a list.
+pub fn example_names() -> String {
+    EXAMPLES.iter().map(|example| example.name).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,46 @@
+//! What goes to standard output, and what is said beside it.
+
+use crate::args::{Format, Output};
+use crate::failure::{Failure, talk};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::fmt::Display;
+use std::io::{self, Write};
+
+impl Output {
+    /// Prints a result in the format asked for.
+    pub fn print(&self, json: &impl Serialize, text: impl Display) -> Result<(), Failure> {
+        match self.format {
+            Format::Json => print_with(|out| {
+                serde_json::to_writer(&mut *out, json)?;
+                writeln!(out)
+            }),
+            Format::Text => print_with(|out| write!(out, "{text}")),
+        }
+    }
+
+    /// Says something on standard error, unless that is to be quiet.
+    pub fn note(&self, message: impl Display) {
+        if !self.quiet {
+            talk(&message.to_string());
+        }
+    }
+
+    /// As [`Output::note`], for what may make the result useless.
+    pub fn warn(&self, message: impl Display) {
+        self.note(format_args!("warning: {message}"));
+    }
+}
+
+/// Writes to standard output to the last byte.
+pub fn print_with(
+    write: impl FnOnce(&mut io::BufWriter<io::StdoutLock<'static>>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::stdout(&error))
+}
+
+/// Named numbers as a JSON object, in their order.
+pub fn named<'a>(numbers: impl IntoIterator<Item = (&'a str, f64)>) -> Map<String, Value> {
+    numbers.into_iter().map(|(name, value)| (name.to_owned(), value.into())).collect()
+}

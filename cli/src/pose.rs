@@ -1,0 +1,261 @@
+//! Poses and grids as they are written on the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
+
+use crate::failure::Failure;
+use opm_core::joint::Quantity;
+use opm_core::mechanism::file::{AngleUnit, LengthUnit};
+use opm_core::task::TaskCoordinate;
+use opm_workspace::Axis;
+use std::fmt;
+use std::str::FromStr;
+
+/// A text that does not say what it should.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Misread(String);
+
+impl fmt::Display for Misread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Misread {}
+
+/// A number that may have named its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    /// Metres or radians.
+    value: f64,
+    /// What the unit measures; `None` for a number alone.
+    quantity: Option<Quantity>,
+}
+
+/// Some coordinates of a pose, by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose(Vec<(String, Number)>);
+
+/// The values of one task coordinate on a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridAxis {
+    name: String,
+    min: Number,
+    max: Number,
+    count: u64,
+}
+
+impl FromStr for Number {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let text = text.trim();
+        let digits = text.trim_end_matches(char::is_alphabetic);
+        let (number, unit) = text.split_at(digits.len());
+        let value: f64 = number.trim_end().parse().map_err(|_| {
+            Misread(format!("{text:?} is not a number, expected one like 0.01, 10mm or 15deg"))
+        })?;
+        let (factor, quantity) = if unit.is_empty() {
+            (1.0, None)
+        } else if let Some(unit) = LengthUnit::from_symbol(unit) {
+            (unit.factor(), Some(Quantity::Length))
+        } else if let Some(unit) = AngleUnit::from_symbol(unit) {
+            (unit.factor(), Some(Quantity::Angle))
+        } else {
+            let lengths = LengthUnit::ALL.map(LengthUnit::symbol);
+            let known = lengths.into_iter().chain(AngleUnit::ALL.map(AngleUnit::symbol));
+            return Err(Misread(format!(
+                "unknown unit {unit:?} in {text:?}, expected one of {}",
+                known.collect::<Vec<_>>().join(", ")
+            )));
+        };
+        let value = value * factor;
+        if !value.is_finite() {
+            return Err(Misread(format!("{text:?} is too large a number")));
+        }
+        Ok(Self { value, quantity })
+    }
+}
+
+impl Number {
+    /// The value for a coordinate, which it must suit.
+    fn of(self, coordinate: &TaskCoordinate) -> Result<f64, Misread> {
+        let what = |quantity| match quantity {
+            Quantity::Angle => "an angle",
+            Quantity::Length => "a length",
+        };
+        match self.quantity {
+            Some(quantity) if quantity != coordinate.quantity => Err(Misread(format!(
+                "{} is {}, but its value has the unit of {}",
+                coordinate.name,
+                what(coordinate.quantity),
+                what(quantity)
+            ))),
+            _ => Ok(self.value),
+        }
+    }
+}
+
+impl FromStr for Pose {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let mut pose: Vec<(String, Number)> = Vec::new();
+        for part in text.split(',').filter(|_| !text.trim().is_empty()) {
+            let (name, value) = assignment(part, "NAME=VALUE, for example x=10mm")?;
+            if pose.iter().any(|(known, _)| known == name) {
+                return Err(Misread(format!("{name} is given twice")));
+            }
+            pose.push((name.to_owned(), value.parse()?));
+        }
+        Ok(Self(pose))
+    }
+}
+
+impl Pose {
+    /// Every coordinate of the pose: what is not given has its home value.
+    pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
+        let mut pose: Vec<f64> = coordinates.iter().map(|c| c.home).collect();
+        for (name, number) in &self.0 {
+            let index = find(name, coordinates).map_err(|e| Failure::flag("--pose", e))?;
+            pose[index] = number.of(&coordinates[index]).map_err(|e| Failure::flag("--pose", e))?;
+        }
+        Ok(pose)
+    }
+}
+
+impl FromStr for GridAxis {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        const FORM: &str = "AXIS=MIN:MAX:COUNT or AXIS=VALUE, for example x=-100mm:100mm:21";
+        let (name, values) = assignment(text, FORM)?;
+        let axis = |min, max, count| Ok(Self { name: name.to_owned(), min, max, count });
+        match *values.split(':').collect::<Vec<_>>() {
+            [value] => {
+                let value = value.parse()?;
+                axis(value, value, 1)
+            }
+            [min, max, count] => {
+                let (min, max): (Number, Number) = (min.parse()?, max.parse()?);
+                // -10:10mm would run from minus ten metres.
+                let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
+                if (bare(min) && max.quantity.is_some()) || (min.quantity.is_some() && bare(max)) {
+                    return Err(Misread(format!(
+                        "{values:?} has a unit at one end only, expected one at both or none"
+                    )));
+                }
+                let count = count.trim().parse().map_err(|_| {
+                    Misread(format!("{count:?} is not a number of values, expected 1 or more"))
+                })?;
+                axis(min, max, count)
+            }
+            _ => Err(Misread(format!("{text:?}, expected {FORM}"))),
+        }
+    }
+}
+
+impl GridAxis {
+    /// The axis in SI.
+    pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Axis, Failure> {
+        let axis = || {
+            let coordinate = &coordinates[find(&self.name, coordinates)?];
+            let (min, max) = (self.min.of(coordinate)?, self.max.of(coordinate)?);
+            Ok(Axis::new(&self.name, min, max, self.count))
+        };
+        axis().map_err(|error: Misread| Failure::flag("--grid", error))
+    }
+}
+
+fn assignment<'a>(text: &'a str, form: &str) -> Result<(&'a str, &'a str), Misread> {
+    match text.split_once('=').map(|(name, value)| (name.trim(), value.trim())) {
+        Some((name, value)) if !name.is_empty() && !value.is_empty() => Ok((name, value)),
+        _ => Err(Misread(format!("{:?}, expected {form}", text.trim()))),
+    }
+}
+
+/// The number of the task coordinate of this name.
+pub fn find(name: &str, coordinates: &[TaskCoordinate]) -> Result<usize, Misread> {
+    coordinates.iter().position(|c| c.name == name).ok_or_else(|| {
+        let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+        Misread(format!("no task coordinate {name:?}, expected one of {}", names.join(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn coordinates() -> [TaskCoordinate; 2] {
+        [
+            TaskCoordinate { name: "x", quantity: Quantity::Length, home: 0.5 },
+            TaskCoordinate { name: "xi", quantity: Quantity::Angle, home: 0.25 },
+        ]
+    }
+
+    fn pose(text: &str) -> Result<Vec<f64>, String> {
+        let pose: Pose = text.parse().map_err(|error: Misread| error.to_string())?;
+        pose.resolve(&coordinates()).map_err(|failure| match failure {
+            Failure::Usage(message) => message,
+            other => format!("{other:?}"),
+        })
+    }
+
+    #[test]
+    fn units_are_converted_and_the_rest_stays_home() {
+        assert_eq!(pose(""), Ok(vec![0.5, 0.25]));
+        assert_eq!(pose("x=10mm"), Ok(vec![0.01, 0.25]));
+        assert_eq!(pose(" xi = 180 deg , x=-1e-2 "), Ok(vec![-0.01, PI]));
+        assert_eq!(pose("x=1in,xi=0.2rad"), Ok(vec![0.0254, 0.2]));
+        assert_eq!(pose("x=2.5cm"), Ok(vec![0.025, 0.25]));
+    }
+
+    #[test]
+    fn a_bad_pose_says_what_is_wrong() {
+        for (text, expected) in [
+            ("x", "expected NAME=VALUE"),
+            ("x=", "expected NAME=VALUE"),
+            ("=1", "expected NAME=VALUE"),
+            ("x=1,,xi=2", "expected NAME=VALUE"),
+            ("x=10furlong", "unknown unit \"furlong\""),
+            ("x=10MM", "unknown unit \"MM\""),
+            ("x=ten", "not a number"),
+            ("x=nan", "not a number"),
+            ("x=inf", "not a number"),
+            ("x=1e999", "too large"),
+            ("x=1,x=2", "x is given twice"),
+            ("yaw=1", "--pose: no task coordinate \"yaw\", expected one of x, xi"),
+            ("x=10deg", "--pose: x is a length, but its value has the unit of an angle"),
+            ("xi=10mm", "--pose: xi is an angle, but its value has the unit of a length"),
+        ] {
+            let message = pose(text).expect_err(text);
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_grid_axis_is_a_range_or_a_value() {
+        let axis = |text: &str| text.parse::<GridAxis>().unwrap().resolve(&coordinates());
+        assert_eq!(axis("x=-10mm:10mm:21"), Ok(Axis::new("x", -0.01, 0.01, 21)));
+        assert_eq!(axis("x=0:10mm:3"), Ok(Axis::new("x", 0.0, 0.01, 3)));
+        assert_eq!(axis("xi=0.5"), Ok(Axis::fixed("xi", 0.5)));
+        assert!(
+            matches!(axis("x=0:1deg:3"), Err(Failure::Usage(text)) if text.starts_with("--grid: "))
+        );
+    }
+
+    #[test]
+    fn a_bad_grid_axis_says_what_is_wrong() {
+        for (text, expected) in [
+            ("x=1:2", "expected AXIS=MIN:MAX:COUNT"),
+            ("x=1:2:3:4", "expected AXIS=MIN:MAX:COUNT"),
+            ("x=1:2:-3", "\"-3\" is not a number of values"),
+            ("x=1:2:2.5", "\"2.5\" is not a number of values"),
+            ("x=1:2:99999999999999999999", "is not a number of values"),
+            ("x=-10:10mm:3", "a unit at one end only"),
+            ("x=10mm:20:3", "a unit at one end only"),
+            ("x=a:b:3", "not a number"),
+        ] {
+            let message = text.parse::<GridAxis>().expect_err(text).to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! A progress bar on a terminal, and Ctrl-C.
+
+use crate::args::Output;
+use crate::failure::Failure;
+use indicatif::{ProgressBar, ProgressStyle};
+use opm_workspace::Progress;
+use std::process;
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Duration;
+
+/// How often the bar is redrawn.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Progress that the first Ctrl-C asks to stop; the second ends the process at once.
+pub fn interruptible() -> Result<Arc<Progress>, Failure> {
+    let progress = Arc::new(Progress::default());
+    let heard = Arc::clone(&progress);
+    ctrlc::set_handler(move || {
+        if heard.is_cancelled() {
+            process::exit(130);
+        }
+        heard.cancel();
+    })
+    .map_err(|error| Failure::at("Ctrl-C", &error))?;
+    Ok(progress)
+}
+
+/// Does some work while a bar shows how far it has come, `done` out of `total` poses. The bar is on
+/// standard error, and only where that is a terminal.
+pub fn watch<T>(
+    output: &Output,
+    label: &'static str,
+    total: Option<u64>,
+    done: impl Fn() -> u64 + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    if output.quiet {
+        return work();
+    }
+    let bar = match total {
+        Some(total) => ProgressBar::new(total).with_style(style(
+            "{msg} {wide_bar} {percent}% of {human_len} poses, {per_sec}, ETA {eta}",
+        )),
+        None => ProgressBar::no_length()
+            .with_style(style("{spinner} {msg}: {human_pos} poses, {per_sec}")),
+    };
+    bar.set_message(label);
+    thread::scope(|scope| {
+        let (finished, waiting) = mpsc::channel::<()>();
+        let bar = &bar;
+        scope.spawn(move || {
+            // The other end says nothing: it goes away when the work is done, even by a panic.
+            while waiting.recv_timeout(TICK) == Err(mpsc::RecvTimeoutError::Timeout) {
+                bar.set_position(done());
+                bar.tick();
+            }
+            bar.finish_and_clear();
+        });
+        let result = work();
+        drop(finished);
+        result
+    })
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
