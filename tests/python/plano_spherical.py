@@ -69,7 +69,7 @@ def joints(x, y, zeta, xi, psi):
     negative.
     """
     home = np.zeros(1)
-    theta_home, _ = imaginary(home, home, home)
+    theta_home = imaginary(home, home, home)[0][..., :1] + ETA  # the legs are alike
     shoulder_home, elbow_home, _ = arm(home, home)
 
     theta, upper = imaginary(zeta, xi, psi)

@@ -17,8 +17,8 @@ PATIENCE = 60
 
 # Counts only: some 10^9 poses.
 COUNTED = ("x=-0.25:0.25:251", "y=-0.15:0.30:251", "zeta=-1:1:25", "xi=0:1:26", "psi=-1:1:25")
-# More than twenty million of these are in reach.
-RECORDED = ("x=-0.25:0.25:151", "y=-0.15:0.30:151", "zeta=-1:1:13", "xi=0:0.6:13", "psi=-1:1:13")
+# More than twenty million of these are in reach, more than four million a slice.
+RECORDED = ("x=-0.25:0.25:5001", "y=-0.15:0.30:5001", "xi=0:0.6:4")
 
 # A process of its own, because a child's peak counts the memory of the one that started it.
 MEASURE = """
