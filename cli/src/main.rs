@@ -2,6 +2,7 @@
 
 mod args;
 mod batch;
+mod cloud;
 mod completions;
 mod decompose;
 mod examples;
