@@ -3,7 +3,7 @@
 //! A chain has exactly as many freedoms as its subspace has dimensions, so a displacement of that
 //! subspace fixes its joints up to a sign. Every chain works in its subspace's own frame, on
 //! displacements from home (`q = 0` is home, where the displacement is the identity), and finds
-//! rotations as unit vectors: no trigonometry until somebody asks for an angle.
+//! rotations as vectors that point at the angle: no trigonometry until somebody asks for it.
 //!
 //! What holds for all of them:
 //! * `inverse` followed by `forward` returns the target.
@@ -60,7 +60,8 @@ impl Branch {
 /// A joint's displacement from home, as a chain finds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// A rotation by the argument of this unit vector: an angle modulo a turn.
+    /// A rotation by the argument of this vector, of any length: an angle modulo a turn. Zero stands
+    /// for an angle that is free, and its value is zero.
     Turn(Complex<f64>),
     /// A length, or an angle that counts whole turns.
     Value(f64),
@@ -82,7 +83,8 @@ impl Amount {
         match self {
             Self::Turn(_) => {
                 let value = self.value();
-                value + TAU * ((reference - value) / TAU).round()
+                let turns = (reference - value) / TAU;
+                if turns.abs() <= 0.5 { value } else { value + TAU * turns.round() }
             }
             Self::Value(value) => value,
         }
@@ -102,7 +104,10 @@ impl Amount {
     #[inline]
     pub fn turn(self) -> Complex<f64> {
         match self {
-            Self::Turn(e) => e,
+            Self::Turn(e) => {
+                let square = e.norm_sqr();
+                if square > 0.0 { e / square.sqrt() } else { Complex::new(1.0, 0.0) }
+            }
             Self::Value(value) => unit(value),
         }
     }
@@ -158,13 +163,12 @@ pub(crate) fn unit(angle: f64) -> Complex<f64> {
     Complex::new(cos, sin)
 }
 
-/// The direction of `z`, or of one where `z` is zero against `size`.
+/// `z` as a direction: one where it is zero against `size`, which leaves the angle free.
 #[inline]
 fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
-    let square = z.norm_sqr();
     // `z` is a product of two lengths: each may be as short as RIM.
     let shortest = RIM * RIM * size;
-    if square > shortest * shortest { z * square.sqrt().recip() } else { Complex::new(1.0, 0.0) }
+    if z.norm_sqr() > shortest * shortest { z } else { Complex::new(1.0, 0.0) }
 }
 
 /// The closed form of one section of a leg.
@@ -238,7 +242,7 @@ impl Chain {
     ///
     /// # Panics
     /// If `target` is a displacement of another kind of subspace.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(&self, target: &Displacement, branch: Branch) -> Result<[Amount; 3], Gap> {
         let pad = |[a, b]: [Amount; 2]| [a, b, Amount::Value(0.0)];
         match (self, target) {
@@ -257,7 +261,7 @@ impl Chain {
     ///
     /// # Errors
     /// Out of reach: by how much.
-    #[inline]
+    #[inline(always)]
     pub fn first(&self, target: &Displacement, branch: Branch) -> Result<Amount, Gap> {
         match (self, target) {
             (Self::Spherical(chain), Displacement::Spherical(r)) => {

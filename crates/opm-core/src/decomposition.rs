@@ -240,7 +240,7 @@ impl<'a> Sections<'a> {
             imaginary_joints,
             first_section_motions: mobility - imaginary_joints,
             upper_mobility: choice.without,
-            redundancy: choice.legs.len() - (choice.mobility - choice.without),
+            redundancy: (choice.legs.len() + choice.without).saturating_sub(choice.mobility),
             deviation: self.lower.deviation.max(self.upper.deviation),
         }
     }

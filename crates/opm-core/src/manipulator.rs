@@ -222,7 +222,7 @@ impl Manipulator {
         let (v, b) = (self.task.lower(&home), self.task.upper(&home[self.task.lower_count..]));
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
-            match self.legs[number].solve(&self.task, [&v, &b], branches, true, 0.0) {
+            match self.legs[number].solve(&self.task, [&v, &b], branches, 0.0) {
                 Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
                 Err(_) => f64::INFINITY,
             }

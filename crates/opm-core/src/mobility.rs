@@ -16,14 +16,15 @@ use crate::svd::Svd;
 use nalgebra::{DMatrix, Vector6};
 use thiserror::Error;
 
-/// Most single freedoms of all joints together: beyond, the matrices here would take minutes.
-pub const MAX_FREEDOMS: usize = 192;
+/// Most single freedoms of all joints together: the time grows with the fourth power of their
+/// number, and these take about a second.
+pub const MAX_FREEDOMS: usize = 96;
 
 /// A mechanism that has no mobility to speak of: something is missing or is not a number.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MobilityError {
     /// A loop takes two legs.
-    #[error("mechanism {mechanism:?} has {legs} legs; a parallel mechanism has at least 2")]
+    #[error("mechanism {mechanism:?}: number of legs is {legs}, at least 2 are needed")]
     TooFewLegs {
         /// Name of the mechanism.
         mechanism: String,

@@ -127,7 +127,8 @@ pub struct Task {
     pub coordinates: Vec<TaskCoordinate>,
     /// How many of them are `v`'s.
     pub lower_count: usize,
-    /// Inverse of the platform's orientation at home, where it is measured by Euler angles.
+    /// Inverse of the platform's orientation at home, where Euler angles measure it and it is not
+    /// the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
 }
 
@@ -163,10 +164,13 @@ impl Task {
                 }
             }
         }
-        let home_orientation_inverse = (upper.kind == SubspaceKind::Spherical).then(|| {
+        let home_orientation_inverse = if upper.kind == SubspaceKind::Spherical {
             let home = |i: usize| coordinates[lower_count + i].home;
-            euler(home(0), home(1), home(2)).transpose()
-        });
+            let orientation = euler(home(0), home(1), home(2));
+            (orientation != Matrix3::identity()).then(|| orientation.transpose())
+        } else {
+            None
+        };
         let lower_cut = lower.cut(&axis, rotation);
         let upper_cut = upper.cut(&axis, rotation);
         Ok(Self {

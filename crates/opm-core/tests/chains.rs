@@ -65,7 +65,7 @@ fn check_planar(
         let off = distance(&forward(&joints, &solution), &reached);
         prop_assert!(off <= TOLERANCE * size, "{joints:?} {made:?} {branch:?} off by {off}");
         found |= solution.iter().zip(&made).all(|(a, b)| match a {
-            Amount::Turn(turn) => (turn - b.turn()).norm() < 1e-5 * size,
+            Amount::Turn(_) => (a.turn() - b.turn()).norm() < 1e-5 * size,
             Amount::Value(value) => (value - b.value()).abs() < 1e-5 * size,
         });
     }
@@ -342,7 +342,7 @@ fn an_angle_left_free_is_home() {
         PlanarDisplacement { rotation: e(0.5), translation: -e(0.5) * Complex::new(2.0, 0.0) };
     for branch in Branch::BOTH {
         let solution = chain.inverse(&target, branch).unwrap();
-        assert_eq!(solution[0], Amount::Turn(Complex::new(1.0, 0.0)));
+        assert_eq!(solution[0].value(), 0.0);
         assert!(distance(&forward(&joints, &solution), &target) < 1e-10);
     }
     // Arcs of 60 degrees fold the third axis onto the first.
@@ -408,11 +408,6 @@ fn nothing_that_is_not_a_number_gets_out() {
                             Ok(amounts) => {
                                 for amount in amounts {
                                     assert!(amount.value().is_finite(), "{joints:?} {target:?}");
-                                    let turn = amount.turn();
-                                    assert!(
-                                        matches!(amount, Amount::Value(_))
-                                            || (turn.norm() - 1.0).abs() < 1e-12
-                                    );
                                 }
                             }
                             Err(gap) => assert!(gap.excess > 0.0),

@@ -103,7 +103,7 @@ struct Pivot {
 }
 
 impl Pivot {
-    /// The amount for a rotation by `r`, counter-clockwise in the plane's frame.
+    /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
     #[inline]
     fn amount(&self, r: Complex<f64>) -> Amount {
         Amount::Turn(if self.reversed { r.conj() } else { r })

@@ -12,7 +12,8 @@ pub struct SphericalChain {
     cosines: [f64; 2],
     /// `a₂` square to `a₁`, and `a₁ × a₂`.
     second_on_first: [Vector3<f64>; 2],
-    /// `a₃` square to `a₂`, and `a₂ × a₃`.
+    /// `a₃` square to `a₂`, and `a₂ × a₃`, both over the square of their length: on `a₃` as it turns
+    /// about `a₂`, the cosine and the sine.
     third_on_second: [Vector3<f64>; 2],
     /// Two directions that make a right-handed triad with `a₃`.
     beside_third: [Vector3<f64>; 2],
@@ -34,7 +35,10 @@ impl SphericalChain {
             axes: [a1, a2, a3],
             cosines: [a1.dot(&a2), a2.dot(&a3)],
             second_on_first: [a2 - a1 * a1.dot(&a2), n12],
-            third_on_second: [a3 - a2 * a2.dot(&a3), n23],
+            third_on_second: [
+                (a3 - a2 * a2.dot(&a3)) / n23.norm_squared(),
+                n23 / n23.norm_squared(),
+            ],
             beside_third: [beside, a3.cross(&beside)],
         })
     }
@@ -50,16 +54,28 @@ impl SphericalChain {
         let b = self.second_on_first[1].dot(w);
         let d = self.cosines[1] - self.cosines[0] * self.axes[0].dot(w);
         let square = a * a + b * b;
-        if !(d.abs() <= square.sqrt() + RIM) {
+        let below_rim = square - d * d;
+        if below_rim > 0.0 && square > RIM * RIM {
+            let root = branch.sign() * below_rim.sqrt();
+            return Ok(Complex::new(a * d + b * root, b * d - a * root) / square);
+        }
+        self.first_at_rim(w, Complex::new(a, b), d)
+    }
+
+    /// On the rim, or out of reach. Where `w` lies on the first axis, in reach only because the
+    /// links' arcs are equal or supplementary, the angle is free.
+    #[cold]
+    fn first_at_rim(
+        &self,
+        w: &Vector3<f64>,
+        ab: Complex<f64>,
+        d: f64,
+    ) -> Result<Complex<f64>, Gap> {
+        let length = ab.norm();
+        if d.is_nan() || d.abs() > length + RIM {
             return Err(self.gap(w));
         }
-        if square <= RIM * RIM {
-            // w on the first axis, in reach only because the links' arcs are equal or supplementary.
-            return Ok(Complex::new(1.0, 0.0));
-        }
-        let root = branch.sign() * (square - d * d).max(0.0).sqrt();
-        let e = Complex::new(a * d + b * root, b * d - a * root);
-        Ok(e * e.norm_sqr().sqrt().recip())
+        Ok(if length <= RIM { Complex::new(1.0, 0.0) } else { ab * (d.signum() / length) })
     }
 
     /// The joints' rotations that turn the outer link by `target`.
@@ -135,6 +151,5 @@ fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector
 /// The rotation, as a unit vector, that takes the first of two perpendicular directions to `v`.
 #[inline]
 fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
-    let e = Complex::new(directions[0].dot(v), directions[1].dot(v));
-    e * e.norm_sqr().sqrt().recip()
+    Complex::new(directions[0].dot(v), directions[1].dot(v))
 }

@@ -34,6 +34,10 @@ impl UpperSection<'_> {
     /// `|S|` to its mobility exactly if they add nothing to its rank, that is if every single one of
     /// these columns depends on the section's own. So the legs that may be in `S` are found one by
     /// one, and no subsets need to be tried.
+    ///
+    /// A set also has to give the section all the motions within it that all candidates together
+    /// give (as far as the mechanism has as many): only then can the imaginary joints that are not
+    /// in `S` be taken as constant.
     pub fn imaginary_joints(&self, n: usize, dim_a: usize, order: &[impl Ord]) -> Choice {
         let candidates: Vec<usize> = (0..self.legs.len()).filter(|&i| self.candidate(i)).collect();
         let own = Svd::new(self.closure(&[]));
@@ -47,8 +51,10 @@ impl UpperSection<'_> {
         free.sort_unstable();
         let mobility = without + free.len();
         let all = self.mobility(&candidates);
-        // No imaginary joint at all is right only if they could not move even all together.
-        let qualifies = n.saturating_sub(mobility) <= dim_a && (!free.is_empty() || all == without);
+        // Equal rates in all candidates slide the whole section along, but move nothing within it.
+        let common = usize::from(!candidates.is_empty());
+        let complete = mobility >= n.min(all.saturating_sub(common));
+        let qualifies = complete && (mobility..=mobility + dim_a).contains(&n);
         if qualifies {
             Choice { legs: free, mobility, without }
         } else {
@@ -107,5 +113,91 @@ impl UpperSection<'_> {
                 None => f64::from(u8::from(j - joints == row)),
             }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decomposition::samples::Numbers;
+    use crate::screw::Screw;
+    use crate::subspace::SubspaceClass;
+    use nalgebra::{Point3, Vector3};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The choice, leg by leg, is as large as the largest of all subsets that do what is asked;
+        /// in a planar section with the intersection motion along x, and a spherical one about z.
+        #[test]
+        fn no_subset_is_larger(
+            spherical: bool,
+            freedoms in prop::collection::vec(0..4_usize, 2..6),
+            coaxial in prop::collection::vec(any::<bool>(), 6),
+            n in 0..7_usize,
+            dim_a in 1..5_usize,
+            seed: u64,
+        ) {
+            let mut numbers = Numbers::new(seed);
+            let (class, intersection) = if spherical {
+                let centre = Point3::origin();
+                (SubspaceClass::Spherical { centre }, Screw::rotation(Vector3::z_axis(), centre))
+            } else {
+                let normal = Vector3::z_axis();
+                (SubspaceClass::Planar { normal }, Screw::translation(Vector3::x_axis()))
+            };
+            let basis: Vec<_> = class.screws().iter().map(|s| s.to_vector()).collect();
+            let shared: Vector6<f64> = basis.iter().map(|b| b * numbers.next()).sum();
+            // Some legs begin with a screw that they share, so that some sections move alone.
+            let legs: Vec<Vec<Vector6<f64>>> = freedoms
+                .iter()
+                .zip(&coaxial)
+                .map(|(&count, &coaxial)| {
+                    let any = |_| basis.iter().map(|b| b * numbers.next()).sum::<Vector6<f64>>();
+                    let mut leg: Vec<_> = (0..count).map(any).collect();
+                    if let (Some(first), true) = (leg.first_mut(), coaxial) {
+                        *first = shared;
+                    }
+                    leg.iter().map(Vector6::normalize).collect()
+                })
+                .collect();
+            let parts: Vec<&[Vector6<f64>]> = legs.iter().map(Vec::as_slice).collect();
+            let basis = Basis::span(&basis);
+            let section =
+                UpperSection { basis: &basis, legs: &parts, intersection: intersection.to_vector() };
+            let order: Vec<usize> = (0..legs.len()).collect();
+            let choice = section.imaginary_joints(n, dim_a, &order);
+
+            let f0 = section.mobility(&[]);
+            let candidates: Vec<usize> = (0..legs.len()).filter(|&i| section.candidate(i)).collect();
+            let subsets: Vec<Vec<usize>> = (0..1_usize << candidates.len())
+                .map(|bits| {
+                    let chosen = candidates.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1);
+                    chosen.map(|(_, &leg)| leg).collect()
+                })
+                .collect();
+            // Random sections are now and then all but singular: there, ranks are a matter of taste.
+            let clear = |s: &Vec<usize>| {
+                Svd::new(section.closure(s)).values.iter().all(|v| *v < 1e-12 || *v > 1e-3)
+            };
+            prop_assume!(subsets.iter().all(clear));
+            prop_assert_eq!(choice.without, f0);
+            prop_assert_eq!(choice.mobility, section.mobility(&choice.legs));
+            let largest = subsets
+                .iter()
+                .filter(|s| {
+                    let f = section.mobility(s);
+                    f == f0 + s.len() && f <= n && n <= f + dim_a
+                })
+                .map(Vec::len)
+                .max();
+            if choice.legs != candidates {
+                prop_assert_eq!(Some(choice.legs.len()), largest);
+            } else if let Some(largest) = largest {
+                // Every candidate: as many as that, or more because fewer would miss motions.
+                let all = section.mobility(&candidates);
+                let misses = f0 + largest < n.min(all.saturating_sub(1));
+                prop_assert!(largest == candidates.len() || misses);
+            }
+        }
     }
 }

@@ -285,7 +285,7 @@ pub(crate) fn planar_cylindrical() -> Mechanism {
 pub(crate) fn gough(numbers: &mut Numbers) -> Mechanism {
     let leg = |i: usize| {
         let turn = |x: f64| direction(x.to_radians()).into_inner();
-        let (pair, side) = ((i / 2) as f64 * 120.0, if i % 2 == 0 { -1.0 } else { 1.0 });
+        let (pair, side) = ((i / 2) as f64 * 120.0, if i.is_multiple_of(2) { -1.0 } else { 1.0 });
         let foot = turn(pair + 15.0 * side) * 0.5 + numbers.vector() * 0.02;
         let top = turn(pair + 45.0 * side) * 0.25 + Vector3::z() * 0.6 + numbers.vector() * 0.02;
         let strut = top - foot;

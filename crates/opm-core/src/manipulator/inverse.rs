@@ -154,26 +154,23 @@ impl Manipulator {
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, leg.needs_upper(), 0.0)
-            else {
-                return Ok(false);
+            let tau = if leg.upper_decides {
+                let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
+                    return Ok(false);
+                };
+                self.write_drives(&leg.upper, &solution.upper, out);
+                self.write_drives(&leg.lower, &solution.lower, out);
+                solution.tau
+            } else {
+                let Ok((lower, tau)) = leg.solve_drives(&self.task, [&v, &b], branches) else {
+                    return Ok(false);
+                };
+                self.write_drives(&leg.lower, &lower, out);
+                tau
             };
-            for (section, amounts) in [(&leg.lower, &solution.lower), (&leg.upper, &solution.upper)]
-            {
-                out.within_limits &= section.admits(&self.limits, amounts);
-                if !section.driven {
-                    continue;
-                }
-                for (slot, &amount) in section.slots.iter().zip(amounts) {
-                    if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
-                        let home = self.coordinates[coordinate].home;
-                        out.actuated[drive] = home + self.limits[coordinate].report(amount, 0.0);
-                    }
-                }
-            }
             if let Some(imaginary) = leg.imaginary {
                 let joint = &self.imaginary[imaginary];
-                out.imaginary[imaginary] = joint.value(solution.tau, joint.home);
+                out.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
         Ok(true)
@@ -191,7 +188,7 @@ impl Manipulator {
             modes.unreachable = None;
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
                 let branches = self.modes.branches(mode, number);
-                match leg.solve(&self.task, [&v, &b], branches, true, 0.0) {
+                match leg.solve(&self.task, [&v, &b], branches, 0.0) {
                     Ok(solution) => modes.solutions[part] = Some(solution),
                     Err((section, gap)) => {
                         let unreachable = Unreachable { leg: number, section, gap };
@@ -254,6 +251,20 @@ impl Manipulator {
         Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
     }
 
+    #[inline]
+    fn write_drives(&self, section: &CompiledSection, amounts: &[Amount; 3], out: &mut Drives) {
+        out.within_limits &= section.admits(&self.limits, amounts);
+        if !section.driven {
+            return;
+        }
+        for (slot, &amount) in section.slots.iter().zip(amounts) {
+            if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
+                let home = self.coordinates[coordinate].home;
+                out.actuated[drive] = home + self.limits[coordinate].report(amount, 0.0);
+            }
+        }
+    }
+
     fn solve_legs(
         &self,
         v: &Displacement,
@@ -267,7 +278,7 @@ impl Manipulator {
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
             let near = reference(out.cuts[number], 0.0);
-            match leg.solve(&self.task, [v, b], branches, true, near) {
+            match leg.solve(&self.task, [v, b], branches, near) {
                 Ok(solution) => self.write(number, &solution, out, reference),
                 Err((section, gap)) => {
                     out.unreachable.push(Unreachable { leg: number, section, gap });

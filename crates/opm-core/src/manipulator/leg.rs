@@ -84,6 +84,8 @@ pub(super) struct CompiledLeg {
     pub cut: Section,
     /// Number of its imaginary joint.
     pub imaginary: Option<usize>,
+    /// The upper section has a say in whether the leg follows, or drives it.
+    pub upper_decides: bool,
     /// The cut is a turn, and the section that it is handed on to counts whole turns.
     unwinds: bool,
 }
@@ -92,7 +94,6 @@ pub(super) struct CompiledLeg {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LegSolution {
     pub lower: [Amount; 3],
-    /// Zero where it was not asked for.
     pub upper: [Amount; 3],
     /// Along the intersection motion.
     pub tau: Amount,
@@ -143,9 +144,14 @@ impl CompiledLeg {
                 driven: slot().any(|s| s.drive.is_some()),
             })
         };
+        let lower = compile(Section::Lower, &task.lower, &split.lower)?;
+        let upper = compile(Section::Upper, &task.upper, &split.upper)?;
+        // Solved second, an upper section may be out of reach; a ball never is.
+        let may_fail = cut == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
         Ok(Self {
-            lower: compile(Section::Lower, &task.lower, &split.lower)?,
-            upper: compile(Section::Upper, &task.upper, &split.upper)?,
+            upper_decides: upper.limited || upper.driven || may_fail,
+            lower,
+            upper,
             cut,
             imaginary: None,
             unwinds: task.cut_point.is_some()
@@ -168,80 +174,78 @@ impl CompiledLeg {
         }
     }
 
-    /// Whether the upper section must be solved for the limits, or for the drives.
-    pub fn needs_upper(&self) -> bool {
-        self.upper.limited
-            || self.upper.driven
-            || (self.cut == Section::Lower && !matches!(self.upper.chain, Chain::Ball(_)))
+    /// The lower joints and the cut, near zero where whole turns count: all that matters where the
+    /// upper section does not decide.
+    #[inline(always)]
+    pub fn solve_drives(
+        &self,
+        task: &Task,
+        [v, b]: [&Displacement; 2],
+        branches: LegBranches,
+    ) -> Result<([Amount; 3], Amount), Gap> {
+        match self.cut {
+            Section::Upper => {
+                let tau = self.unwound(self.upper.chain.first(b, branches.upper)?, 0.0);
+                let lower = self.solve_lower(task, v, tau, branches.lower)?;
+                Ok((lower, tau))
+            }
+            Section::Lower => {
+                let lower = self.lower.chain.inverse(v, branches.lower)?;
+                Ok((lower, lower[self.lower.chain.freedoms() - 1].inverse()))
+            }
+        }
     }
 
-    /// Solves the closure for `v · b`; the upper section's own joints only where `whole`. Where
-    /// whole turns count, the cut is taken nearest to `near`.
-    #[inline]
+    /// Solves the closure for `v · b`. Where whole turns count, the cut is taken nearest to `near`.
+    #[inline(always)]
     pub fn solve(
         &self,
         task: &Task,
         [v, b]: [&Displacement; 2],
         branches: LegBranches,
-        whole: bool,
         near: f64,
     ) -> Result<LegSolution, (Section, Gap)> {
+        let of = |section: Section| move |gap: Gap| (section, gap);
         match self.cut {
             Section::Upper => {
-                let (tau, upper) = self.solve_upper(b, branches.upper, whole)?;
-                let tau = self.unwound(tau, near);
-                let lower = self.solve_lower(task, v, tau, branches.lower)?;
+                let upper =
+                    self.upper.chain.inverse(b, branches.upper).map_err(of(Section::Upper))?;
+                let tau = self.unwound(upper[0], near);
+                let lower =
+                    self.solve_lower(task, v, tau, branches.lower).map_err(of(Section::Lower))?;
                 Ok(LegSolution { lower, upper, tau })
             }
             Section::Lower => {
-                let lower = (self.lower.chain.inverse(v, branches.lower))
-                    .map_err(|gap| (Section::Lower, gap))?;
+                let lower =
+                    self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
                 // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
                 let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
-                let upper = if whole {
-                    let target = task.upper_cut.before(b, cut);
-                    (self.upper.chain.inverse(&target, branches.upper))
-                        .map_err(|gap| (Section::Upper, gap))?
-                } else {
-                    [Amount::Value(0.0); 3]
-                };
+                let target = task.upper_cut.before(b, cut);
+                let upper = self
+                    .upper
+                    .chain
+                    .inverse(&target, branches.upper)
+                    .map_err(of(Section::Upper))?;
                 Ok(LegSolution { lower, upper, tau: cut.inverse() })
             }
         }
     }
 
-    #[inline]
-    fn unwound(&self, cut: Amount, near: f64) -> Amount {
+    #[inline(always)]
+    pub fn unwound(&self, cut: Amount, near: f64) -> Amount {
         if self.unwinds { Amount::Value(cut.nearest(near)) } else { cut }
     }
 
-    /// `exp(I τ) · U = b`: the imaginary joint, and the upper joints where `whole`.
-    #[inline]
-    pub fn solve_upper(
-        &self,
-        b: &Displacement,
-        branch: Branch,
-        whole: bool,
-    ) -> Result<(Amount, [Amount; 3]), (Section, Gap)> {
-        let solved = if whole {
-            self.upper.chain.inverse(b, branch).map(|upper| (upper[0], upper))
-        } else {
-            self.upper.chain.first(b, branch).map(|tau| (tau, [Amount::Value(0.0); 3]))
-        };
-        solved.map_err(|gap| (Section::Upper, gap))
-    }
-
     /// `L = v · exp(I τ)`: the lower joints.
-    #[inline]
+    #[inline(always)]
     pub fn solve_lower(
         &self,
         task: &Task,
         v: &Displacement,
         tau: Amount,
         branch: Branch,
-    ) -> Result<[Amount; 3], (Section, Gap)> {
-        let target = task.lower_cut.after(v, tau);
-        self.lower.chain.inverse(&target, branch).map_err(|gap| (Section::Lower, gap))
+    ) -> Result<[Amount; 3], Gap> {
+        self.lower.chain.inverse(&task.lower_cut.after(v, tau), branch)
     }
 }
 

@@ -45,12 +45,18 @@ impl Manipulator {
             let tau = match compiled.cut {
                 Section::Lower => None,
                 Section::Upper => {
-                    let whole = compiled.upper.limited;
-                    match compiled.solve_upper(b, branches.upper, whole) {
-                        Ok((tau, amounts)) if compiled.upper.admits(&self.limits, &amounts) => {
-                            Some(tau)
-                        }
-                        _ => return,
+                    let chain = &compiled.upper.chain;
+                    let tau = if compiled.upper.limited {
+                        let admitted = chain.inverse(b, branches.upper).ok();
+                        let admitted =
+                            admitted.filter(|amounts| compiled.upper.admits(&self.limits, amounts));
+                        admitted.map(|amounts| amounts[0])
+                    } else {
+                        chain.first(b, branches.upper).ok()
+                    };
+                    match tau {
+                        Some(tau) => Some(compiled.unwound(tau, 0.0)),
+                        None => return,
                     }
                 }
             };
@@ -81,12 +87,15 @@ impl Manipulator {
             Some(tau) => leg
                 .solve_lower(&self.task, v, tau, way.branches.lower)
                 .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
-            None => leg
-                .solve(&self.task, [v, &way.b], way.branches, leg.needs_upper(), 0.0)
-                .is_ok_and(|solution| {
-                    leg.lower.admits(&self.limits, &solution.lower)
-                        && leg.upper.admits(&self.limits, &solution.upper)
-                }),
+            None if !leg.upper_decides => leg
+                .lower
+                .chain
+                .inverse(v, way.branches.lower)
+                .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
+            None => leg.solve(&self.task, [v, &way.b], way.branches, 0.0).is_ok_and(|solution| {
+                leg.lower.admits(&self.limits, &solution.lower)
+                    && leg.upper.admits(&self.limits, &solution.upper)
+            }),
         }
     }
 
@@ -117,7 +126,7 @@ impl Manipulator {
         let Chain::Planar(chain) = &leg.lower.chain else { return None };
         let translation =
             self.task.lower.kind == SubspaceKind::Planar && self.task.lower_cut == Cut::Turn;
-        let upper_decides = way.tau.is_none() && leg.needs_upper();
+        let upper_decides = way.tau.is_none() && leg.upper_decides;
         let free = |slot: usize| {
             leg.lower.slots[slot].is_none_or(|s| self.limits[s.coordinate] == Limits::Free)
         };

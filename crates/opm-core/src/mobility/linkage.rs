@@ -189,9 +189,9 @@ mod tests {
                 let mut q = vec![0.0; n];
                 let mut twist = Vector6::zeros();
                 if column < n {
-                    q[column] = sign * step
+                    q[column] = sign * step;
                 } else {
-                    twist[column - n] = sign * step
+                    twist[column - n] = sign * step;
                 }
                 linkage.pose(&q).gaps(&Screw::from_vector(&twist).exp(1.0))
             };

@@ -14,8 +14,12 @@ use crate::svd::Svd;
 use nalgebra::{DVector, Isometry3, Vector6};
 use std::fmt;
 
-/// Size of the motion to a nearby pose: radians, and shares of the characteristic length.
-const NEARBY: f64 = 0.1;
+/// Sizes of the motion to a nearby pose, tried in this order: radians, and shares of the
+/// characteristic length. Near a singular pose ranks cannot be told from those at it, so the first
+/// that closes is taken.
+const NEARBY: [f64; 3] = [0.3, 0.1, 0.03];
+/// A projection that ends with less than this share of the motion has gone back home.
+const AWAY: f64 = 0.3;
 /// First-order motions tried; each is generic by itself, more only guard against a coincidence.
 const SAMPLES: usize = 3;
 /// Steps of the projection, and what counts as closed. Coordinates with six digits close an
@@ -24,9 +28,9 @@ const MAX_STEPS: usize = 40;
 const CLOSED: f64 = 1e-12;
 /// A step that leaves more than this share of the gap has met the rounding of the input.
 const STALLED: f64 = 0.99;
-/// A singular value that is zero at home is of the order of [`NEARBY`] nearby; what is larger than
-/// this many tolerances is not rounding.
-const CLEARLY_NONZERO: f64 = 10.0 * TOLERANCE;
+/// A singular value that is zero at home but not in general grows with the distance from home. What
+/// is this large is neither rounding nor the zero at home itself.
+const CLEARLY_NONZERO: f64 = 3.0 * TOLERANCE;
 
 /// One respect in which the home pose is more degenerate than assembled poses nearby.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +59,11 @@ pub enum HomeSingularity {
         /// `N` nearby.
         nearby: usize,
     },
+    /// No assembled pose nearby: the structure moves to first order (it is shaky), but not on.
+    Isolated {
+        /// `N` at home.
+        mobility: usize,
+    },
     /// All joint screws together span less than they do nearby.
     Span {
         /// `lambda` at home.
@@ -74,10 +83,13 @@ impl fmt::Display for HomeSingularity {
             ),
             Self::Parallel { home, nearby } => write!(
                 f,
-                "parallel: locked actuators leave {home} freedoms at home, {nearby} nearby"
+                "parallel: with the actuators locked, mobility is {home} at home, {nearby} nearby"
             ),
             Self::Constraint { home, nearby } => {
                 write!(f, "constraint: mobility N is {home} at home, {nearby} nearby")
+            }
+            Self::Isolated { mobility } => {
+                write!(f, "isolated: mobility N is {mobility} at home, but no pose nearby closes")
             }
             Self::Span { home, nearby } => {
                 write!(f, "span: all joint screws have rank lambda {home} at home, {nearby} nearby")
@@ -92,8 +104,13 @@ pub(super) fn singularities(
     ranks: &Ranks,
     mechanism: &Mechanism,
 ) -> Vec<HomeSingularity> {
+    if ranks.mobility == 0 {
+        return vec![];
+    }
+    let Some(generic) = generic_ranks(linkage) else {
+        return vec![HomeSingularity::Isolated { mobility: ranks.mobility }];
+    };
     let mut found = vec![];
-    let Some(generic) = generic_ranks(linkage, ranks) else { return found };
     for (i, leg) in mechanism.legs.iter().enumerate() {
         let (home, nearby) = (ranks.legs[i], generic.legs[i]);
         if home < nearby {
@@ -115,11 +132,8 @@ pub(super) fn singularities(
     found
 }
 
-/// The least degenerate ranks met nearby; `None` if no pose nearby closes (a rigid mechanism).
-fn generic_ranks(linkage: &Linkage, home: &Ranks) -> Option<Ranks> {
-    if home.mobility == 0 {
-        return None;
-    }
+/// The least degenerate ranks met nearby; `None` if no pose nearby closes.
+fn generic_ranks(linkage: &Linkage) -> Option<Ranks> {
     let regular = |a: Ranks, b: Ranks| Ranks {
         lambda: a.lambda.max(b.lambda),
         mobility: a.mobility.min(b.mobility),
@@ -132,7 +146,7 @@ fn generic_ranks(linkage: &Linkage, home: &Ranks) -> Option<Ranks> {
         .reduce(regular)
 }
 
-/// An assembled pose about [`NEARBY`] away from home, another one for every sample.
+/// An assembled pose at a distance from home, another one for every sample.
 fn nearby(linkage: &Linkage, sample: usize) -> Option<Pose> {
     let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
     // Fixed coefficients without a pattern: multiples of the golden ratio, modulo one.
@@ -140,14 +154,15 @@ fn nearby(linkage: &Linkage, sample: usize) -> Option<Pose> {
     let coefficient =
         |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
     let motion = &kernel * DVector::from_fn(kernel.ncols(), coefficient);
-    let motion = &motion * (NEARBY / motion.amax());
-    project(linkage, &motion)
+    NEARBY.iter().find_map(|size| project(linkage, &(&motion * (size / motion.amax()))))
 }
 
-/// The assembled pose near given coordinates and platform twist, stacked.
+/// The assembled pose near given coordinates and platform twist, stacked; `None` if there is none,
+/// or only home.
 fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
     let n = linkage.actuated.len();
     let mut q = start.rows(0, n).into_owned();
+    let away = AWAY * q.amax();
     let mut platform = displacement(&start.rows(n, 6).into_owned());
     let mut pose = linkage.pose(q.as_slice());
     let mut gaps = pose.gaps(&platform);
@@ -168,7 +183,7 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
             break;
         }
     }
-    (gaps.norm() <= TOLERANCE).then_some(pose)
+    (gaps.norm() <= TOLERANCE && q.amax() >= away).then_some(pose)
 }
 
 fn displacement(twist: &DVector<f64>) -> Isometry3<f64> {

@@ -2,7 +2,7 @@
 //! Eq. 16 lacks).
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
-use crate::chain::{RIM, direction};
+use crate::chain::RIM;
 use nalgebra::Complex;
 
 /// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
@@ -58,7 +58,7 @@ impl Prr {
         }
         let slider = along + branch.sign() * square.max(0.0).sqrt();
         let link = outer - self.pivots[0].at - self.slide * slider;
-        let r2 = direction(link * self.link.conj(), self.link_square);
+        let r2 = link * self.link.conj();
         let r3 = target.rotation * r2.conj();
         Ok([Amount::Value(slider), self.pivots[0].amount(r2), self.pivots[1].amount(r3)])
     }

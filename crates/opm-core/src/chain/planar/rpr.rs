@@ -33,7 +33,7 @@ impl Rpr {
         }
         let ahead = branch.sign() * square.max(0.0).sqrt();
         let telescope = Complex::new(ahead, self.offset.im) * self.slide;
-        let r1 = direction(reach * telescope.conj(), reach.norm_sqr());
+        let r1 = direction(reach * telescope.conj(), self.offset.norm_sqr());
         let r3 = target.rotation * r1.conj();
         Ok([
             self.pivots[0].amount(r1),

@@ -1,0 +1,51 @@
+# Needs a Rust toolchain, make, and Python >= 3.10 for the tests and the figures.
+# Python packages go into virtual environments of the build's own, under target/.
+
+CARGO ?= cargo
+PYTHON ?= python3
+
+TESTS_VENV := target/venv
+FIGURES_VENV := target/venv-figures
+
+# One target after the other, also with -j: the order is part of what is read on the screen.
+.NOTPARALLEL:
+.PHONY: help test lint test-rust test-python bench figures python
+
+help: ## Show this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
+
+test: python lint test-rust test-python ## Check everything: format, lints, documentation, all tests
+
+lint: ## Check format, lints and documentation, warnings being errors
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps
+
+test-rust: ## Run the Rust tests, build the examples
+	$(CARGO) test --workspace
+
+test-python: $(TESTS_VENV)/made ## Check the program and its recordings with public decoders
+	$(TESTS_VENV)/bin/python -m pytest -q tests/python
+
+bench: ## Measure, and write BENCHMARKS.md
+	$(CARGO) bench -p opm-benches
+
+figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
+	$(FIGURES_VENV)/bin/python docs/figures/make_figures.py
+
+# Before anything that takes minutes.
+python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+	  { echo "Python 3.10 or later is needed, and $(PYTHON) is not one; name another: make PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' || \
+	  { echo "$(PYTHON) lacks its venv module; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+
+$(TESTS_VENV)/made: tests/python/requirements.txt
+$(FIGURES_VENV)/made: docs/figures/requirements.txt
+
+# Made anew whenever the requirements change; half an environment is not marked as made.
+%/made: | python
+	rm -rf $*
+	$(PYTHON) -m venv $*
+	$*/bin/python -m pip install --quiet --disable-pip-version-check --requirement $<
+	touch $@

@@ -1,0 +1,136 @@
+"""`opm workspace` recordings, point by point against the paper's closed form in NumPy."""
+
+import csv
+import subprocess
+
+import check_recording
+import numpy as np
+import plano_spherical
+import pytest
+from conftest import REPOSITORY
+
+MECHANISM = "plano-spherical-5dof"
+# Metres and radians, first axis fastest; no value is on the rim of reach or on a limit.
+GRID = {
+    "x": (-0.23, 0.21, 45),
+    "y": (-0.17, 0.29, 47),
+    "zeta": (-1.1, 0.9, 4),
+    "xi": (-0.7, 1.7, 7),
+    "psi": (-0.8, 1.3, 3),
+}
+# Of the closed form's margins; beyond rounding, a pose is in reach or out of it.
+ROUNDING = 1e-9
+
+
+def flags(grid):
+    return [f"--grid={name}={low}:{high}:{count}" for name, (low, high, count) in grid.items()]
+
+
+def poses(grid):
+    """All poses of a grid, a column an axis, the first axis fastest."""
+    values = [np.linspace(*axis) for axis in reversed(grid.values())]
+    columns = [axis.ravel() for axis in np.meshgrid(*values, indexing="ij")]
+    return dict(zip(grid, reversed(columns)))
+
+
+def write(path, columns):
+    with open(path, "w", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(columns)
+        rows.writerows(zip(*(column.tolist() for column in columns.values())))
+
+
+@pytest.fixture(scope="module")
+def expected():
+    """The reachable poses of `GRID` with their joint values, by the closed form."""
+    grid = poses(GRID)
+    joints, margin = plano_spherical.joints(**grid)
+    assert not np.any(np.abs(margin) < ROUNDING), "a pose on the rim: choose another grid"
+    inside = margin > 0
+    assert 0.1 < inside.mean() < 0.9, "a grid that is all inside or all outside shows little"
+    return {name: column[inside] for name, column in (grid | joints).items()}
+
+
+def test_the_closed_form_gives_the_golden_vectors():
+    with open(REPOSITORY / "data/reference/independent/plano_spherical_ik.csv") as file:
+        rows = [row for row in csv.DictReader(file) if row["mode"] == "++ ++ ++ +"]
+    grid = {name: np.array([float(row[name]) for row in rows]) for name in GRID}
+    joints, margin = plano_spherical.joints(**grid)
+    assert len(rows) > 20
+    assert ((margin >= 0) == [row["within_limits"] == "1" for row in rows]).all()
+    for number, row in enumerate(rows):
+        for name, values in joints.items() if row["closes"] == "1" else ():
+            error = values[number] - float(row[name])
+            error = error if name.startswith("S") else plano_spherical.nearest(error, 0)
+            assert abs(error) < 1e-12, (row, name)
+
+
+def test_every_point_is_where_the_closed_form_says(workspace, expected, tmp_path):
+    names = [name for name in expected if name not in ("x", "y", "xi")]
+    answer = workspace(
+        MECHANISM, *flags(GRID), "-o", tmp_path / "w.mcap",
+        "--axes=x,y,xi", f"--scalars={','.join(names)}", "--color=theta11",
+    )  # fmt: skip
+    assert answer["poses"] == np.prod([count for _, _, count in GRID.values()])
+    assert answer["reachable"] == len(expected["x"])
+    for name, (low, high) in answer["imaginary_range"].items():
+        assert (low, high) == pytest.approx((expected[name].min(), expected[name].max()))
+
+    write(tmp_path / "expected.csv", {"z": expected["xi"]} | expected)
+    points, slices = check_recording.check(tmp_path / "w.mcap", tmp_path / "expected.csv")
+    assert points == answer["reachable"]
+    assert slices == np.prod([GRID[name][2] for name in ("zeta", "xi", "psi")])
+
+
+def test_the_mechanism_is_attached_as_it_is(opm, workspace, tmp_path):
+    shipped = (REPOSITORY / "data" / "mechanisms" / f"{MECHANISM}.toml").read_bytes()
+    own = tmp_path / "own.toml"
+    own.write_bytes(b"# My own.\r\n" + shipped)
+    for mechanism, text in ((MECHANISM, shipped), (own, own.read_bytes())):
+        workspace(mechanism, "--grid=x=-0.1:0.1:9", "-o", tmp_path / "w.mcap")
+        with open(tmp_path / "w.mcap", "rb") as file:
+            attached = list(check_recording.make_reader(file).iter_attachments())
+        assert [attachment.data for attachment in attached] == [text]
+    printed = subprocess.run([opm, "examples", MECHANISM], stdout=subprocess.PIPE, check=True)
+    assert printed.stdout == shipped
+
+
+def test_an_overview_of_many_points_is_every_kth(workspace, tmp_path):
+    fine = GRID | {"x": (-0.23, 0.21, 101), "y": (-0.17, 0.29, 97), "psi": (-0.8, 1.3, 19)}
+    answer = workspace(MECHANISM, *flags(fine), "-o", tmp_path / "w.mcap")
+    assert answer["reachable"] > check_recording.MAX_OVERVIEW_POINTS
+    points, _ = check_recording.check(tmp_path / "w.mcap")
+    assert points == answer["reachable"]
+
+
+def test_the_default_grid_holds_the_whole_workspace(workspace, tmp_path):
+    answer = workspace(MECHANISM, "-o", tmp_path / "w.mcap")
+    points, _ = check_recording.check(tmp_path / "w.mcap")
+    assert points == answer["reachable"] > 10_000
+    # The arm reaches 200 mm about its base, and no slider keeps it from the whole of that circle.
+    x, y = (answer["grid"][name] for name in "xy")
+    assert x["min"] <= -0.2 and x["max"] >= 0.2 and y["min"] <= -0.125 and y["max"] >= 0.275
+
+
+def test_the_same_run_gives_the_same_bytes(workspace, tmp_path):
+    recordings = set()
+    for number, threads in enumerate((None, None, "1", "2", "3")):
+        path = tmp_path / f"{number}.mcap"
+        workspace(
+            MECHANISM, *flags(GRID), "-o", path, "--color=S1",
+            *([f"--threads={threads}"] if threads else []),
+        )  # fmt: skip
+        recordings.add(path.read_bytes())
+    assert len(recordings) == 1
+
+
+def test_every_shipped_mechanism_that_has_a_workspace(opm, workspace, tmp_path):
+    listed = subprocess.run([opm, "examples"], stdout=subprocess.PIPE, text=True, check=True)
+    mechanisms = [path.stem for path in (REPOSITORY / "data" / "mechanisms").glob("*.toml")]
+    assert mechanisms and all(name in listed.stdout for name in mechanisms)
+    for name in mechanisms:
+        subprocess.run([opm, "decompose", name], stdout=subprocess.DEVNULL, check=True)
+        if not name.startswith("bennett"):  # a linkage: its platform has no freedom of its own
+            answer = workspace(name, "-o", tmp_path / f"{name}.mcap")
+            points, _ = check_recording.check(tmp_path / f"{name}.mcap")
+            assert points == answer["reachable"] > 0
