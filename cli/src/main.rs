@@ -9,6 +9,7 @@ mod examples;
 mod failure;
 mod ik;
 mod inspect;
+mod lines;
 mod load;
 mod output;
 mod pose;
