@@ -4,6 +4,9 @@
 //! Equations are those of M. Ö. Selvi, *Kinematic analysis of overconstrained manipulators with
 //! partial subspaces using decomposition method*, Robotica; docs/errata.md lists the corrections.
 
+mod random;
+mod velocity;
+
 use std::f64::consts::FRAC_PI_2;
 
 /// A PRR(RR) leg of the plano-spherical manipulator (section 3.1); metres and radians.
@@ -58,6 +61,23 @@ pub struct Joints {
     pub arm: [f64; 2],
 }
 
+impl SliderLeg {
+    /// Eq. 2: `w = rho Rz(eta) Ry(beta) s`.
+    #[inline]
+    pub fn platform_axis(&self, rho: &[[f64; 3]; 3]) -> [f64; 3] {
+        let (sb, cb) = self.beta.sin_cos();
+        let (se, ce) = self.eta.sin_cos();
+        rho.map(|r| r[0] * ce * sb + r[1] * se * sb + r[2] * cb)
+    }
+
+    /// Below Eq. 5: `v = Rz(theta) Rx(arc1) u`.
+    pub fn proximal_axis(&self, theta: f64) -> [f64; 3] {
+        let (st, ct) = theta.sin_cos();
+        let (s1, c1) = self.arc1.sin_cos();
+        [s1 * st, -s1 * ct, c1]
+    }
+}
+
 impl PlanoSpherical {
     /// The printed parameters, and those chosen where the print gives none.
     pub fn printed() -> Self {
@@ -81,10 +101,7 @@ impl PlanoSpherical {
         let mut theta = [0.0; 3];
         let mut slider = [0.0; 3];
         for (i, leg) in self.legs.iter().enumerate() {
-            // Eq. 2: w = rho Rz(eta) Ry(beta) s.
-            let (sb, cb) = leg.beta.sin_cos();
-            let (se, ce) = leg.eta.sin_cos();
-            let w = rho.map(|r| r[0] * ce * sb + r[1] * se * sb + r[2] * cb);
+            let w = leg.platform_axis(&rho);
             // Eq. 3: v . w = cos(arc2), v = Rz(theta) Rx(arc1) u.
             let (s1, c1) = leg.arc1.sin_cos();
             let k = (leg.arc2.cos() - c1 * w[2]) / (s1 * (w[0] * w[0] + w[1] * w[1]).sqrt());

@@ -2,7 +2,6 @@
 //! against golden vectors from an independent program.
 
 use fastrand::Rng;
-use opm_core::chain::Branch;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::{plano_spherical, translational_helical};
 use opm_core::mechanism::{examples, file};
@@ -150,69 +149,13 @@ fn published_imaginary_joints() {
     }
 }
 
-fn branch(plus: bool) -> Branch {
-    if plus { Branch::Plus } else { Branch::Minus }
-}
-
-/// The family, assembled from the oracle's parameters.
-fn family(
-    oracle: &paper::PlanoSpherical,
-    home: plano_spherical::Home,
-    signs: &paper::Signs,
-) -> plano_spherical::PlanoSpherical {
-    let slider_legs = oracle.legs.iter().zip(signs.legs).enumerate().map(|(i, (leg, signs))| {
-        plano_spherical::SliderLeg {
-            name: format!("leg{}", i + 1),
-            alpha: leg.alpha,
-            h: leg.h,
-            a1: leg.a1,
-            a2: leg.a2,
-            alpha1: leg.arc1,
-            alpha2: leg.arc2,
-            eta: leg.eta,
-            beta: leg.beta,
-            upper: branch(signs[0]),
-            slider: branch(signs[1]),
-            limits: Default::default(),
-        }
-    });
-    plano_spherical::PlanoSpherical {
-        name: "random".into(),
-        home,
-        slider_legs: slider_legs.collect(),
-        arm_leg: plano_spherical::ArmLeg {
-            name: "leg4".into(),
-            base: oracle.d,
-            b1: oracle.b[0],
-            b2: oracle.b[1],
-            elbow: branch(signs.arm),
-            phi1: None,
-            phi2: None,
-        },
-    }
-}
-
 #[test]
 fn the_papers_formulas_on_random_geometries() {
     let mut rng = Rng::with_seed(20);
     let (mut mechanisms, mut compared, mut outside) = (0, 0, 0);
     while mechanisms < 150 {
+        let oracle = paper::PlanoSpherical::random(&mut rng);
         let mut within = |low: f64, high: f64| low + (high - low) * rng.f64();
-        let leg = |i: usize, within: &mut dyn FnMut(f64, f64) -> f64| paper::SliderLeg {
-            alpha: 2.1 * i as f64 + within(-0.5, 0.5),
-            h: within(0.05, 0.2),
-            a1: within(0.1, 0.3),
-            a2: within(0.03, 0.1),
-            arc1: within(0.8, 1.6),
-            arc2: within(0.8, 1.6),
-            eta: 2.1 * i as f64 + within(-0.4, 0.4),
-            beta: within(0.6, 1.4),
-        };
-        let oracle = paper::PlanoSpherical {
-            legs: [leg(0, &mut within), leg(1, &mut within), leg(2, &mut within)],
-            d: [within(-0.1, 0.1), within(-0.1, 0.1)],
-            b: [within(0.06, 0.15), within(0.06, 0.15)],
-        };
         let home = plano_spherical::Home {
             x: within(-0.05, 0.05),
             y: within(-0.05, 0.05),
@@ -220,12 +163,8 @@ fn the_papers_formulas_on_random_geometries() {
             xi: within(-0.5, 0.5),
             psi: within(-1.0, 1.0),
         };
-        let signs = |rng: &mut Rng| paper::Signs {
-            legs: [0; 3].map(|_| [rng.bool(), rng.bool()]),
-            arm: rng.bool(),
-        };
-        let at_home = signs(&mut rng);
-        let family = family(&oracle, home, &at_home);
+        let at_home = paper::Signs::random(&mut rng);
+        let family = oracle.family(home, &at_home);
         let pose = [home.x, home.y, home.zeta, home.xi, home.psi];
         let Ok(mechanism) = family.assemble() else {
             let oracle_closes = oracle.inverse(&pose, &at_home).is_some();
@@ -234,11 +173,11 @@ fn the_papers_formulas_on_random_geometries() {
         };
         let Ok(manipulator) = Manipulator::new(mechanism) else { continue };
         mechanisms += 1;
-        assert_eq!(manipulator.format_mode(manipulator.home_mode()), written(&at_home));
+        assert_eq!(manipulator.format_mode(manipulator.home_mode()), at_home.written());
         let mut solution = manipulator.solution();
         for _ in 0..100 {
-            let signs = signs(&mut rng);
-            let mode = manipulator.parse_mode(&written(&signs)).unwrap();
+            let signs = paper::Signs::random(&mut rng);
+            let mode = manipulator.parse_mode(&signs.written()).unwrap();
             let mut near = |around: f64, by: f64| around + by * (2.0 * rng.f64() - 1.0);
             let pose = [
                 near(home.x, 0.1),
@@ -279,54 +218,17 @@ fn the_papers_formulas_on_random_geometries() {
     assert!(compared > 1_500 && outside > 1_500, "{compared} {outside}");
 }
 
-fn written(signs: &paper::Signs) -> String {
-    let sign = |plus: bool| if plus { '+' } else { '-' };
-    let mut groups: Vec<String> =
-        signs.legs.iter().map(|leg| leg.iter().map(|&plus| sign(plus)).collect()).collect();
-    groups.push(sign(signs.arm).to_string());
-    groups.join(" ")
-}
-
 #[test]
 fn the_helical_formulas_on_random_geometries() {
     let mut rng = Rng::with_seed(21);
     for _ in 0..100 {
-        let direction = rng.f64() * TAU;
-        let pitched = rng.usize(..3);
-        let legs: Vec<paper::TranslationalLeg> = (0..3)
-            .map(|i| {
-                // The slider must not run along the common axis.
-                let alpha = 2.0944 * i as f64 + 0.3 * rng.f64();
-                let pitch = if i == pitched { 0.005 + 0.05 * rng.f64() } else { 0.0 };
-                paper::TranslationalLeg {
-                    alpha,
-                    beta: direction - alpha,
-                    k: 0.03 * rng.f64(),
-                    pitch,
-                }
-            })
-            .collect();
+        let (legs, pitched) = paper::TranslationalLeg::random(&mut rng);
         let home = translational_helical::Home {
             x: 0.1 * rng.f64(),
             y: 0.1 * rng.f64(),
             phi: 3.0 * rng.f64(),
         };
-        let family = translational_helical::TranslationalHelical {
-            name: "random".into(),
-            home,
-            legs: legs
-                .iter()
-                .enumerate()
-                .map(|(i, leg)| translational_helical::TranslationalLeg {
-                    name: format!("leg{}", i + 1),
-                    alpha: leg.alpha,
-                    beta: leg.beta,
-                    k: leg.k,
-                    pitch: (leg.pitch != 0.0).then_some(leg.pitch),
-                    limits: Default::default(),
-                })
-                .collect(),
-        };
+        let family = paper::TranslationalLeg::family(&legs, home);
         let Ok(mechanism) = family.assemble() else { continue };
         let manipulator = match Manipulator::new(mechanism) {
             Ok(manipulator) => manipulator,

@@ -1,4 +1,37 @@
-//! Kinematics of overconstrained parallel manipulators with partial subspaces.
+//! Kinematics of overconstrained parallel manipulators with partial subspaces, by imaginary-joint
+//! decomposition.
+//!
+//! The platform moves in a product `A · B` of two subgroups of SE(3) that share one motion `I`. Each
+//! leg is cut in two where it passes from one to the other, by an *imaginary joint* that moves along
+//! `I`, and both halves have closed forms. The decomposition is found from the joint screws.
+//!
+//! ```
+//! use opm_core::manipulator::Manipulator;
+//! use opm_core::mechanism::{examples, file};
+//!
+//! let text = examples::find("plano-spherical-5dof").unwrap().text;
+//! let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+//! assert_eq!(manipulator.decomposition().upper.name(), "spherical");
+//!
+//! let mut solution = manipulator.solution();
+//! let pose = [0.01, 0.0, 0.0, 15_f64.to_radians(), 0.0]; // x y zeta xi psi
+//! let reached = manipulator.inverse(&pose, manipulator.home_mode(), &mut solution)?;
+//! assert!(reached && solution.within_limits);
+//! assert!((solution.joints[0] - 0.168806).abs() < 1e-6); // S1
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! * SI units and radians everywhere.
+//! * Joints are given at one assembled pose, *home*. A reported value is the value at home plus the
+//!   displacement; angles are within half a turn of home unless limits or a reference say otherwise.
+//! * A twist is `(ω; v)` in base coordinates; `v` is the velocity of the point at the base's origin.
+//! * Products of exponentials run from base to platform: `g = L · U = v · b`, `v` in the lower
+//!   subspace `A`, `b` in the upper one, `B`.
+//! * Task coordinates are named in [`task`], working modes in [`manipulator::Mode`].
+//! * Out of reach is an answer, not an error; an error means that it cannot be computed. On the rim
+//!   of reach, and on a limit, counts as inside.
 
 pub mod chain;
 pub mod decomposition;
