@@ -19,7 +19,7 @@ mod reach;
 pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use mode::{Mode, ModeError};
-pub use reach::{Follow, Row};
+pub use reach::{Follow, Mark, Row};
 
 use crate::chain::Amount;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};

@@ -2,11 +2,11 @@
 
 use crate::grid::{Grid, fill};
 use crate::progress::{Cancelled, Progress};
-use opm_core::manipulator::{Follow, Manipulator, Mode, Row};
+use opm_core::manipulator::{Follow, Manipulator, Mark, Mode, Row};
 use rayon::prelude::*;
 
 /// Poses of a row that are decided together: long enough to vectorise, short enough for the cache.
-const SEGMENT: u64 = 4096;
+const SEGMENT: u64 = 1024;
 
 /// Poses of a block, the unit of work: some 0.1 ms, so that threads share evenly and a request to
 /// stop is heard at once.
@@ -178,7 +178,7 @@ impl<'a> Sweep<'a> {
             if count > 0 {
                 scratch.hits.clear();
                 let reached = scratch.first.iter().zip(&scratch.mask);
-                scratch.hits.extend(reached.filter_map(|(&x, &hit)| hit.then_some(x)));
+                scratch.hits.extend(reached.filter_map(|(&x, &hit)| (hit == 1).then_some(x)));
                 hit(&Hits { slice, first: &scratch.hits, others: &scratch.others });
             }
         }
@@ -234,8 +234,8 @@ struct Scratch {
     segment: [u64; 2],
     first: Vec<f64>,
     others: Vec<f64>,
-    mask: Vec<bool>,
-    leg_mask: Vec<bool>,
+    mask: Vec<Mark>,
+    leg_mask: Vec<Mark>,
     hits: Vec<f64>,
 }
 
@@ -289,25 +289,25 @@ impl Scratch {
             self.segment = [from, to];
             self.first.clear();
             self.first.extend((from..to).map(|i| axis.value(i)));
-            self.mask.resize(self.first.len(), false);
-            self.leg_mask.resize(self.first.len(), false);
+            self.mask.resize(self.first.len(), 0);
+            self.leg_mask.resize(self.first.len(), 0);
         }
     }
 
     /// Marks the segment's reachable poses and counts them.
     fn decide(&mut self, manipulator: &Manipulator, lower: usize, tally: &mut Tally) -> u64 {
         let row = Row { first: &self.first, others: &self.others[..lower - 1] };
-        self.mask.fill(true);
+        self.mask.fill(1);
         let mut count = 0;
         for ways in &self.legs {
-            self.leg_mask.fill(false);
+            self.leg_mask.fill(0);
             for way in ways {
                 manipulator.mark(&way.follow, &row, &mut self.leg_mask);
             }
             count = 0;
             for (mask, leg) in self.mask.iter_mut().zip(&self.leg_mask) {
                 *mask &= leg;
-                count += u64::from(*mask);
+                count += *mask;
             }
             if count == 0 {
                 return 0;
@@ -318,9 +318,9 @@ impl Scratch {
             for way in ways {
                 let Some((imaginary, value)) = way.pending else { continue };
                 let used = alone || {
-                    self.leg_mask.fill(false);
+                    self.leg_mask.fill(0);
                     manipulator.mark(&way.follow, &row, &mut self.leg_mask);
-                    self.leg_mask.iter().zip(&self.mask).any(|(&leg, &all)| leg && all)
+                    self.leg_mask.iter().zip(&self.mask).any(|(leg, all)| leg & all == 1)
                 };
                 if used {
                     tally.widen(imaginary, value);

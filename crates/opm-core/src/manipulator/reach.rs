@@ -22,6 +22,10 @@ pub struct Follow {
     tau: Option<Amount>,
 }
 
+/// One where a pose is marked, else zero: as wide as the numbers that decide it, so that the loop over
+/// a row is vectorised without packing.
+pub type Mark = u64;
+
 /// Poses of a slice that differ in their first coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
@@ -99,12 +103,12 @@ impl Manipulator {
         }
     }
 
-    /// Sets `mask[i]` where the leg follows to the row's pose `i`: the same answer as
+    /// Marks pose `i` in `mask[i]` where the leg follows to it: the same answer as
     /// [`Manipulator::follows`], bit for bit.
     ///
     /// # Panics
     /// If the mask is not as long as the row.
-    pub fn mark(&self, way: &Follow, row: &Row<'_>, mask: &mut [bool]) {
+    pub fn mark(&self, way: &Follow, row: &Row<'_>, mask: &mut [Mark]) {
         assert_eq!(mask.len(), row.first.len(), "mask and row");
         if let Some(chain) = self.plain_planar(way) {
             return self.mark_planar(way, chain, row, mask);
@@ -112,9 +116,9 @@ impl Manipulator {
         let mut pose = [0.0; 3];
         pose[1..=row.others.len()].copy_from_slice(row.others);
         for (marked, &first) in mask.iter_mut().zip(row.first) {
-            if !*marked {
+            if *marked == 0 {
                 pose[0] = first;
-                *marked = self.follows(way, &self.task.lower(&pose));
+                *marked = Mark::from(self.follows(way, &self.task.lower(&pose)));
             }
         }
     }
@@ -138,7 +142,7 @@ impl Manipulator {
         (translation && !upper_decides && plain).then_some(chain)
     }
 
-    fn mark_planar(&self, way: &Follow, chain: &PlanarChain, row: &Row<'_>, mask: &mut [bool]) {
+    fn mark_planar(&self, way: &Follow, chain: &PlanarChain, row: &Row<'_>, mask: &mut [Mark]) {
         let leg = &self.legs[way.leg];
         let rotation = way.tau.map_or(Complex::new(1.0, 0.0), Amount::turn);
         let home = self.task.coordinates[0].home;
@@ -172,8 +176,8 @@ impl Manipulator {
 
 /// Sets `mask` where the predicate holds; free of branches, so that it is vectorised.
 #[inline]
-fn set(mask: &mut [bool], row: &Row<'_>, predicate: impl Fn(f64) -> bool) {
+fn set(mask: &mut [Mark], row: &Row<'_>, predicate: impl Fn(f64) -> bool) {
     for (marked, &x) in mask.iter_mut().zip(row.first) {
-        *marked |= predicate(x);
+        *marked |= Mark::from(predicate(x));
     }
 }
