@@ -72,14 +72,14 @@ pub struct Cloud<'a> {
 impl<'a> Cloud<'a> {
     /// The cloud of a grid; what was not asked for suits the grid.
     pub fn new(wishes: Wishes, manipulator: &'a Manipulator, grid: &Grid, modes: Modes) -> Self {
-        let slowest = slowest(grid);
+        let tallest = tallest(grid);
         let task = |number: usize| (grid.axes()[number].name.clone(), Column::Task(number));
-        let color = wishes.color.unwrap_or_else(|| task(slowest));
+        let color = wishes.color.unwrap_or_else(|| task(tallest));
         let axes = wishes.axes.unwrap_or_else(|| {
             // Every pair of subspaces has at least three coordinates.
-            let mut others = (0..grid.axes().len()).filter(|&number| number != slowest);
-            let mut other = || others.next().unwrap_or(slowest);
-            [task(other()), task(other()), task(slowest)]
+            let mut others = (0..grid.axes().len()).filter(|&number| number != tallest);
+            let mut other = || others.next().unwrap_or(tallest);
+            [task(other()), task(other()), task(tallest)]
         });
         let scalars = wishes.scalars.unwrap_or_else(|| {
             // What the colour shows can be read off, too.
@@ -159,11 +159,13 @@ impl<'a> Cloud<'a> {
     }
 }
 
-/// The slowest varying coordinate of the upper section with more than one value, else of the lower.
-fn slowest(grid: &Grid) -> usize {
+/// The coordinate that a picture of the workspace is tallest in: the tilt where it varies, else the
+/// slowest varying one of the upper section, else of the lower.
+fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;
+    let tilts = |axis: &Axis| axis.name == "xi" && several(axis);
     let upper = &grid.axes()[grid.lower()..];
-    match upper.iter().rposition(several) {
+    match upper.iter().position(tilts).or_else(|| upper.iter().rposition(several)) {
         Some(number) => grid.lower() + number,
         None => grid.axes().iter().position(several).unwrap_or(0),
     }

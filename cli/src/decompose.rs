@@ -12,7 +12,7 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mobility::{Mobility, mobility};
 use opm_core::subspace::SubspaceClass;
-use opm_core::task::{Task, TaskCoordinate};
+use opm_core::task::TaskCoordinate;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{Display, Write};
@@ -87,8 +87,9 @@ impl<'a> Way<'a> {
             })
             .collect();
         // Without closed forms there are no coordinates; a note says so.
-        let task = Task::new(mechanism, decomposition);
-        Self { decomposition, legs, coordinates: task.map_or(vec![], |task| task.coordinates) }
+        let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
+        let coordinates = compiled.map_or(vec![], |m| m.task_coordinates().to_vec());
+        Self { decomposition, legs, coordinates }
     }
 
     fn json(&self) -> Value {

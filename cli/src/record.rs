@@ -10,6 +10,9 @@ use opm_workspace::{Axis, Cancelled, Count, Grid, Progress, Sweep};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// More slices than this play for longer than a quarter of an hour.
+const PLAYABLE: u64 = 10_000;
+
 /// A file that is open for a recording.
 pub struct Recorder {
     path: PathBuf,
@@ -18,18 +21,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Refuses a grid of more slices than a recording may have.
+    /// Refuses a grid whose slowest axis alone has more values than a recording may have slices.
     pub fn check(grid: &Grid) -> Result<(), Failure> {
-        if grid.slices() <= MAX_SLICES {
+        let slices = grid.slices() / together(grid);
+        if slices <= MAX_SLICES {
             return Ok(());
         }
-        let upper: Vec<&str> = grid.axes()[grid.lower()..].iter().map(|a| &*a.name).collect();
-        let problem = format!(
-            "{} slices (values of {} together), at most {} can be recorded",
-            count(grid.slices()),
-            upper.join(", "),
-            count(MAX_SLICES)
-        );
+        let slowest = grid.axes().last().map_or("", |axis| &axis.name);
+        let (slices, most) = (count(slices), count(MAX_SLICES));
+        let problem = format!("{slices} slices, one a value of {slowest}, expected at most {most}");
         Err(Failure::flag("--grid", problem))
     }
 
@@ -60,7 +60,7 @@ impl Recorder {
             mechanism: run.loaded.text.as_bytes(),
             run: describe(run, found),
             points: found.reachable,
-            slices: run.grid.slices(),
+            slices: run.grid.slices() / together(run.grid),
         };
         let Some(file) = self.file.take() else { return Ok(self.path.clone()) };
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
@@ -73,6 +73,7 @@ impl Recorder {
         };
 
         let every = recorder.overview_every();
+        let together = together(run.grid);
         let mut number = 0;
         let mut overview = Points::new(cloud, &columns);
         sweep
@@ -99,7 +100,8 @@ impl Recorder {
                 || Points::new(cloud, &columns),
                 |mut points| {
                     let rows = points.take()?;
-                    rows.iter().try_for_each(|(s, rows)| recorder.push(*s, rows).map_err(failed))
+                    rows.iter()
+                        .try_for_each(|(s, rows)| recorder.push(s / together, rows).map_err(failed))
                 },
             )
             .map_err(interrupted)?;
@@ -115,6 +117,19 @@ impl Drop for Recorder {
             let _ = fs::remove_file(partial(&self.path));
         }
     }
+}
+
+/// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
+/// a person can play what is left.
+fn together(grid: &Grid) -> u64 {
+    let upper = &grid.axes()[grid.lower()..];
+    let mut together = 1;
+    for axis in &upper[..upper.len() - 1] {
+        if grid.slices() / together > PLAYABLE {
+            together *= axis.count;
+        }
+    }
+    together
 }
 
 /// The name of an unfinished file.

@@ -282,3 +282,17 @@ fn an_interrupted_run_leaves_no_file_under_its_name() {
     run.fails_with_one_line(130, &["interrupted; ", " of 1,000,000,000,000 poses"]);
     assert_eq!(folder.names(), [""; 0], "nothing was recorded yet");
 }
+
+/// Whole axes go together until a person can play the slices; every point is still there.
+#[test]
+fn a_grid_of_very_many_orientations_is_recorded_by_its_slowest_axes() {
+    let folder = Folder::new();
+    let output = folder.arg("out.mcap");
+    let grid = ["--grid", "zeta=0:1:60", "--grid", "xi=0:1:50", "--grid", "psi=0:1:40"];
+    let counted = workspace(&[&[PLANO, "-o", &output], &grid[..]].concat());
+    let inspected = opm(&["inspect", &output, "--format", "json"]).json();
+    let topics = inspected["topics"].as_array().unwrap();
+    let slices = topics.iter().find(|topic| topic["name"] == "/workspace/slices").unwrap();
+    assert_eq!(slices["messages"], 50 * 40);
+    assert_eq!(slices["points"], counted["reachable"]);
+}
