@@ -27,6 +27,7 @@ use crate::joint::{JointCoordinate, Quantity};
 use crate::leg::Leg;
 use crate::limits::Limits;
 use crate::mechanism::Mechanism;
+use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
 use leg::CompiledLeg;
 use mode::ModeLayout;
@@ -138,6 +139,11 @@ impl Manipulator {
         &self.coordinates
     }
 
+    /// The limits of every joint coordinate, in the order of [`Manipulator::coordinates`].
+    pub fn limits(&self) -> &[Limits] {
+        &self.limits
+    }
+
     /// Numbers of the actuated coordinates, ascending: the order of [`Drives::actuated`].
     pub fn actuated(&self) -> &[usize] {
         &self.actuated
@@ -207,7 +213,8 @@ impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect();
+        let size = frame(&mechanism).length;
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, size)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
