@@ -3,9 +3,10 @@
 
 use fastrand::Rng;
 use opm_core::decomposition::{Decomposition, decompose};
+use opm_core::joint::Joint;
 use opm_core::leg::Leg;
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::{Mechanism, file};
 use opm_tests::by_inverse::by_inverse;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
@@ -49,15 +50,8 @@ const PAGES: &[Page] = &[
         redundant: 0,
         coordinates: "",
     },
-    Page {
-        name: "planar-planar-5dof",
-        numbers: [5, 5, 3, 2],
-        subspaces: ["planar", "planar"],
-        shared: "translation",
-        legs: "3|2* 3|2* 3|2* 2|3",
-        redundant: 0,
-        coordinates: "x y theta w phi",
-    },
+    PLANAR_PLANAR,
+    Page { name: "planar-planar-5dof-joints", ..PLANAR_PLANAR },
     Page {
         name: "double-spherical-5dof",
         numbers: [5, 5, 3, 2],
@@ -116,6 +110,16 @@ const TRANSLATIONAL_HELICAL: Page = Page {
     coordinates: "x y phi",
 };
 
+const PLANAR_PLANAR: Page = Page {
+    name: "planar-planar-5dof",
+    numbers: [5, 5, 3, 2],
+    subspaces: ["planar", "planar"],
+    shared: "translation",
+    legs: "3|2* 3|2* 3|2* 2|3",
+    redundant: 0,
+    coordinates: "x y theta w phi",
+};
+
 fn mechanism(text: &str) -> Mechanism {
     file::read(text).unwrap_or_else(|errors| panic!("{errors}")).mechanism
 }
@@ -162,7 +166,7 @@ fn every_mechanism_has_as_many_actuators_as_freedoms() {
     for example in EXAMPLES {
         let mechanism = mechanism(example.text);
         let actuated: usize =
-            mechanism.joints().filter(|joint| joint.actuated).map(|joint| joint.freedoms()).sum();
+            mechanism.joints().filter(|joint| joint.actuated).map(Joint::freedoms).sum();
         assert_eq!(actuated, decompose(&mechanism).unwrap()[0].mobility, "{}", example.name);
     }
 }
@@ -180,6 +184,20 @@ fn home_s_mode_gives_home_s_values_at_home() {
             assert!(off < HOME, "{name} {}: off by {off:e}", coordinate.name);
         }
     }
+}
+
+#[test]
+fn a_family_s_working_mode_is_that_of_its_joints() {
+    let mut families = 0;
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        let text = find(name).unwrap().text;
+        if let Some(mode) = file::read(text).unwrap().mode {
+            assert_eq!(mode, manipulator.format_mode(manipulator.home_mode()), "{name}");
+            families += 1;
+        }
+    }
+    assert_eq!(families, 3);
 }
 
 /// The largest distance of a leg's end, by its product of exponentials, from where the platform is.

@@ -44,6 +44,11 @@ pub const EXAMPLES: &[Example] = &[
         text: include_str!("../../mechanisms/planar-planar-5dof.toml"),
     },
     Example {
+        name: "planar-planar-5dof-joints",
+        description: "the same as planar-planar-5dof, as a list of joints",
+        text: include_str!("../../mechanisms/planar-planar-5dof-joints.toml"),
+    },
+    Example {
         name: "double-spherical-5dof",
         description: "3-RRR(RR) + RR(S), two centres: five rotations",
         text: include_str!("../../mechanisms/double-spherical-5dof.toml"),
