@@ -13,11 +13,13 @@
 
 mod inverse;
 mod leg;
+mod locate;
 mod mode;
 mod reach;
 
 pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
+pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use reach::{Follow, Mark, Row};
 
