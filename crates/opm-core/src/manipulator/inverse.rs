@@ -24,7 +24,7 @@ pub enum PoseError {
         expected: usize,
     },
     /// Not a number, infinite, or too large.
-    #[error("{name} is {value}, expected a finite number")]
+    #[error("{name} is {value:?}, expected a number of at most {LARGEST:?}")]
     NotFinite {
         /// The coordinate.
         name: &'static str,
