@@ -21,7 +21,7 @@ pub use leg::{RefusedLeg, Section};
 pub use mode::{Mode, ModeError};
 pub use reach::{Follow, Mark, Row};
 
-use crate::chain::Amount;
+use crate::chain::{Amount, Chain};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
 use crate::joint::{JointCoordinate, Quantity};
 use crate::leg::Leg;
@@ -132,6 +132,19 @@ impl Manipulator {
     /// The coordinates of its pose, in order.
     pub fn task_coordinates(&self) -> &[TaskCoordinate] {
         &self.task.coordinates
+    }
+
+    /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
+    pub fn counts_turns(&self, name: &str) -> bool {
+        let counts = |chain: &Chain| match chain {
+            Chain::Cylindrical(chain) => chain.counts_turns(),
+            _ => false,
+        };
+        match name {
+            "theta" => self.legs.iter().any(|leg| counts(&leg.lower.chain)),
+            "phi" => self.legs.iter().any(|leg| counts(&leg.upper.chain)),
+            _ => false,
+        }
     }
 
     /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
