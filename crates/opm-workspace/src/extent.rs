@@ -88,7 +88,7 @@ fn extents(
         .collect();
     let grows: Vec<bool> = coordinates
         .iter()
-        .map(|c| c.quantity == Quantity::Length || manipulator.task().counts_turns(c.name))
+        .map(|c| c.quantity == Quantity::Length || manipulator.counts_turns(c.name))
         .collect();
 
     for _ in 0..DOUBLINGS {
