@@ -91,7 +91,14 @@ impl<'a> Cloud<'a> {
 
     /// How often the grid is swept to record it.
     pub fn passes(&self) -> u64 {
-        if matches!(self.color.1, Column::Actuated(_)) { 3 } else { 2 }
+        match self.color.1 {
+            Column::Actuated(number) if self.limits(number).is_none() => 3,
+            _ => 2,
+        }
+    }
+
+    fn limits(&self, actuated: usize) -> Option<[f64; 2]> {
+        self.manipulator.coordinates()[self.manipulator.actuated()[actuated]].limits
     }
 
     /// What a recorder is to know of it.
@@ -116,7 +123,8 @@ impl<'a> Cloud<'a> {
         columns
     }
 
-    /// The lowest and the highest value that the colour shows.
+    /// The values at the ends of the colours: of a task coordinate the grid's, of a joint its
+    /// limits or what there is.
     pub fn color_range(
         &self,
         sweep: &Sweep<'_>,
@@ -124,31 +132,30 @@ impl<'a> Cloud<'a> {
         grid: &Grid,
         progress: &Progress,
     ) -> Result<[f64; 2], Failure> {
-        let nothing = [f64::INFINITY, f64::NEG_INFINITY];
-        let range = match self.color.1 {
-            Column::Task(number) => {
-                let axis = &grid.axes()[number];
-                [axis.min, axis.max]
-            }
-            Column::Imaginary(number) => found.imaginary[number].unwrap_or(nothing),
-            column @ (Column::Actuated(_) | Column::Tip(_)) => {
-                let columns = [column];
-                let mut range = nothing;
-                sweep.points::<_, Failure>(
-                    progress,
-                    |hits, points: &mut Points<'_>| points.add(hits),
-                    || Points::new(self, &columns),
-                    |mut points| {
-                        for value in points.take()?.into_iter().flat_map(|(_, values)| values) {
-                            range = [range[0].min(value), range[1].max(value)];
-                        }
-                        Ok(())
-                    },
-                )?;
-                range
-            }
+        let known = match self.color.1 {
+            Column::Task(number) => Some([grid.axes()[number].min, grid.axes()[number].max]),
+            Column::Imaginary(number) => Some(found.imaginary[number].unwrap_or_default()),
+            Column::Actuated(number) => self.limits(number),
+            Column::Tip(_) => None,
         };
-        Ok(if range[0] <= range[1] { range } else { [0.0; 2] })
+        if let Some(range) = known {
+            return Ok(range);
+        }
+        let columns = [self.color.1];
+        let mut range: Option<[f64; 2]> = None;
+        sweep.points::<_, Failure>(
+            progress,
+            |hits, points: &mut Points<'_>| points.add(hits),
+            || Points::new(self, &columns),
+            |mut points| {
+                for value in points.take()?.into_iter().flat_map(|(_, values)| values) {
+                    let [low, high] = range.unwrap_or([value; 2]);
+                    range = Some([low.min(value), high.max(value)]);
+                }
+                Ok(())
+            },
+        )?;
+        Ok(range.unwrap_or_default())
     }
 }
 

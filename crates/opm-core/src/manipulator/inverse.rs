@@ -243,8 +243,7 @@ impl Manipulator {
             return Err(PoseError::Length { given: pose.len(), expected: coordinates.len() });
         }
         for (coordinate, &value) in coordinates.iter().zip(pose) {
-            // Also false for NaN.
-            if !(value.abs() <= LARGEST) {
+            if value.is_nan() || value.abs() > LARGEST {
                 return Err(PoseError::NotFinite { name: coordinate.name, value });
             }
         }
