@@ -226,7 +226,7 @@ impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let size = frame(&mechanism).length;
+        let size = frame(mechanism).length;
         let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, size)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
