@@ -114,15 +114,13 @@ impl Range {
         let exponent = (width / 100.0).log10().ceil() as i32;
         // Scaled by a whole power of ten both ways, an end is the double nearest to its decimals.
         let power = 10_f64.powi(exponent.abs());
-        let (scaled, restored): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) = if exponent < 0 {
-            (|end, power| end * power, |end, power| end / power)
-        } else {
-            (|end, power| end / power, |end, power| end * power)
+        let step = |end: f64, outward: fn(f64) -> f64| {
+            if exponent < 0 { outward(end * power) / power } else { outward(end / power) * power }
         };
         // What is on a step but for rounding stays on it.
         let inward = 1e-12 * width;
-        let low = restored(scaled(min + inward, power).floor(), power);
-        let high = restored(scaled(max - inward, power).ceil(), power);
+        let low = step(min + inward, f64::floor);
+        let high = step(max - inward, f64::ceil);
         if self.grows {
             return [low, high];
         }
