@@ -9,10 +9,11 @@ FIGURES_VENV := target/venv-figures
 
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
+.DEFAULT_GOAL := help
 .PHONY: help test lint test-rust test-python bench figures python
 
 help: ## Show this list
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 test: python lint test-rust test-python ## Check everything: format, lints, documentation, all tests
 
@@ -28,7 +29,10 @@ test-python: $(TESTS_VENV)/made ## Check the program and its recordings with pub
 	$(TESTS_VENV)/bin/python -m pytest -q tests/python
 
 bench: ## Measure, and write BENCHMARKS.md
-	$(CARGO) bench -p opm-benches
+	@mkdir -p target
+	CARGO="$(CARGO)" benches/report.sh > target/BENCHMARKS.md
+	mv target/BENCHMARKS.md BENCHMARKS.md
+	cat BENCHMARKS.md
 
 figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 	$(FIGURES_VENV)/bin/python docs/figures/make_figures.py
@@ -37,7 +41,7 @@ figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
 	  { echo "Python 3.10 or later is needed, and $(PYTHON) is not one; name another: make PYTHON=..." >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' || \
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
 	  { echo "$(PYTHON) lacks its venv module; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
 
 $(TESTS_VENV)/made: tests/python/requirements.txt

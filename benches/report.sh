@@ -1,24 +1,24 @@
-#!/usr/bin/env bash
-# Runs the benchmarks and writes their tables to BENCHMARKS.md, with the machine and the date.
-set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+#!/bin/sh
+# Runs the benchmarks and prints BENCHMARKS.md: `make bench`.
+set -eu
 
-tables=$(mktemp)
-trap 'rm -f "$tables"' EXIT
-"${CARGO:-cargo}" bench -p opm-benches | tee /dev/stderr >"$tables"
+if [ -r /proc/cpuinfo ]; then
+  processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | sort -u | head -n 1)
+else
+  processor=$(sysctl -n machdep.cpu.brand_string 2>/dev/null || true)
+fi
+results=$("${CARGO:-cargo}" bench --quiet -p opm-benches)
 
-cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)
-{
-  cat <<EOF
+cat <<END
 # Benchmarks
 
-Written by \`make bench\`. Things that are compared are timed in one run, turn and turn about, and the ratios are medians
-over the rounds: on a machine that others use too, only these mean much.
+Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always --dirty 2>/dev/null || echo "of no commit").
 
-* ${cpu:-$(uname -m)}, $(getconf _NPROCESSORS_ONLN) cores, $(uname -sm)
-* $("${RUSTC:-rustc}" --version), release build
-* $(date +%Y-%m-%d)
+* Processor: ${processor:-unknown}, $(getconf _NPROCESSORS_ONLN) logical
+* System: $(uname -sm), $(rustc --version)
 
-EOF
-  awk '/^\|/ { print; table = 1; next } table { print ""; table = 0 } /^two threads/ { print; print "" }' "$tables"
-} >BENCHMARKS.md
+What a table compares was timed in one run, turn and turn about; each number is a median over the rounds. On another
+machine the times differ, the ratios hardly. The code is in \`benches/benches\`.
+END
+# A blank line between paragraphs and tables.
+printf '%s\n' "$results" | awk '{ table = /^\|/; if (!table || !before) print ""; before = table; print }'

@@ -1,13 +1,14 @@
 //! `opm ik --poses`: a CSV file of poses in, one of joint values out, row by row.
 
 use crate::args::{Format, IkArgs, Output};
-use crate::failure::{Failure, chain};
+use crate::failure::Failure;
 use crate::ik::Modes;
+use crate::lines::{Line, Lines};
 use crate::load::Loaded;
 use crate::pose::find;
 use crate::progress::{interruptible, watch};
 use crate::text::{count, short};
-use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim, WriterBuilder};
+use csv::{ErrorKind, WriterBuilder};
 use opm_core::manipulator::{AllModes, Drives, Manipulator, PoseError, Solution};
 use opm_mcap::{PartialFile, Sink};
 use opm_workspace::Progress;
@@ -19,7 +20,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Bytes read or written at a time.
+/// Bytes written at a time.
 const BUFFER: usize = 1 << 16;
 
 /// What was done.
@@ -104,7 +105,10 @@ impl From<Failure> for Stop {
 
 impl From<csv::Error> for Stop {
     fn from(error: csv::Error) -> Self {
-        Self::Write(error.into())
+        Self::Write(match error.into_kind() {
+            ErrorKind::Io(error) => error,
+            other => io::Error::other(format!("{other:?}")),
+        })
     }
 }
 
@@ -124,30 +128,19 @@ impl Batch<'_> {
         progress: &Progress,
     ) -> Result<Summary, Stop> {
         let start = Instant::now();
-        let mut reader =
-            ReaderBuilder::new().trim(Trim::All).buffer_capacity(BUFFER).from_reader(input);
-        let header = reader.byte_headers().map_err(|error| self.unreadable(&error, &[]))?;
-        let columns = self.columns(header)?;
+        let mut lines = Lines::new(input);
+        let columns = self.columns(lines.next().map_err(|error| self.unreadable(&error))?)?;
         let writer =
             WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
         let mut table = Rows::new(self.manipulator, writer)?;
 
-        let home = self.manipulator.task().home();
-        let mut pose = home.clone();
-        let mut record = ByteRecord::new();
-        while reader
-            .read_byte_record(&mut record)
-            .map_err(|error| self.unreadable(&error, &columns))?
-        {
+        let mut pose = self.manipulator.task().home();
+        while let Some(line) = lines.next().map_err(|error| self.unreadable(&error))? {
             if progress.is_cancelled() {
                 return Err(Failure::Interrupted("interrupted".into()).into());
             }
-            let line = record.position().map_or(0, csv::Position::line);
-            pose.copy_from_slice(&home);
-            for (field, &column) in record.iter().zip(&columns) {
-                pose[column] = self.number(field, line, column)?;
-            }
-            table.pose(&pose, self.modes, |error| self.at(line, error))?;
+            self.read(line, &columns, &mut pose)?;
+            table.pose(&pose, self.modes, |error| self.at(line.number, error))?;
             rows.fetch_add(1, Ordering::Relaxed);
         }
         table.writer.flush().map_err(Stop::Write)?;
@@ -163,49 +156,54 @@ impl Batch<'_> {
     }
 
     /// The task coordinate of every column.
-    fn columns(&self, header: &ByteRecord) -> Result<Vec<usize>, Failure> {
+    fn columns(&self, header: Option<Line<'_>>) -> Result<Vec<usize>, Failure> {
         let coordinates = self.manipulator.task_coordinates();
-        let expected = || coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(",");
-        let names: Vec<_> = header.iter().map(String::from_utf8_lossy).collect();
-        if names.is_empty() || names.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let problem = format!("no header, expected names of task coordinates: {}", expected());
-            return Err(self.at(1, problem));
+        let number = header.map_or(1, |line| line.number);
+        let names: Vec<_> =
+            header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
+        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let expected = coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(",");
+            let problem = format!("no header, expected names of task coordinates: {expected}");
+            return Err(self.at(number, problem));
         }
         let mut columns = Vec::new();
         for name in &names {
             let column = find(name, coordinates)
-                .map_err(|error| self.at(1, format_args!("column {name:?}: {error}")))?;
+                .map_err(|error| self.at(number, format_args!("column {name:?}: {error}")))?;
             if columns.contains(&column) {
-                return Err(self.at(1, format_args!("column {name:?}: given twice")));
+                return Err(self.at(number, format_args!("column {name:?}: given twice")));
             }
             columns.push(column);
         }
         Ok(columns)
     }
 
-    fn number(&self, field: &[u8], line: u64, column: usize) -> Result<f64, Failure> {
-        let wrong = |problem: &str| {
-            let name = self.manipulator.task_coordinates()[column].name;
-            let field = String::from_utf8_lossy(field);
-            self.at(line, format_args!("column {name}: {field:?} {problem}"))
-        };
-        let text = std::str::from_utf8(field).map_err(|_| wrong("is not a number"))?;
-        let value: f64 = text.parse().map_err(|_| wrong("is not a number"))?;
-        if value.is_finite() { Ok(value) } else { Err(wrong("is not a finite number")) }
+    /// Reads a row into the columns of a pose.
+    fn read(&self, line: Line<'_>, columns: &[usize], pose: &mut [f64]) -> Result<(), Failure> {
+        let name = |column: usize| self.manipulator.task_coordinates()[column].name;
+        let given = line.fields().count();
+        if given != columns.len() {
+            let names: Vec<_> = columns.iter().map(|&column| name(column)).collect();
+            let (expected, names) = (columns.len(), names.join(","));
+            let problem = format_args!("{given} columns, expected {expected}: {names}");
+            return Err(self.at(line.number, problem));
+        }
+        for (field, &column) in line.fields().zip(columns) {
+            let wrong = |problem: &str| {
+                let (name, field) = (name(column), String::from_utf8_lossy(field));
+                self.at(line.number, format_args!("column {name}: {field:?} {problem}"))
+            };
+            let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
+            pose[column] = number.ok_or_else(|| wrong("is not a number"))?;
+            if !pose[column].is_finite() {
+                return Err(wrong("is not a finite number"));
+            }
+        }
+        Ok(())
     }
 
-    fn unreadable(&self, error: &csv::Error, columns: &[usize]) -> Failure {
-        match error.kind() {
-            ErrorKind::UnequalLengths { pos, expected_len, len } => {
-                let names: Vec<_> =
-                    columns.iter().map(|&i| self.manipulator.task_coordinates()[i].name).collect();
-                let line = pos.as_ref().map_or(0, csv::Position::line);
-                let names = names.join(",");
-                self.at(line, format_args!("{len} columns, expected {expected_len}: {names}"))
-            }
-            ErrorKind::Io(error) => Failure::at(self.label, error),
-            _ => Failure::Work(format!("{}: {}", self.label, chain(error))),
-        }
+    fn unreadable(&self, error: &io::Error) -> Failure {
+        Failure::at(self.label, error)
     }
 
     fn at(&self, line: u64, problem: impl Display) -> Failure {

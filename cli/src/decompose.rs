@@ -12,7 +12,7 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mobility::{Mobility, mobility};
 use opm_core::subspace::SubspaceClass;
-use opm_core::task::{Task, TaskCoordinate};
+use opm_core::task::TaskCoordinate;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{Display, Write};
@@ -32,35 +32,21 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         decompose(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
     let ways: Vec<Way<'_>> =
         decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
-    let report = Report { loaded: &loaded, mobility, ways };
+    let compiled = Manipulator::new(mechanism.clone());
+    let report = Report { loaded: &loaded, mobility, ways, manipulator: compiled.as_ref().ok() };
     output.print(&report.json(), report.text())?;
 
-    let first = &report.ways[0];
-    if first.decomposition.deviation > ROUNDING {
+    let label = &loaded.label;
+    let deviation = report.ways[0].decomposition.deviation;
+    if deviation > ROUNDING {
         output.warn(format_args!(
-            "{}: the joints are off their subspaces by {} (the sine of an angle, lengths over the \
-             mechanism's size); are its coordinates rounded?",
-            loaded.label,
-            short(first.decomposition.deviation)
+            "{label}: the joints are off their subspaces by {} (the sine of an angle, lengths over \
+             the mechanism's size); are its numbers rounded?",
+            short(deviation)
         ));
     }
-    match Manipulator::new(mechanism.clone()) {
-        Err(error) => output.note(format_args!(
-            "{}: no closed-form inverse kinematics: {}",
-            loaded.label,
-            chain(&error)
-        )),
-        Ok(manipulator) => {
-            let used =
-                report.ways.iter().position(|w| w.decomposition == manipulator.decomposition());
-            if let Some(used @ 1..) = used {
-                output.note(format_args!(
-                    "{}: inverse kinematics uses alternative {used}: the first decomposition has no \
-                     closed form",
-                    loaded.label
-                ));
-            }
-        }
+    if let Err(error) = &compiled {
+        output.note(format_args!("{label}: no closed-form inverse kinematics: {}", chain(error)));
     }
     Ok(())
 }
@@ -85,6 +71,8 @@ struct Report<'a> {
     loaded: &'a Loaded,
     mobility: Mobility,
     ways: Vec<Way<'a>>,
+    /// `None` where there are no closed forms.
+    manipulator: Option<&'a Manipulator>,
 }
 
 impl<'a> Way<'a> {
@@ -99,8 +87,9 @@ impl<'a> Way<'a> {
             })
             .collect();
         // Without closed forms there are no coordinates; a note says so.
-        let task = Task::new(mechanism, decomposition);
-        Self { decomposition, legs, coordinates: task.map_or(vec![], |task| task.coordinates) }
+        let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
+        let coordinates = compiled.map_or(vec![], |m| m.task_coordinates().to_vec());
+        Self { decomposition, legs, coordinates }
     }
 
     fn json(&self) -> Value {
@@ -201,6 +190,9 @@ impl Report<'_> {
             line(&format_args!("\n{table}"));
         }
         line(&self.actuation());
+        if let Some(manipulator) = self.manipulator {
+            line(&self.inverse_kinematics(manipulator));
+        }
         if self.ways.len() > 1 {
             line(&format_args!("\nalternatives: {}", self.ways.len() - 1));
             for (number, way) in self.ways.iter().enumerate().skip(1).take(LISTED) {
@@ -213,6 +205,23 @@ impl Report<'_> {
         text
     }
 
+    /// What `opm ik` makes of it.
+    fn inverse_kinematics(&self, manipulator: &Manipulator) -> String {
+        let mut text = "inverse kinematics in closed form".to_owned();
+        let used = self.ways.iter().position(|w| w.decomposition == manipulator.decomposition());
+        if let Some(used @ 1..) = used {
+            let _ = write!(text, ", by alternative {used}");
+        }
+        match manipulator.choices() {
+            0 => text.push_str(", one working mode"),
+            choices => {
+                let home = manipulator.format_mode(manipulator.home_mode());
+                let _ = write!(text, ", 2^{choices} working modes, assembled in {home}");
+            }
+        }
+        text
+    }
+
     /// What the motors do.
     fn actuation(&self) -> String {
         let report = &self.mobility;
@@ -220,18 +229,18 @@ impl Report<'_> {
         let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
         let mut text = format!("actuated: {}; ", names.join(", "));
         if report.redundant.is_empty() {
-            let _ = write!(text, "they control all {} freedoms", report.controlled);
+            let _ = write!(text, "{} for mobility N = {}", report.actuators, report.mobility);
         } else {
             let _ = write!(
                 text,
-                "{} for {} freedoms, any one of {} could be left out",
+                "{} for mobility N = {}, any one of {} could be left out",
                 report.actuators,
-                report.controlled,
+                report.mobility,
                 report.redundant.join(", ")
             );
         }
         if report.idle > 0 {
-            let _ = write!(text, "; {} do not move the platform", report.idle);
+            let _ = write!(text, "; {} of N do not move the platform", report.idle);
         }
         text
     }

@@ -147,7 +147,10 @@ impl<'a> Answer<'a> {
         let units = self.loaded.file.units;
         let mut text = format!("{} at ", self.manipulator.mechanism().name);
         let pose: Vec<String> = (self.manipulator.task_coordinates().iter().zip(&self.pose))
-            .map(|(c, &value)| format!("{} = {}", c.name, units.show(value, c.quantity)))
+            .map(|(c, &value)| {
+                let value = text::number(value, c.quantity, units);
+                format!("{} = {value} {}", c.name, units.symbol(c.quantity))
+            })
             .collect();
         let _ = writeln!(text, "{}\n", pose.join(", "));
         match &*self.solutions {

@@ -2,12 +2,14 @@
 
 mod args;
 mod batch;
+mod cloud;
 mod completions;
 mod decompose;
 mod examples;
 mod failure;
 mod ik;
 mod inspect;
+mod lines;
 mod load;
 mod output;
 mod pose;

@@ -52,12 +52,12 @@ impl FromStr for Number {
         let value: f64 = number.trim_end().parse().map_err(|_| {
             Misread(format!("{text:?} is not a number, expected one like 0.01, 10mm or 15deg"))
         })?;
-        let (factor, quantity) = if unit.is_empty() {
-            (1.0, None)
+        let (value, quantity) = if unit.is_empty() {
+            (value, None)
         } else if let Some(unit) = LengthUnit::from_symbol(unit) {
-            (unit.factor(), Some(Quantity::Length))
+            (unit.metres(value), Some(Quantity::Length))
         } else if let Some(unit) = AngleUnit::from_symbol(unit) {
-            (unit.factor(), Some(Quantity::Angle))
+            (value * unit.factor(), Some(Quantity::Angle))
         } else {
             let lengths = LengthUnit::ALL.map(LengthUnit::symbol);
             let known = lengths.into_iter().chain(AngleUnit::ALL.map(AngleUnit::symbol));
@@ -66,7 +66,6 @@ impl FromStr for Number {
                 known.collect::<Vec<_>>().join(", ")
             )));
         };
-        let value = value * factor;
         if !value.is_finite() {
             return Err(Misread(format!("{text:?} is too large a number")));
         }
@@ -202,7 +201,7 @@ mod tests {
     #[test]
     fn units_are_converted_and_the_rest_stays_home() {
         assert_eq!(pose(""), Ok(vec![0.5, 0.25]));
-        assert_eq!(pose("x=10mm"), Ok(vec![0.01, 0.25]));
+        assert_eq!(pose("x=9mm"), Ok(vec![0.009, 0.25]));
         assert_eq!(pose(" xi = 180 deg , x=-1e-2 "), Ok(vec![-0.01, PI]));
         assert_eq!(pose("x=1in,xi=0.2rad"), Ok(vec![0.0254, 0.2]));
         assert_eq!(pose("x=2.5cm"), Ok(vec![0.025, 0.25]));

@@ -2,8 +2,10 @@
 
 use crate::args::Output;
 use crate::failure::Failure;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::text::count;
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use opm_workspace::Progress;
+use std::fmt::Write;
 use std::process;
 use std::sync::{Arc, mpsc};
 use std::thread;
@@ -40,10 +42,10 @@ pub fn watch<T>(
     }
     let bar = match total {
         Some(total) => ProgressBar::new(total).with_style(style(
-            "{msg} {wide_bar} {percent}% of {human_len} poses, {per_sec}, ETA {eta}",
+            "{msg} {wide_bar} {percent}% of {human_len} poses, {rate} poses/s, ETA {eta}",
         )),
         None => ProgressBar::no_length()
-            .with_style(style("{spinner} {msg}: {human_pos} poses, {per_sec}")),
+            .with_style(style("{spinner} {msg}: {human_pos} poses, {rate} poses/s")),
     };
     bar.set_message(label);
     thread::scope(|scope| {
@@ -64,5 +66,9 @@ pub fn watch<T>(
 }
 
 fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+    let style = ProgressStyle::with_template(template);
+    let rate = |state: &ProgressState, text: &mut dyn Write| {
+        let _ = text.write_str(&count(state.per_sec() as u64));
+    };
+    style.unwrap_or_else(|_| ProgressStyle::default_bar()).with_key("rate", rate)
 }

@@ -1,11 +1,12 @@
 //! `opm workspace`: sweeps of the workspace.
 
 use crate::args::{Output, WorkspaceArgs};
+use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
-use crate::record::{Cloud, Recorder};
+use crate::record::Recorder;
 use crate::text::{self, Table, count, short};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -24,59 +25,45 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         mode => Modes::One(load::mode(&manipulator, mode)?),
     };
     let given = given_grid(&args.grid, &manipulator)?;
-    if let Some(path) = &args.output {
-        loaded.refuse_as_output(path, &[])?;
-    }
+    let wishes = Wishes::new(args, &manipulator)?;
+    let recorder = match &args.output {
+        Some(path) => {
+            loaded.refuse_as_output(path, &[])?;
+            given.as_ref().map_or(Ok(()), Recorder::check)?;
+            Some(Recorder::create(path)?)
+        }
+        None => None,
+    };
     let progress = interruptible()?;
     let pool = threads(args.threads)?;
     let grid = match given {
         Some(grid) => grid,
         None => fitted_grid(&manipulator, modes, output, &pool, &progress)?,
     };
-    let cloud = Cloud::new(args, &manipulator, &grid, modes)?;
-    let recorder = match &args.output {
-        Some(path) => Some(Recorder::create(path)?),
-        None => None,
-    };
 
+    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes };
     let sweep = Sweep::new(&manipulator, &grid, modes);
     let before = progress.done();
+    let done = || progress.done() - before;
     let start = Instant::now();
-    let found = watch(
-        output,
-        "counting",
-        Some(grid.poses()),
-        || progress.done() - before,
-        || pool.install(|| sweep.count(&progress)),
-    );
+    let job = || pool.install(|| sweep.count(&progress));
+    let found = watch(output, "counting", Some(grid.poses()), done, job).map_err(|Cancelled| {
+        let (done, poses) = (count(done()), count(grid.poses()));
+        Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
+    })?;
     let seconds = start.elapsed().as_secs_f64().max(1e-9);
-    let found = match (found, recorder) {
-        (Ok(found), None) => found,
-        (Ok(found), Some(recorder)) => {
-            let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes };
-            let job = || recorder.record(&run, &cloud, &sweep, &found, &progress);
-            let (before, total) = (progress.done(), cloud.passes() * grid.poses());
-            let done = || progress.done() - before;
-            watch(output, "recording", Some(total), done, || pool.install(job))?;
-            found
-        }
-        (Err(Cancelled), recorder) => {
-            let done = count(progress.done() - before);
-            if let Some(recorder) = recorder {
-                recorder.discard();
-            }
-            let poses = count(grid.poses());
-            return Err(Failure::Interrupted(format!(
-                "interrupted; {done} of {poses} poses were decided"
-            )));
-        }
-    };
-    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes };
-    if let Some(path) = &args.output {
-        output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
-    }
     if found.reachable == 0 {
         output.warn("no pose of the grid is in reach and within the limits");
+    }
+
+    if let Some(recorder) = recorder {
+        let cloud = Cloud::new(wishes, &manipulator, &grid, modes);
+        let total = cloud.passes() * grid.poses();
+        let before = progress.done();
+        let done = || progress.done() - before;
+        let job = || pool.install(|| recorder.record(&run, &cloud, &sweep, &found, &progress));
+        let path = watch(output, "recording", Some(total), done, job)?;
+        output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
     }
     output.print(&run.json(&found, seconds), run.text(&found, seconds))
 }
@@ -203,7 +190,9 @@ impl Run<'_> {
         let mut results = Table::new(["poses", &format!(">{}", count(found.poses))]);
         results.row(["reachable".into(), count(found.reachable), format!("{} %", short(share))]);
         let _ = write!(text, "{results}");
-        let _ = writeln!(text, "measure {} {measured}", short(value));
+        if self.grid.poses() > 1 {
+            let _ = writeln!(text, "measure {} {measured}", short(value));
+        }
 
         if found.imaginary.iter().any(Option::is_some) {
             let mut ranges = Table::new(["imaginary joint", ">min", ">max", "unit"]);

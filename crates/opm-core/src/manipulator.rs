@@ -13,11 +13,13 @@
 
 mod inverse;
 mod leg;
+mod locate;
 mod mode;
 mod reach;
 
 pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
+pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use reach::{Follow, Mark, Row};
 
@@ -92,11 +94,10 @@ impl Manipulator {
     /// # Errors
     /// Where it does not decompose, or what stands in the way of its preferred decomposition.
     pub fn new(mechanism: Mechanism) -> Result<Self, CompileError> {
-        let decompositions = decompose(&mechanism)?;
         let mut refused = None;
-        for decomposition in decompositions {
-            match Self::with_decomposition(mechanism.clone(), decomposition) {
-                Ok(manipulator) => return Ok(manipulator),
+        for decomposition in decompose(&mechanism)? {
+            match Compiled::new(&mechanism, &decomposition) {
+                Ok(compiled) => return Ok(compiled.complete(mechanism, decomposition)),
                 Err(error) => refused = refused.or(Some(error)),
             }
         }
@@ -111,51 +112,7 @@ impl Manipulator {
         mechanism: Mechanism,
         decomposition: Decomposition,
     ) -> Result<Self, CompileError> {
-        let task = Task::new(&mechanism, &decomposition)?;
-        let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect();
-        let mut actuated = Vec::new();
-        let mut drives = Vec::with_capacity(coordinates.len());
-        for joint in mechanism.joints() {
-            for _ in &joint.coordinates {
-                drives.push(joint.actuated.then_some(actuated.len()));
-                if joint.actuated {
-                    actuated.push(drives.len() - 1);
-                }
-            }
-        }
-
-        let mut legs = Vec::with_capacity(mechanism.legs.len());
-        let mut imaginary = Vec::new();
-        let mut first = 0;
-        for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let mut compiled = CompiledLeg::new(leg, split, &task, first, &drives, &limits)
-                .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
-            if split.imaginary {
-                compiled.imaginary = Some(imaginary.len());
-                imaginary.push(ImaginaryJoint::new(leg, number, &task));
-            }
-            first += leg.coordinates().count();
-            legs.push(compiled);
-        }
-        let modes = ModeLayout::new(&legs);
-        if modes.count() > MOST_CHOICES {
-            return Err(CompileError::Choices(modes.count()));
-        }
-        let mut manipulator = Self {
-            mechanism,
-            decomposition,
-            task,
-            legs,
-            coordinates,
-            limits,
-            actuated,
-            imaginary,
-            modes,
-            home_mode: Mode::default(),
-        };
-        manipulator.home_mode = manipulator.mode_at_home();
-        Ok(manipulator)
+        Ok(Compiled::new(&mechanism, &decomposition)?.complete(mechanism, decomposition))
     }
 
     /// The mechanism.
@@ -234,6 +191,72 @@ impl Manipulator {
                     .min_by(|&a, &b| moved(number, a).total_cmp(&moved(number, b)))
             })
             .fold(Mode::default(), |mode, leg| Mode(mode.0 | leg.0))
+    }
+}
+
+/// What there is to a manipulator beside its mechanism and decomposition.
+struct Compiled {
+    task: Task,
+    legs: Vec<CompiledLeg>,
+    coordinates: Vec<JointCoordinate>,
+    limits: Vec<Limits>,
+    actuated: Vec<usize>,
+    imaginary: Vec<ImaginaryJoint>,
+    modes: ModeLayout,
+}
+
+impl Compiled {
+    fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
+        let task = Task::new(mechanism, decomposition)?;
+        let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect();
+        let mut actuated = Vec::new();
+        let mut drives = Vec::with_capacity(coordinates.len());
+        for joint in mechanism.joints() {
+            for _ in &joint.coordinates {
+                drives.push(joint.actuated.then_some(actuated.len()));
+                if joint.actuated {
+                    actuated.push(drives.len() - 1);
+                }
+            }
+        }
+
+        let mut legs = Vec::with_capacity(mechanism.legs.len());
+        let mut imaginary = Vec::new();
+        let mut first = 0;
+        for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
+            let mut compiled = CompiledLeg::new(leg, split, &task, first, &drives, &limits)
+                .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
+            if split.imaginary {
+                compiled.imaginary = Some(imaginary.len());
+                imaginary.push(ImaginaryJoint::new(leg, number, &task));
+            }
+            first += leg.coordinates().count();
+            legs.push(compiled);
+        }
+        let modes = ModeLayout::new(&legs);
+        if modes.count() > MOST_CHOICES {
+            return Err(CompileError::Choices(modes.count()));
+        }
+        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes })
+    }
+
+    fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
+        let Self { task, legs, coordinates, limits, actuated, imaginary, modes } = self;
+        let mut manipulator = Manipulator {
+            mechanism,
+            decomposition,
+            task,
+            legs,
+            coordinates,
+            limits,
+            actuated,
+            imaginary,
+            modes,
+            home_mode: Mode::default(),
+        };
+        manipulator.home_mode = manipulator.mode_at_home();
+        manipulator
     }
 }
 

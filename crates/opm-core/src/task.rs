@@ -16,16 +16,20 @@
 //! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
 
-use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::planar::PlanarDisplacement;
-use crate::chain::{Amount, unit};
+mod displacement;
+mod subspace;
+
+pub use displacement::{Cut, Displacement};
+pub use subspace::{Subspace, SubspaceKind};
+
+use crate::chain::unit;
 use crate::decomposition::Decomposition;
 use crate::joint::Quantity;
 use crate::mechanism::Mechanism;
 use crate::subspace::SubspaceClass;
-use nalgebra::{
-    Complex, Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3,
-};
+use displacement::{cylindrical, planar};
+use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, Vector3};
+use subspace::positive;
 
 /// One coordinate of the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,55 +40,6 @@ pub struct TaskCoordinate {
     pub quantity: Quantity,
     /// The value at home, radians or metres.
     pub home: f64,
-}
-
-/// A displacement inside one subspace, in that subspace's own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Displacement {
-    /// Of the plane.
-    Planar(PlanarDisplacement),
-    /// About the centre.
-    Spherical(Matrix3<f64>),
-    /// About and along the axis.
-    Cylindrical(CylindricalDisplacement),
-    /// In the plane, without rotation.
-    Translational(Complex<f64>),
-}
-
-/// The four subspaces that have closed-form chains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SubspaceKind {
-    /// `SE(2)`: two translations and the rotation about their normal.
-    Planar,
-    /// `SO(3)`: rotations about a centre.
-    Spherical,
-    /// Rotation about and translation along an axis.
-    Cylindrical,
-    /// Two translations.
-    TranslationalPlane,
-}
-
-/// A subspace with the frame that its chains and its task coordinates use.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Subspace {
-    /// Which.
-    pub kind: SubspaceKind,
-    /// Where the frame's origin is at home, base coordinates.
-    pub origin: Point3<f64>,
-    /// Columns: the frame's directions in base coordinates. The third is the normal of a plane, the
-    /// axis of a cylinder, and the intersection motion's axis in a sphere.
-    pub axes: Matrix3<f64>,
-}
-
-/// The intersection motion as seen in one subspace's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cut {
-    /// Rotation about the frame's origin and third direction.
-    Turn,
-    /// Translation in this direction of a plane.
-    Slide(Complex<f64>),
-    /// Translation along a cylinder's axis.
-    Advance,
 }
 
 /// Why a decomposition has no task coordinates.
@@ -250,179 +205,6 @@ impl Task {
     }
 }
 
-impl Cut {
-    /// `v · exp(I τ)`.
-    #[inline]
-    pub fn after(&self, v: &Displacement, tau: Amount) -> Displacement {
-        match (self, v) {
-            (Self::Turn, Displacement::Planar(v)) => Displacement::Planar(PlanarDisplacement {
-                rotation: v.rotation * tau.turn(),
-                translation: v.translation,
-            }),
-            (Self::Turn, Displacement::Spherical(r)) => {
-                // Columns one and two of R turn; the third, the axis of I, stays.
-                let e = tau.turn();
-                let (x, y, z) = (r.column(0), r.column(1), r.column(2));
-                Displacement::Spherical(Matrix3::from_columns(&[
-                    x * e.re + y * e.im,
-                    y * e.re - x * e.im,
-                    z.into_owned(),
-                ]))
-            }
-            _ => self.commuting(v, tau),
-        }
-    }
-
-    /// `exp(I τ) · b`.
-    #[inline]
-    pub fn before(&self, b: &Displacement, tau: Amount) -> Displacement {
-        match (self, b) {
-            (Self::Turn, Displacement::Planar(b)) => {
-                let e = tau.turn();
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: e * b.rotation,
-                    translation: e * b.translation,
-                })
-            }
-            (Self::Turn, Displacement::Spherical(r)) => {
-                let e = tau.turn();
-                let (x, y, z) = (r.row(0), r.row(1), r.row(2));
-                Displacement::Spherical(Matrix3::from_rows(&[
-                    x * e.re - y * e.im,
-                    x * e.im + y * e.re,
-                    z.into_owned(),
-                ]))
-            }
-            (Self::Slide(along), Displacement::Planar(b)) => {
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: b.rotation,
-                    translation: b.translation + along * tau.value(),
-                })
-            }
-            _ => self.commuting(b, tau),
-        }
-    }
-
-    /// The pairs for which the order does not matter, and `v · exp(I τ)` in a plane.
-    #[inline]
-    fn commuting(&self, g: &Displacement, tau: Amount) -> Displacement {
-        match (self, g) {
-            (Self::Turn, Displacement::Cylindrical(g)) => {
-                cylindrical(g.angle + tau.value(), g.advance)
-            }
-            (Self::Advance, Displacement::Cylindrical(g)) => {
-                cylindrical(g.angle, g.advance + tau.value())
-            }
-            (Self::Slide(along), Displacement::Planar(g)) => {
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: g.rotation,
-                    translation: g.translation + g.rotation * along * tau.value(),
-                })
-            }
-            (Self::Slide(along), Displacement::Translational(t)) => {
-                Displacement::Translational(t + along * tau.value())
-            }
-            // A subspace that does not hold the motion: Subspace::cut never pairs them.
-            _ => *g,
-        }
-    }
-}
-
-impl Subspace {
-    fn new(
-        class: &SubspaceClass,
-        cut_axis: Unit<Vector3<f64>>,
-        cut_point: Option<Point3<f64>>,
-        platform: &Point3<f64>,
-        along_cut: bool,
-    ) -> Result<Self, TaskError> {
-        // The reference point: on the axis of I where that is a line, else the platform's own.
-        let reference = cut_point
-            .map_or(*platform, |p| p + cut_axis.into_inner() * cut_axis.dot(&(platform - p)));
-        let rotation = cut_point.is_some();
-        let (kind, origin, third) = match class {
-            SubspaceClass::Planar { normal } => (
-                SubspaceKind::Planar,
-                reference,
-                if rotation { cut_axis } else { positive(*normal, None) },
-            ),
-            SubspaceClass::Spherical { centre } => (SubspaceKind::Spherical, *centre, cut_axis),
-            SubspaceClass::Cylindrical { axis, point } => {
-                let on_axis = point + axis.into_inner() * axis.dot(&(reference - point));
-                (SubspaceKind::Cylindrical, on_axis, cut_axis)
-            }
-            SubspaceClass::TranslationalPlane { normal } => {
-                (SubspaceKind::TranslationalPlane, reference, positive(*normal, None))
-            }
-            other => return Err(TaskError::Subspace(other.name())),
-        };
-        // An upper plane that is taken modulo I lays its first direction along I.
-        let flat = matches!(kind, SubspaceKind::Planar | SubspaceKind::TranslationalPlane);
-        let first = if flat && !rotation && along_cut { cut_axis } else { beside(&third) };
-        let first =
-            Unit::new_normalize(first.into_inner() - third.into_inner() * third.dot(&first));
-        let second = third.cross(&first);
-        let axes = Matrix3::from_columns(&[first.into_inner(), second, third.into_inner()]);
-        Ok(Self { kind, origin, axes })
-    }
-
-    /// Number of freedoms of the motion inside it.
-    pub fn dimension(&self) -> usize {
-        match self.kind {
-            SubspaceKind::Planar | SubspaceKind::Spherical => 3,
-            SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => 2,
-        }
-    }
-
-    /// A direction of the base in this frame.
-    pub fn direction(&self, direction: &Vector3<f64>) -> Vector3<f64> {
-        self.axes.tr_mul(direction)
-    }
-
-    /// A point of the base in this frame.
-    pub fn point(&self, point: &Point3<f64>) -> Vector3<f64> {
-        self.axes.tr_mul(&(point - self.origin))
-    }
-
-    /// A displacement of this subspace in base coordinates.
-    pub fn isometry(&self, displacement: &Displacement) -> Isometry3<f64> {
-        let (rotation, translation) = match displacement {
-            Displacement::Planar(g) => (
-                Rotation3::from_axis_angle(&Vector3::z_axis(), g.rotation.arg()),
-                Vector3::new(g.translation.re, g.translation.im, 0.0),
-            ),
-            Displacement::Spherical(r) => (Rotation3::from_matrix_unchecked(*r), Vector3::zeros()),
-            Displacement::Cylindrical(g) => {
-                (Rotation3::from_axis_angle(&Vector3::z_axis(), g.angle), Vector3::z() * g.advance)
-            }
-            Displacement::Translational(t) => {
-                (Rotation3::identity(), Vector3::new(t.re, t.im, 0.0))
-            }
-        };
-        let axes =
-            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(self.axes));
-        let frame = Isometry3::from_parts(Translation3::from(self.origin), axes);
-        let local = Isometry3::from_parts(
-            Translation3::from(translation),
-            UnitQuaternion::from_rotation_matrix(&rotation),
-        );
-        frame * local * frame.inverse()
-    }
-
-    fn cut(&self, axis: &Unit<Vector3<f64>>, rotation: bool) -> Cut {
-        if rotation {
-            return Cut::Turn;
-        }
-        match self.kind {
-            SubspaceKind::Cylindrical => Cut::Advance,
-            _ => {
-                let d = self.direction(axis);
-                Cut::Slide(Complex::new(d.x, d.y))
-            }
-        }
-    }
-}
-
 /// `Rz(zeta) Ry(xi) Rz(psi)`.
 #[inline]
 pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
@@ -438,36 +220,6 @@ pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
         sx * sp,
         cx,
     )
-}
-
-#[inline]
-fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
-    Displacement::Planar(PlanarDisplacement { rotation, translation: Complex::new(x, y) })
-}
-
-#[inline]
-fn cylindrical(angle: f64, advance: f64) -> Displacement {
-    Displacement::Cylindrical(CylindricalDisplacement { angle, advance })
-}
-
-/// The direction or its opposite: the one on `hint`'s side, else the one that points up, where it
-/// is level the one towards base y, and so on.
-fn positive(axis: Unit<Vector3<f64>>, hint: Option<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    /// A component shorter than this is rounding in a file's digits, not a direction.
-    const LEVEL: f64 = 1e-6;
-    let side = match hint {
-        Some(hint) => hint.dot(&axis),
-        None => [axis.z, axis.y, axis.x].into_iter().find(|c| c.abs() > LEVEL).unwrap_or(1.0),
-    };
-    if side < 0.0 { -axis } else { axis }
-}
-
-/// A direction square to `third`: base x laid into the plane, or base y where x is nearly normal.
-fn beside(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    /// Base x leans out of the plane by more than about 84 degrees: too far to lay it down.
-    const STEEP: f64 = 0.995;
-    let base = if third.x.abs() > STEEP { Vector3::y() } else { Vector3::x() };
-    Unit::new_normalize(base - third.into_inner() * third.dot(&base))
 }
 
 const fn length(name: &'static str, home: f64) -> TaskCoordinate {

@@ -205,8 +205,15 @@ fn round(end: f64, extent: &Extent, outward: impl Fn(f64) -> f64) -> f64 {
     if width <= 0.0 {
         return end;
     }
-    let step = 10_f64.powf((width / 100.0).log10().ceil());
-    let rounded = outward((end / step) * (1.0 - 1e-12)) * step;
+    let exponent = (width / 100.0).log10().ceil() as i32;
+    // Scaled by a whole power of ten both ways, the end is the double nearest to its decimals.
+    let power = 10_f64.powi(exponent.abs());
+    let inside = end * (1.0 - 1e-12);
+    let rounded = if exponent < 0 {
+        outward(inside * power) / power
+    } else {
+        outward(inside / power) * power
+    };
     // Angles end at a whole turn, not just beyond.
     if (end.abs() - PI).abs() < 1e-12 { end } else { rounded }
 }

@@ -10,10 +10,11 @@ const SEGMENT: u64 = 1024;
 
 /// Poses of a block, the unit of work: some 0.1 ms, so that threads share evenly and a request to
 /// stop is heard at once.
-const BLOCK: u64 = 1 << 16;
+const BLOCK: u64 = 1 << 15;
 
-/// Blocks a thread between two visits of points: bounds the memory that points wait in.
-const BLOCKS_AHEAD: u64 = 8;
+/// Blocks that are decided together between two visits of points (more only where there are more
+/// threads): bounds the memory that points wait in.
+const BATCH: u64 = 16;
 
 /// Which working modes count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +107,7 @@ impl<'a> Sweep<'a> {
         empty: impl Fn() -> T + Sync,
         mut visit: impl FnMut(T) -> Result<(), E> + Send,
     ) -> Result<(), E> {
-        let ahead = BLOCKS_AHEAD * rayon::current_num_threads() as u64;
+        let ahead = BATCH.max(rayon::current_num_threads() as u64);
         let batch = |start: u64| -> Result<Vec<T>, Cancelled> {
             (start..(start + ahead).min(self.blocks()))
                 .collect::<Vec<_>>()

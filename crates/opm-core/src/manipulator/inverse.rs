@@ -24,7 +24,7 @@ pub enum PoseError {
         expected: usize,
     },
     /// Not a number, infinite, or too large.
-    #[error("{name} is {value}, expected a finite number")]
+    #[error("{name} is {value:?}, expected a number of at most {LARGEST:?}")]
     NotFinite {
         /// The coordinate.
         name: &'static str,
@@ -243,8 +243,7 @@ impl Manipulator {
             return Err(PoseError::Length { given: pose.len(), expected: coordinates.len() });
         }
         for (coordinate, &value) in coordinates.iter().zip(pose) {
-            // Also false for NaN.
-            if !(value.abs() <= LARGEST) {
+            if value.is_nan() || value.abs() > LARGEST {
                 return Err(PoseError::NotFinite { name: coordinate.name, value });
             }
         }

@@ -150,7 +150,9 @@ impl PlanoSpherical {
             platform: self.home.point(),
             task: TaskHints {
                 axis: Some(Vector3::z()),
-                home: vec![("zeta".into(), zeta), ("xi".into(), xi), ("psi".into(), psi)],
+                home: [("x", x), ("y", y), ("zeta", zeta), ("xi", xi), ("psi", psi)]
+                    .map(|(name, value)| (name.to_owned(), value))
+                    .into(),
             },
         })
     }

@@ -121,7 +121,7 @@ impl TranslationalHelical {
             platform: Point3::new(x, y, 0.0),
             task: TaskHints {
                 axis: Some(-in_plane(unit(direction)).into_inner()),
-                home: vec![("phi".into(), phi)],
+                home: vec![("x".into(), x), ("y".into(), y), ("phi".into(), phi)],
             },
         })
     }

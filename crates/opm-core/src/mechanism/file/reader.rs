@@ -168,7 +168,7 @@ impl<'a> Value<'a> {
     /// An angle or a length, in the file's unit; SI is returned.
     pub(in crate::mechanism) fn quantity(&self, quantity: Quantity) -> Option<f64> {
         let units = self.reader.units();
-        let value = self.number()? * units.factor(quantity);
+        let value = units.si(self.number()?, quantity);
         if value.abs() > LARGEST {
             let limit = units.show(LARGEST, quantity);
             self.report(format!(

@@ -33,11 +33,17 @@ impl LengthUnit {
 
     /// Metres in one unit.
     pub fn factor(self) -> f64 {
+        self.metres(1.0)
+    }
+
+    /// A number of this unit in metres. Divided, not multiplied: 9 mm are 0.009, which 9 times 0.001
+    /// in double precision is not.
+    pub fn metres(self, value: f64) -> f64 {
         match self {
-            Self::Metre => 1.0,
-            Self::Centimetre => 0.01,
-            Self::Millimetre => 0.001,
-            Self::Inch => 0.0254,
+            Self::Metre => value,
+            Self::Centimetre => value / 100.0,
+            Self::Millimetre => value / 1000.0,
+            Self::Inch => value * 0.0254,
         }
     }
 
@@ -96,6 +102,14 @@ impl FileUnits {
     /// Metres and radians.
     pub const SI: Self = Self { length: LengthUnit::Metre, angle: AngleUnit::Radian };
 
+    /// A number of the file in SI.
+    pub fn si(self, value: f64, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Angle => value * self.angle.factor(),
+            Quantity::Length => self.length.metres(value),
+        }
+    }
+
     /// SI units in one unit of the file.
     pub fn factor(self, quantity: Quantity) -> f64 {
         match quantity {
@@ -136,6 +150,15 @@ mod tests {
         assert_eq!(file.show(std::f64::consts::FRAC_PI_2, Quantity::Angle).to_string(), "90 deg");
         assert_eq!(FileUnits::SI.show(-0.0, Quantity::Length).to_string(), "0 m");
         assert_eq!(FileUnits::SI.show(-1.5e-9, Quantity::Length).to_string(), "-0.0000000015 m");
+    }
+
+    #[test]
+    fn decimals_of_a_millimetre_are_decimals_of_a_metre() {
+        let file = FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Radian };
+        assert_eq!(file.si(9.0, Quantity::Length), 0.009);
+        assert_eq!(file.si(9.0, Quantity::Angle), 9.0);
+        assert_eq!(LengthUnit::Centimetre.metres(7.0), 0.07);
+        assert_eq!(LengthUnit::Inch.factor(), 0.0254);
     }
 
     #[test]

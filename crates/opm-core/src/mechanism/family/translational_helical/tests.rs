@@ -26,7 +26,8 @@ fn assert_geometry(
     let direction = family.legs[0].alpha + family.legs[0].beta;
     let k_hat = Vector3::new(direction.cos(), direction.sin(), 0.0);
     prop_assert!((mechanism.task.axis.unwrap() + k_hat).norm() < ROUNDING);
-    prop_assert_eq!(&mechanism.task.home, &[("phi".to_owned(), phi)]);
+    let home = [("x", x), ("y", y), ("phi", phi)].map(|(name, value)| (name.to_owned(), value));
+    prop_assert_eq!(&mechanism.task.home, &home);
     for (i, (given, leg)) in family.legs.iter().zip(&mechanism.legs).enumerate() {
         let [s, r, last] = &leg.joints[..] else { unreachable!() };
         let names = [&s.name, &r.name, &last.name].map(String::as_str);

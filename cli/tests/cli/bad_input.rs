@@ -1,0 +1,166 @@
+//! Every kind of wrong use: the exit status, and a message that names the flag or the place.
+
+use crate::PLANO;
+use crate::run::{Folder, command, opm};
+use std::fs;
+
+#[test]
+fn wrong_usage_names_the_flag() {
+    let ik = ["ik", PLANO];
+    let workspace = ["workspace", PLANO];
+    for (command, flags, parts) in [
+        (&[][..], &[][..], &["Usage"][..]),
+        (&["fly"], &[], &["fly"]),
+        (&["decompose"], &[], &["<FILE>"]),
+        (&["decompose", PLANO], &["--format", "xml"], &["--format", "text, json"]),
+        (&ik, &[], &["--pose", "--poses"]),
+        (&ik, &["--pose", "x=0", "--poses", "in.csv"], &["--pose", "--poses"]),
+        (&ik, &["--pose", "x=0", "-o", "out.csv"], &["--output"]),
+        (&ik, &["--pose", "x"], &["--pose", "expected NAME=VALUE"]),
+        (&ik, &["--pose", "x=10furlong"], &["--pose", "unknown unit \"furlong\"", "mm"]),
+        (&ik, &["--pose", "x=1,x=2"], &["--pose", "x is given twice"]),
+        (&ik, &["--pose", "x=nan"], &["--pose", "not a number"]),
+        (&ik, &["--pose", "yaw=1"], &["--pose", "\"yaw\"", "x, y, zeta, xi, psi"]),
+        (&ik, &["--pose", "x=1deg"], &["--pose", "x is a length"]),
+        (&ik, &["--pose", "xi=1mm"], &["--pose", "xi is an angle"]),
+        (&ik, &["--pose", "x=1e200"], &["--pose", "x is 1e200"]),
+        (&ik, &["--pose", "x=0", "--mode", "++"], &["--mode", "2 signs for 7", "++ ++ ++ +"]),
+        (&ik, &["--pose", "x=0", "--mode", "-x ++ ++ +"], &["--mode", "`x` is not a sign"]),
+        (&ik, &["--pose", "x=0", "--mode", "home", "--all-modes"], &["--mode", "--all-modes"]),
+        (&ik, &["--poses", "-", "--format", "json"], &["--format json", "--output"]),
+        (&workspace, &["--grid", "x=0:1"], &["--grid", "AXIS=MIN:MAX:COUNT"]),
+        (&workspace, &["--grid", "x=0:1:two"], &["--grid", "\"two\""]),
+        (&workspace, &["--grid", "x=-1:1mm:3"], &["--grid", "one end only"]),
+        (&workspace, &["--grid", "yaw=0:1:3"], &["--grid", "\"yaw\"", "x, y, zeta, xi, psi"]),
+        (&workspace, &["--grid", "x=0:1deg:3"], &["--grid", "x is a length"]),
+        (&workspace, &["--grid", "x=0", "--grid", "x=1"], &["--grid", "axis x", "twice"]),
+        (&workspace, &["--grid", "x=1:0:3"], &["--grid", "axis x", "smaller one first"]),
+        (&workspace, &["--grid", "x=0:1:0"], &["--grid", "axis x", "at least 1"]),
+        (&workspace, &["--grid", "x=0:1:1"], &["--grid", "axis x", "at least 2"]),
+        (
+            &workspace,
+            &["--grid", "x=0:1:18446744073709551615", "--grid", "y=0:1:18446744073709551615"],
+            &["--grid", "at most 9007199254740992"],
+        ),
+        (&workspace, &["--grid", "x=0:1:18446744073709551616"], &["--grid", "number of values"]),
+        (&workspace, &["--mode", "sideways"], &["--mode", "not a sign"]),
+        (&workspace, &["--threads", "0"], &["--threads", "1..=1024"]),
+        (&workspace, &["--color", "x"], &["--output"]),
+        (&workspace, &["-o", "-"], &["--output", "standard output"]),
+    ] {
+        opm(&[command, flags].concat()).fails(2, parts);
+    }
+}
+
+#[test]
+fn wrong_wishes_for_a_recording_cost_no_time_and_leave_no_file() {
+    let folder = Folder::new();
+    let output = folder.arg("out.mcap");
+    let slices = ["--grid", "psi=0:1:1000001"];
+    for (flags, parts) in [
+        (&["--color", "mood"][..], &["--color", "\"mood\"", "psi, theta11", "S1", "phi24"][..]),
+        // Passive joints are not among the values.
+        (&["--color", "phi11"], &["--color", "\"phi11\""]),
+        (&["--axes", "x,y"], &["--axes", "three", "tip"]),
+        (&["--axes", "x,y,x"], &["--axes", "different"]),
+        (&["--axes", "x,y,yaw"], &["--axes", "\"yaw\""]),
+        (&["--scalars", "S1,S9"], &["--scalars", "\"S9\""]),
+        (&["--scalars", "S1,S1"], &["--scalars", "S1 is given twice"]),
+        (&["--scalars", "x"], &["--scalars", "field x"]),
+        (&slices, &["--grid", "1,000,001 slices", "psi", "at most 1,000,000"]),
+    ] {
+        let args = [&["workspace", PLANO, "-o", &output], flags].concat();
+        opm(&args).fails_with_one_line(2, parts);
+        assert_eq!(folder.names(), [""; 0]);
+    }
+}
+
+#[test]
+fn a_mechanism_that_cannot_be_had() {
+    let folder = Folder::new();
+    let missing = folder.arg("missing.toml");
+    opm(&["decompose", &missing]).fails_with_one_line(1, &["missing.toml: No such file"]);
+    let unknown = opm(&["decompose", "plano-sperical"]);
+    unknown.fails_with_one_line(1, &["plano-sperical", "no such example", PLANO]);
+    opm(&["decompose", &folder.arg("")]).fails_with_one_line(1, &["directory"]);
+    let latin = folder.write("latin.toml", b"format = 1\nname = \"caf\xe9\"\n");
+    opm(&["decompose", &latin]).fails_with_one_line(1, &["latin.toml:2: not UTF-8"]);
+    let empty = folder.write("empty.toml", "");
+    opm(&["ik", &empty, "--pose", ""]).fails(1, &["empty.toml:1:1: `format`"]);
+    opm(&["workspace", "bennett-double-spherical-6r"])
+        .fails_with_one_line(1, &["bennett-double-spherical-6r: leg leg1", "closed-form"]);
+    opm(&["examples", "none"]).fails_with_one_line(2, &["\"none\"", PLANO]);
+}
+
+#[test]
+fn every_problem_of_a_file_has_its_line() {
+    let folder = Folder::new();
+    let text = opm(&["examples", PLANO]).text().replace("b1 = 100", "b1 = -100");
+    let text = text.replace("h = 120  ", "hh = 120 ");
+    let file = folder.write("bad.toml", &text);
+    let run = opm(&["ik", &file, "--pose", "x=0"]);
+    run.fails(1, &["b1"]);
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    assert!(lines.len() >= 4, "three legs and the arm: {}", run.stderr);
+    let prefix = format!("opm: {file}:");
+    for line in &lines {
+        let place = line.strip_prefix(&prefix).unwrap_or_else(|| panic!("{line}"));
+        let mut numbers = place.splitn(3, ':').take(2);
+        assert!(numbers.all(|n| n.parse::<usize>().is_ok_and(|n| n > 0)), "{line}");
+    }
+    let arm = text.lines().position(|line| line.starts_with("b1")).unwrap() + 1;
+    assert!(lines.iter().any(|line| line.starts_with(&format!("{prefix}{arm}:"))));
+}
+
+#[test]
+fn inputs_are_not_written_over() {
+    let folder = Folder::new();
+    let text = opm(&["examples", PLANO]).stdout;
+    let file = folder.write("mine.toml", &text);
+    let csv = folder.write("in.csv", "x\n0\n");
+    let same = &["--output", "also the input"];
+    opm(&["workspace", &file, "-o", &file]).fails_with_one_line(2, same);
+    opm(&["ik", &file, "--poses", &csv, "-o", &csv]).fails_with_one_line(2, same);
+    opm(&["ik", &file, "--poses", &csv, "-o", &file]).fails_with_one_line(2, same);
+    let dotted = folder.arg("./in.csv");
+    opm(&["ik", &file, "--poses", &csv, "-o", &dotted]).fails_with_one_line(2, same);
+    assert_eq!((folder.read("mine.toml"), folder.read("in.csv")), (text, "x\n0\n".to_owned()));
+    assert_eq!(folder.names(), ["in.csv", "mine.toml"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let folder = Folder::new();
+    let csv = folder.write("in.csv", "x\n0\n");
+    fs::create_dir(folder.path("taken")).unwrap();
+    for (output, parts) in [
+        (folder.arg("no/where.out"), &["where.out", "cannot create", "No such file"][..]),
+        (folder.arg("taken"), &["taken", "not a regular file"]),
+    ] {
+        opm(&["workspace", PLANO, "-o", &output]).fails_with_one_line(1, parts);
+        opm(&["ik", PLANO, "--poses", &csv, "-o", &output]).fails_with_one_line(1, parts);
+    }
+    opm(&["ik", PLANO, "--poses", &folder.arg("none.csv")])
+        .fails_with_one_line(1, &["none.csv: No such file"]);
+}
+
+/// Writing to `/dev/full` fails as a full disk does.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_a_failure() {
+    let folder = Folder::new();
+    let csv = folder.write("in.csv", "x\n0\n");
+    for args in [
+        &["decompose", PLANO][..],
+        &["ik", PLANO, "--pose", "x=0", "--format", "json"],
+        &["ik", PLANO, "--poses", &csv],
+        &["examples", PLANO],
+        &["completions", "bash"],
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = command(args).stdout(full).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {stderr}");
+        assert!(stderr.starts_with("opm: standard output: No space left"), "{args:?}: {stderr}");
+    }
+}

@@ -1,0 +1,227 @@
+//! `opm ik --poses`: CSV in, CSV out.
+
+use crate::run::{Folder, command, keys, number, opm, opm_reading};
+use crate::{HELICAL, PLANO};
+use std::f64::consts::TAU;
+use std::process::Stdio;
+
+/// The reference vectors have 16 digits; closed forms lose a few near the rim.
+const REFERENCE: f64 = 1e-9;
+
+/// A table with a header, by name.
+struct Csv {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Csv {
+    fn parse(text: &str) -> Self {
+        let mut lines =
+            text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        Self { header: lines.next().expect("a header"), rows: lines.collect() }
+    }
+
+    #[track_caller]
+    fn column(&self, name: &str) -> usize {
+        self.header.iter().position(|known| known == name).expect(name)
+    }
+
+    fn cell(&self, row: usize, name: &str) -> &str {
+        &self.rows[row][self.column(name)]
+    }
+
+    fn number(&self, row: usize, name: &str) -> f64 {
+        self.cell(row, name).parse().unwrap_or(f64::NAN)
+    }
+
+    /// The columns alone, as text.
+    fn select(&self, names: &[&str], rows: &[usize]) -> String {
+        let mut text = names.join(",") + "\n";
+        for &row in rows {
+            let cells: Vec<&str> = names.iter().map(|name| self.cell(row, name)).collect();
+            text += &(cells.join(",") + "\n");
+        }
+        text
+    }
+}
+
+/// Vectors from an independent implementation, every pose through the program.
+#[test]
+fn reference_vectors_of_the_plano_spherical_manipulator() {
+    let golden =
+        Csv::parse(include_str!("../../../data/reference/independent/plano_spherical_ik.csv"));
+    let task = ["x", "y", "zeta", "xi", "psi"];
+    let mut modes: Vec<&str> = (0..golden.rows.len()).map(|row| golden.cell(row, "mode")).collect();
+    modes.sort_unstable();
+    modes.dedup();
+    let mut closed = 0;
+    for mode in modes {
+        let rows: Vec<usize> =
+            (0..golden.rows.len()).filter(|&row| golden.cell(row, "mode") == mode).collect();
+        let input = golden.select(&task, &rows);
+        let run = opm_reading(&input, &["ik", PLANO, "--poses", "-", "--mode", mode]);
+        let found = Csv::parse(run.text());
+        assert_eq!(found.rows.len(), rows.len());
+        for (row, &expected) in rows.iter().enumerate() {
+            assert_eq!(found.cell(row, "mode"), mode);
+            assert_eq!(found.cell(row, "reachable"), golden.cell(expected, "closes"), "{row}");
+            let within = golden.cell(expected, "within_limits");
+            assert_eq!(found.cell(row, "within_limits"), within, "{row}");
+            let joints = ["theta11", "theta12", "theta13", "S1", "S2", "S3", "phi14", "phi24"];
+            for joint in joints {
+                if found.cell(row, "reachable") == "0" {
+                    assert_eq!(found.cell(row, joint), "");
+                    continue;
+                }
+                let mut off = found.number(row, joint) - golden.number(expected, joint);
+                if !joint.starts_with('S') {
+                    off = (off + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                }
+                assert!(off.abs() < REFERENCE, "{mode}, row {row}, {joint}: off by {off}");
+            }
+            closed += usize::from(found.cell(row, "reachable") == "1");
+        }
+    }
+    assert!(closed > 100, "only {closed} reference poses close");
+}
+
+#[test]
+fn reference_vectors_of_the_helical_manipulator() {
+    let golden = Csv::parse(include_str!(
+        "../../../data/reference/independent/translational_helical_ik.csv"
+    ));
+    let rows: Vec<usize> = (0..golden.rows.len()).collect();
+    assert!(rows.len() > 10);
+    let input = golden.select(&["phi", "y", "x"], &rows);
+    let found = Csv::parse(opm_reading(&input, &["ik", HELICAL, "--poses", "-"]).text());
+    let header = ["x", "y", "phi", "reachable", "within_limits", "mode", "S", "S1", "S2", "S3"];
+    assert_eq!(found.header, header);
+    for row in rows {
+        assert_eq!(found.cell(row, "within_limits"), golden.cell(row, "within_limits"));
+        for name in ["x", "y", "phi", "S", "S1", "S2", "S3"] {
+            let off = found.number(row, name) - golden.number(row, name);
+            assert!(off.abs() < REFERENCE, "row {row}, {name}: off by {off}");
+        }
+    }
+}
+
+#[test]
+fn columns_may_come_in_any_order_and_number() {
+    let run = opm_reading("xi,x\n0.1,0.02\n\"0.2\", -1e-2 \n", &["ik", PLANO, "--poses", "-"]);
+    let found = Csv::parse(run.text());
+    let expected = [
+        "x",
+        "y",
+        "zeta",
+        "xi",
+        "psi",
+        "reachable",
+        "within_limits",
+        "mode",
+        "theta11",
+        "theta12",
+        "theta13",
+        "S1",
+        "S2",
+        "S3",
+        "phi14",
+        "phi24",
+    ];
+    assert_eq!(found.header, expected);
+    let poses: Vec<_> = found.rows.iter().map(|row| row[..5].join(" ")).collect();
+    assert_eq!(poses, ["0.02 0.0 0.0 0.1 0.0", "-0.01 0.0 0.0 0.2 0.0"]);
+    // Each row is what the single pose gives.
+    let alone = opm(&["ik", PLANO, "--pose", "x=0.02,xi=0.1", "--format", "json"]).json();
+    let solution = &alone["solutions"][0];
+    for (name, alone) in [("S2", &solution["joints"]), ("theta13", &solution["imaginary"])] {
+        assert!((found.number(0, name) - number(&alone[name])).abs() < REFERENCE, "{name}");
+    }
+}
+
+#[test]
+fn no_rows_and_odd_line_ends_are_fine() {
+    let header_only = opm_reading("x,y\n", &["ik", HELICAL, "--poses", "-"]);
+    assert_eq!(Csv::parse(header_only.text()).rows.len(), 0);
+    let windows = opm_reading("\u{feff}x,y\r\n0,0\r\n\r\n1,1", &["ik", HELICAL, "--poses", "-"]);
+    assert_eq!(Csv::parse(windows.text()).rows.len(), 2);
+}
+
+#[test]
+fn all_modes_give_a_row_each() {
+    let input = "xi\n0.1\n2.0943951023931953\n";
+    let run = opm_reading(input, &["ik", PLANO, "--poses", "-", "--all-modes"]);
+    let found = Csv::parse(run.text());
+    assert_eq!(found.rows.len(), 128 + 1, "every mode of the first pose, one row for the second");
+    assert_eq!((found.cell(128, "reachable"), found.cell(128, "mode")), ("0", ""));
+    assert_eq!(found.cell(0, "mode"), "++ ++ ++ +");
+}
+
+#[test]
+fn a_file_appears_when_it_is_whole() {
+    let folder = Folder::new();
+    let (input, output) = (folder.write("in.csv", "x\n0\n0.01\n5\n"), folder.arg("out.csv"));
+    let args = ["ik", PLANO, "--poses", &input, "-o", &output];
+    let run = opm(&args);
+    assert_eq!(run.text(), "", "the CSV is in the file, the rest is talk");
+    assert!(run.stderr.contains("3 poses, 2 in reach, 2 within limits"), "{}", run.stderr);
+    let to_stdout = opm(&args[..4]);
+    assert_eq!(folder.read("out.csv"), to_stdout.text());
+    assert_eq!(to_stdout.stdout, opm(&[&args[..4], &["-o", "-"]].concat()).stdout);
+
+    let summary = opm(&[&args[..], &["--format", "json"]].concat()).json();
+    let expected = ["poses", "reachable", "within_limits", "seconds", "poses_per_second"];
+    assert_eq!(keys(&summary), expected);
+    assert_eq!([&summary["poses"], &summary["reachable"]].map(number), [3.0, 2.0]);
+
+    // A bad row at the end: what was there stays as it was.
+    let before = folder.read("out.csv");
+    let bad = folder.write("bad.csv", "x\n0\nzero\n");
+    opm(&["ik", PLANO, "--poses", &bad, "-o", &output]).fails_with_one_line(1, &["bad.csv:3: "]);
+    assert_eq!(folder.read("out.csv"), before);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = Folder::new();
+    let input = folder.write("in.csv", "x\n".to_owned() + &"0.01\n".repeat(20_000));
+    let mut child = command(&["ik", PLANO, "--poses", &input])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+}
+
+#[test]
+fn bad_rows_are_named_by_file_line_and_column() {
+    let folder = Folder::new();
+    for (content, parts) in [
+        ("", &["in.csv:1: no header", "x,y,zeta,xi,psi"][..]),
+        ("0.1,0.2\n0,0\n", &["in.csv:1: no header"]),
+        ("x,yaw\n0,0\n", &["in.csv:1: column \"yaw\"", "expected one of x, y, zeta, xi, psi"]),
+        ("x,,y\n0,0,0\n", &["in.csv:1: column \"\""]),
+        ("x,y,x\n0,0,0\n", &["in.csv:1: column \"x\": given twice"]),
+        ("x,y\n0,0\n1\n", &["in.csv:3: 1 columns, expected 2: x,y"]),
+        ("x,y\n0,0\n1,2,3\n", &["in.csv:3: 3 columns, expected 2: x,y"]),
+        ("x,y\r\n0,0\r\n1,2,3\r\n", &["in.csv:3: 3 columns"]),
+        ("x,y\n\n\n0,zero\n", &["in.csv:4: column y: \"zero\" is not a number"]),
+        ("x,y\n0,\n", &["in.csv:2: column y: \"\" is not a number"]),
+        ("x,y\n0,NaN\n", &["in.csv:2: column y: \"NaN\" is not a finite number"]),
+        ("y,x\n0,0\n0,-inf\n", &["in.csv:3: column x: \"-inf\" is not a finite number"]),
+        ("x\n1e999\n", &["in.csv:2: column x: \"1e999\" is not a finite number"]),
+        ("x\n1e200\n", &["in.csv:2: x is 1e200"]),
+        ("x\n10mm\n", &["in.csv:2: column x: \"10mm\" is not a number"]),
+    ] {
+        let input = folder.write("in.csv", content);
+        let output = folder.arg("out.csv");
+        let run = opm(&["ik", PLANO, "--poses", &input, "-o", &output]);
+        run.fails_with_one_line(1, parts);
+        assert!(!folder.path("out.csv").exists(), "{content:?}");
+    }
+    let input = folder.write("binary.csv", [b'x', b'\n', 0xff, 0xfe, b'\n']);
+    opm(&["ik", PLANO, "--poses", &input, "-o", &folder.arg("out.csv")])
+        .fails_with_one_line(1, &["binary.csv:2: column x"]);
+}

@@ -1,0 +1,150 @@
+//! `opm ik` at one pose.
+
+use crate::run::{keys, number, opm};
+use crate::{HELICAL, PLANO};
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+/// Six decimals of the published numbers.
+const PUBLISHED: f64 = 1e-6;
+/// Sums of a few doubles.
+const EXACT: f64 = 1e-12;
+
+fn ik(args: &[&str]) -> Value {
+    let all: Vec<&str> = [&["ik"], args, &["--format", "json"]].concat();
+    opm(&all).json()
+}
+
+/// Same angle, whole turns aside.
+#[track_caller]
+fn assert_angle(found: &Value, expected: f64) {
+    let off = (number(found) - expected).rem_euclid(TAU);
+    assert!(off.min(TAU - off) < PUBLISHED, "{found}, expected {expected}");
+}
+
+#[test]
+fn imaginary_joints_are_the_published_ones() {
+    for (pose, plus, minus) in [
+        ("", [0.155_324, 2.249_719, 4.344_115], [2.986_268, 5.080_663, 0.891_873]),
+        ("xi=20deg", [0.226_775, 2.006_096, 4.538_244], [2.914_818, 4.886_534, 1.135_496]),
+        (
+            "zeta=30deg,xi=20deg,psi=-10deg",
+            [0.595_875, 2.365_971, 4.869_578],
+            [3.286_056, 5.226_662, 1.484_959],
+        ),
+    ] {
+        for (mode, thetas) in [("++ ++ ++ +", plus), ("-+ -+ -+ +", minus)] {
+            let found = ik(&[PLANO, "--pose", pose, "--mode", mode]);
+            let imaginary = &found["solutions"][0]["imaginary"];
+            for (name, theta) in ["theta11", "theta12", "theta13"].into_iter().zip(thetas) {
+                assert_angle(&imaginary[name], theta);
+            }
+        }
+    }
+}
+
+#[test]
+fn one_solution_has_every_joint() {
+    let found = ik(&[PLANO, "--pose", "x=10mm,xi=15deg"]);
+    assert_eq!(keys(&found), ["pose", "reachable", "solutions", "unreachable"]);
+    assert_eq!(keys(&found["pose"]), ["x", "y", "zeta", "xi", "psi"]);
+    assert_eq!(number(&found["pose"]["x"]), 0.01);
+    assert!((number(&found["pose"]["xi"]) - 15.0_f64.to_radians()).abs() < EXACT);
+    assert_eq!(found["reachable"], true);
+    assert_eq!(found["unreachable"], Value::Array(vec![]));
+    let solutions = found["solutions"].as_array().unwrap();
+    assert_eq!(solutions.len(), 1);
+    assert_eq!(keys(&solutions[0]), ["mode", "within_limits", "joints", "imaginary"]);
+    assert_eq!(solutions[0]["mode"], "++ ++ ++ +");
+    assert_eq!(keys(&solutions[0]["imaginary"]), ["theta11", "theta12", "theta13"]);
+    let joints = keys(&solutions[0]["joints"]);
+    assert_eq!(joints.len(), 3 * 5 + 2 + 3, "three PRRRR legs and one RRS leg");
+    for name in ["S1", "phi11", "theta33", "phi24", "s4.x", "s4.y", "s4.z"] {
+        assert!(joints.contains(&name), "{name} in {joints:?}");
+    }
+}
+
+/// The sliders of the helical manipulator by the paper's linear formula, corrected.
+#[test]
+fn sliders_of_the_helical_manipulator_follow_the_formula() {
+    let (x, y, phi, pitch) = (0.05_f64, -0.03_f64, 0.7_f64, 0.02_f64);
+    let found = ik(&[HELICAL, "--pose", "x=50mm,y=-30mm,phi=0.7"]);
+    let solution = &found["solutions"][0];
+    assert_eq!(solution["mode"], "");
+    assert!((number(&solution["imaginary"]["S"]) - pitch * phi).abs() < EXACT);
+    let legs = [(210.0_f64, 45.0_f64, 0.010), (330.0, 285.0, 0.015), (90.0, 165.0, 0.025)];
+    for (number_, (alpha, beta, k)) in legs.into_iter().enumerate() {
+        let (sin, cos) = alpha.to_radians().sin_cos();
+        let along = k + if number_ == 0 { pitch * phi } else { 0.0 };
+        let expected = -sin * x + cos * y + beta.to_radians().sin() * along;
+        let found = number(&solution["joints"][format!("S{}", number_ + 1)]);
+        assert!((found - expected).abs() < EXACT, "S{}: {found}, {expected}", number_ + 1);
+    }
+}
+
+#[test]
+fn all_modes_are_told_apart() {
+    let found = ik(&[PLANO, "--pose", "xi=15deg", "--all-modes"]);
+    let solutions = found["solutions"].as_array().unwrap();
+    let mut modes: Vec<&str> = solutions.iter().map(|s| s["mode"].as_str().unwrap()).collect();
+    assert_eq!(modes[0], "++ ++ ++ +");
+    modes.sort_unstable();
+    modes.dedup();
+    assert_eq!(modes.len(), 128, "2^7: two choices in each of three legs, one in the fourth");
+    for solution in [&solutions[1], &solutions[77]] {
+        let mode = solution["mode"].as_str().unwrap();
+        let alone = ik(&[PLANO, "--pose", "xi=15deg", "--mode", mode]);
+        assert_eq!(&alone["solutions"][0], solution);
+    }
+}
+
+#[test]
+fn a_mode_may_start_with_a_minus_and_home_is_one() {
+    for mode in ["-+ ++ ++ +", "-- -- -- -"] {
+        let found = ik(&[PLANO, "--pose", "xi=5deg", "--mode", mode]);
+        assert_eq!(found["solutions"][0]["mode"], mode);
+    }
+    let home = ik(&[PLANO, "--pose", "xi=5deg", "--mode", "home"]);
+    assert_eq!(home, ik(&[PLANO, "--pose", "xi=5deg"]));
+}
+
+#[test]
+fn out_of_reach_is_an_answer() {
+    // Arm leg: |P - D| = 1 m - 75 mm below the base point along y, of which the links span 200 mm.
+    let found = ik(&[PLANO, "--pose", "y=-1"]);
+    assert_eq!(found["reachable"], false);
+    assert_eq!(found["solutions"], Value::Array(vec![]));
+    let legs = found["unreachable"].as_array().unwrap();
+    let arm = legs.iter().find(|leg| leg["leg"] == "leg4").expect("the arm does not reach");
+    assert_eq!(keys(arm), ["leg", "reason"]);
+    assert_eq!(arm["reason"], "lower section out of reach by 0.875 m");
+    let text = opm(&["ik", PLANO, "--pose", "y=-1"]);
+    assert!(text.text().contains("leg4: lower section out of reach by 875 mm"), "{}", text.stdout);
+
+    // A platform axis within 30 degrees of -z is out of the upper section's reach, in every mode.
+    let tilted = ik(&[PLANO, "--pose", "xi=120deg", "--all-modes"]);
+    assert_eq!(tilted["reachable"], false);
+    let reason = tilted["unreachable"][0]["reason"].as_str().unwrap();
+    assert!(reason.starts_with("upper section out of reach by "), "{reason}");
+}
+
+#[test]
+fn beyond_limits_is_reachable_and_marked() {
+    let found = ik(&[HELICAL, "--pose", "x=1"]);
+    assert_eq!(found["reachable"], true);
+    assert_eq!(found["solutions"][0]["within_limits"], false);
+    let run = opm(&["ik", HELICAL, "--pose", "x=1"]);
+    let marked: Vec<&str> = run.text().lines().filter(|line| line.ends_with('*')).collect();
+    // S = -sin(alpha) x + ...: about 0.5, 0.5 and -1 m, all beyond 0.4.
+    assert_eq!(marked.len(), 3, "{}", run.stdout);
+}
+
+#[test]
+fn text_is_in_the_units_of_the_file() {
+    let run = opm(&["ik", HELICAL, "--pose", "x=0.05,phi=0.5rad"]);
+    let text = run.text();
+    assert!(text.contains("x = 50.000 mm"), "{text}");
+    assert!(text.contains("phi = 28.6479 deg"), "{text}");
+    let imaginary = text.lines().find(|line| line.contains("imaginary")).expect("joint S");
+    assert!(imaginary.contains("10.000  mm"), "20 mm/rad over 0.5 rad: {imaginary}");
+}

@@ -1,0 +1,15 @@
+//! The program as its users meet it: what it prints, what it writes and how it ends.
+
+mod bad_input;
+mod batch;
+mod decompose;
+mod ik;
+mod inspect;
+mod run;
+mod small;
+mod workspace;
+
+/// The paper's first manipulator, as it is shipped.
+const PLANO: &str = "plano-spherical-5dof";
+/// The paper's second manipulator, as it is shipped.
+const HELICAL: &str = "translational-helical-3dof";

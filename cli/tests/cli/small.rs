@@ -1,0 +1,94 @@
+//! `opm examples`, `opm completions`, help and version.
+
+use crate::PLANO;
+use crate::run::{Folder, keys, opm};
+
+#[test]
+fn examples_are_listed_and_printed() {
+    let list = opm(&["examples", "--format", "json"]).json();
+    let examples = list["examples"].as_array().unwrap();
+    assert_eq!(examples.len(), 5);
+    let text = opm(&["examples"]);
+    for example in examples {
+        assert_eq!(keys(example), ["name", "description"]);
+        let name = example["name"].as_str().unwrap();
+        assert!(text.text().contains(name));
+        let printed = opm(&["examples", name]);
+        assert!(printed.text().contains(&format!("name = \"{name}\"")), "{}", printed.stdout);
+        let json = opm(&["examples", name, "--format", "json"]).json();
+        assert_eq!(json["text"], printed.stdout);
+    }
+}
+
+#[test]
+fn a_printed_example_is_a_mechanism_file() {
+    let folder = Folder::new();
+    let file = folder.write("mine.toml", opm(&["examples", PLANO]).text());
+    let pose = ["--pose", "xi=10deg", "--format", "json"];
+    let by_path = opm(&[&["ik", &file], &pose[..]].concat()).json();
+    assert_eq!(by_path, opm(&[&["ik", PLANO], &pose[..]].concat()).json());
+}
+
+#[test]
+fn an_existing_path_wins_over_an_example() {
+    let folder = Folder::new();
+    folder.write(PLANO, "nonsense");
+    let mut command = crate::run::command(&["decompose", PLANO]);
+    let output = command.current_dir(folder.path("")).output().unwrap();
+    let run = crate::run::Run::new(&["decompose", PLANO], &output);
+    run.fails(1, &[PLANO]);
+}
+
+#[test]
+fn completions_know_the_subcommands() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let run = opm(&["completions", shell]);
+        for word in ["decompose", "workspace", "inspect"] {
+            assert!(run.text().contains(word), "{shell}: {word}");
+        }
+    }
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    assert_eq!(opm(&["--version"]).text(), concat!("opm ", env!("CARGO_PKG_VERSION"), "\n"));
+    for command in ["decompose", "ik", "workspace", "inspect", "examples", "completions"] {
+        let help = opm(&[command, "--help"]);
+        assert!(help.text().contains("Examples:\n  opm "), "{}", help.stdout);
+    }
+}
+
+/// What the help shows works as it stands.
+#[test]
+fn the_examples_in_the_help_parse() {
+    let folder = Folder::new();
+    let csv = folder.write("poses.csv", "x\n0\n");
+    for command in ["decompose", "ik", "workspace", "examples"] {
+        let help = opm(&[command, "--help"]);
+        let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
+        let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
+        for line in lines.filter(|line| line.starts_with("opm ")) {
+            let line = line.split([';', '|', '>']).next().unwrap();
+            let words = line.replace("poses.csv", &csv);
+            let mut args: Vec<String> = Vec::new();
+            for (number, part) in words.split('"').enumerate() {
+                if number % 2 == 1 {
+                    args.push(part.to_owned());
+                } else {
+                    args.extend(part.split_whitespace().map(str::to_owned));
+                }
+            }
+            for arg in &mut args {
+                if matches!(&**arg, "cloud.mcap" | "joints.csv") {
+                    *arg = folder.arg(arg);
+                }
+                if *arg == "my-mechanism.toml" {
+                    *arg = PLANO.to_owned();
+                }
+            }
+            let args: Vec<&str> = args.iter().skip(1).map(String::as_str).collect();
+            let run = opm(&args);
+            assert_eq!(run.code, Some(0), "{line}: {}", run.stderr);
+        }
+    }
+}
