@@ -26,7 +26,7 @@
 //! use opm_core::mechanism::{examples, file};
 //!
 //! let text = examples::find("bennett-double-spherical-6r").unwrap().text;
-//! let linkage = Linkage::new(file::read(text)?.mechanism)?;
+//! let linkage = Linkage::new(&file::read(text)?.mechanism)?;
 //! let crank = linkage.input("a1").unwrap();
 //! assert!(crank.range().is_full_turn());
 //! for position in crank.solve(30_f64.to_radians()) {
@@ -37,22 +37,23 @@
 
 mod cycle;
 pub mod four_bar;
+mod input;
 mod range;
 
 pub use cycle::Cycle;
+pub use input::{Input, LinkageBranch, Position};
 pub use range::InputRange;
 
-use crate::chain::{Amount, Branch, ChainError, unit};
+use crate::chain::ChainError;
 use crate::decomposition::{DecomposeError, Decomposition, Freedom, LegSplit, decompose};
-use crate::joint::{JointCoordinate, JointKind};
+use crate::joint::{Joint, JointCoordinate, JointKind};
 use crate::leg::Leg;
 use crate::limits::Limits;
 use crate::manipulator::{ImaginaryJoint, Section};
 use crate::mechanism::Mechanism;
 use crate::task::{SubspaceKind, Task, TaskError};
 use four_bar::FourBar;
-use nalgebra::{Complex, Unit, Vector3};
-use std::fmt;
+use nalgebra::{Unit, Vector3};
 
 /// Why a mechanism is not a linkage that this module covers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -106,49 +107,6 @@ pub enum Obstacle {
     Ball(String),
 }
 
-/// The signs of a position's two choices, in the order in which they are made: first the four-bar
-/// that has the input joint, then the other one. `+` where the triple product of the three axes that
-/// follow the input (or the imaginary joint) in its loop, with the directions that they have there,
-/// is positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct LinkageBranch {
-    /// Of the four-bar that has the input.
-    pub first: Branch,
-    /// Of the other one.
-    pub second: Branch,
-}
-
-impl LinkageBranch {
-    /// All four, in the order `+ +`, `+ -`, `- +`, `- -`.
-    pub const ALL: [Self; 4] = [
-        Self { first: Branch::Plus, second: Branch::Plus },
-        Self { first: Branch::Plus, second: Branch::Minus },
-        Self { first: Branch::Minus, second: Branch::Plus },
-        Self { first: Branch::Minus, second: Branch::Minus },
-    ];
-}
-
-impl fmt::Display for LinkageBranch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = |branch| if branch == Branch::Plus { '+' } else { '-' };
-        write!(f, "{} {}", sign(self.first), sign(self.second))
-    }
-}
-
-/// Where all joints of a linkage are.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Position {
-    /// In which branch.
-    pub branch: LinkageBranch,
-    /// Every joint coordinate, in the order of [`Linkage::coordinates`], as reported: the home value
-    /// plus the displacement, radians.
-    pub joints: Vec<f64>,
-    /// The imaginary joint, radians.
-    pub imaginary: f64,
-    /// Whether every joint is within its limits.
-    pub within_limits: bool,
-}
-
 /// A single loop, decomposed into two spherical four-bars. Immutable; share it between threads.
 #[derive(Clone, Debug)]
 pub struct Linkage {
@@ -176,9 +134,9 @@ impl Linkage {
     /// # Errors
     /// Where it does not decompose, or what its preferred decomposition has instead of two spherical
     /// four-bars.
-    pub fn new(mechanism: Mechanism) -> Result<Self, LinkageError> {
+    pub fn new(mechanism: &Mechanism) -> Result<Self, LinkageError> {
         let mut refused = None;
-        for decomposition in decompose(&mechanism)? {
+        for decomposition in decompose(mechanism)? {
             match Self::with_decomposition(mechanism.clone(), decomposition) {
                 Ok(linkage) => return Ok(linkage),
                 Err(error) => refused = refused.or(Some(error)),
@@ -267,16 +225,6 @@ impl Linkage {
             Some(Input { linkage: self, coordinate, section, place })
         })
     }
-
-    /// A position to solve into: home.
-    fn home(&self, branch: LinkageBranch) -> Position {
-        Position {
-            branch,
-            joints: self.coordinates.iter().map(|c| c.home).collect(),
-            imaginary: self.imaginary.home,
-            within_limits: true,
-        }
-    }
 }
 
 /// A freedom's coordinate number, and its axis.
@@ -288,14 +236,14 @@ fn loop_axis(leg: &Leg, first: usize, freedom: Freedom) -> Result<LoopAxis, Link
     if joint.kind == JointKind::Spherical {
         return Err(LinkageError::NotCovered(Obstacle::Ball(joint.name.clone())));
     }
-    let before: usize = leg.joints[..freedom.joint].iter().map(|j| j.freedoms()).sum();
+    let before: usize = leg.joints[..freedom.joint].iter().map(Joint::freedoms).sum();
     let axis = Unit::new_normalize(joint.screws()[freedom.index].angular);
     Ok((first + before + freedom.index, axis))
 }
 
 impl Loop {
-    /// `imaginary`, then the second leg's and the first leg's joints, all towards the centre of the
-    /// linkage in the one leg and away from it in the other.
+    /// The imaginary joint's axis as it is in `exp(-I τ)`, then the joints of both legs in the order
+    /// of `L₂⁻¹ L₁` or of `U₂ U₁⁻¹`.
     fn new(
         section: Section,
         imaginary: Unit<Vector3<f64>>,
@@ -314,131 +262,5 @@ impl Loop {
         let four_bar = FourBar::new([imaginary, a.1, b.1, c.1])
             .map_err(|error| LinkageError::FourBar { section, error })?;
         Ok(Self { four_bar, coordinates: [a.0, b.0, c.0] })
-    }
-}
-
-/// A linkage moved by one of its joints.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
-    linkage: &'a Linkage,
-    /// Number of the input's coordinate.
-    coordinate: usize,
-    /// The section that it is in.
-    section: usize,
-    /// Its place in that section's loop.
-    place: usize,
-}
-
-impl<'a> Input<'a> {
-    /// The input's joint coordinate.
-    pub fn coordinate(&self) -> &'a JointCoordinate {
-        &self.linkage.coordinates[self.coordinate]
-    }
-
-    /// The branch that the linkage is assembled in.
-    pub fn home_branch(&self) -> LinkageBranch {
-        LinkageBranch {
-            first: self.own().four_bar.driven_by(self.place).home(),
-            second: self.other().four_bar.driven_by(0).home(),
-        }
-    }
-
-    /// The home position: a place for [`Input::position`] to write to.
-    pub fn home(&self) -> Position {
-        self.linkage.home(self.home_branch())
-    }
-
-    /// Every position with the input at `value`, radians, as reported (home value included): at most
-    /// four, none where the loop does not close. Angles are within half a turn of home, unless
-    /// limits ask for another turn. Where links are folded, branches that meet are all given.
-    pub fn solve(&self, value: f64) -> Vec<Position> {
-        let solved = |branch| {
-            let mut position = self.home();
-            self.position(value, branch, &mut position).then_some(position)
-        };
-        LinkageBranch::ALL.into_iter().filter_map(solved).collect()
-    }
-
-    /// The position in one branch, without allocating; `false`, and `position` as it was, where the
-    /// loop does not close.
-    #[inline]
-    pub fn position(&self, value: f64, branch: LinkageBranch, position: &mut Position) -> bool {
-        let home = |coordinate: usize, _: &Position| self.linkage.coordinates[coordinate].home;
-        self.solve_at(value, branch, position, (home, self.linkage.imaginary.home))
-    }
-
-    /// As [`Input::position`], with every angle at the turn that is nearest to where `position` has
-    /// it: along a motion in small steps no angle jumps.
-    #[inline]
-    pub fn position_near(
-        &self,
-        value: f64,
-        branch: LinkageBranch,
-        position: &mut Position,
-    ) -> bool {
-        let imaginary = position.imaginary;
-        let before = |coordinate: usize, position: &Position| position.joints[coordinate];
-        self.solve_at(value, branch, position, (before, imaginary))
-    }
-
-    fn solve_at(
-        &self,
-        value: f64,
-        branch: LinkageBranch,
-        position: &mut Position,
-        (reference, imaginary): (impl Fn(usize, &Position) -> f64, f64),
-    ) -> bool {
-        let linkage = self.linkage;
-        let displacement = value - self.coordinate().home;
-        let Some([own, other]) = self.amounts(unit(displacement), branch) else { return false };
-        position.branch = branch;
-        position.within_limits =
-            linkage.limits[self.coordinate].admits(Amount::Value(displacement));
-        position.joints[self.coordinate] = value;
-        let mut put = |coordinate: usize, amount: Amount| {
-            let (home, limits) =
-                (linkage.coordinates[coordinate].home, &linkage.limits[coordinate]);
-            let near = reference(coordinate, position) - home;
-            position.joints[coordinate] = home + limits.report(amount, near);
-            position.within_limits &= limits.admits(amount);
-        };
-        for (i, &amount) in own.iter().enumerate() {
-            let place = (self.place + 1 + i) % 4;
-            if place > 0 {
-                put(self.own().coordinates[place - 1], amount);
-            }
-        }
-        for (&coordinate, amount) in self.other().coordinates.iter().zip(other) {
-            put(coordinate, amount);
-        }
-        let tau = own[self.imaginary_amount()];
-        let tau = if linkage.reversed { tau.inverse() } else { tau };
-        position.imaginary = linkage.imaginary.value(tau, imaginary);
-        true
-    }
-
-    /// The rotations of the three joints after the input in its loop, and of the three after the
-    /// imaginary joint in the other one.
-    #[inline]
-    fn amounts(&self, turn: Complex<f64>, branch: LinkageBranch) -> Option<[[Amount; 3]; 2]> {
-        let own = self.own().four_bar.driven_by(self.place).solve(turn, branch.first).ok()?;
-        let tau = own[self.imaginary_amount()].turn();
-        let other = self.other().four_bar.driven_by(0).solve(tau, branch.second).ok()?;
-        Some([own, other])
-    }
-
-    /// Which of the joints after the input is the imaginary one.
-    fn imaginary_amount(&self) -> usize {
-        3 - self.place
-    }
-
-    /// The four-bar that has the input.
-    fn own(&self) -> &'a Loop {
-        &self.linkage.sections[self.section]
-    }
-
-    /// The one that follows.
-    fn other(&self) -> &'a Loop {
-        &self.linkage.sections[1 - self.section]
     }
 }
