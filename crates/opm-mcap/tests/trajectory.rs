@@ -102,18 +102,19 @@ fn without_imaginary_joints_their_topic_is_left_out() {
 fn what_does_not_fit_ends_the_recording() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("t.mcap");
-    let wrong: [fn(&mut TrajectoryRecorder) -> Result<(), RecordError>; 4] = [
-        |r| r.push(STEP - 1, &joints(1), &[0.0]),
-        |r| r.push(STEP, &[0.0], &[0.0]),
-        |r| r.push(STEP, &joints(1), &[]),
-        |r| r.push(STEP, &joints(1), &[0.0, 0.0]),
+    let all = joints(1);
+    let wrong: [(u64, &[f64], &[f64]); 4] = [
+        (STEP - 1, &all, &[0.0]),
+        (STEP, &all[..1], &[0.0]),
+        (STEP, &all, &[]),
+        (STEP, &all, &[0.0, 0.0]),
     ];
-    for wrong in wrong {
+    for (time, joints, imaginary) in wrong {
         let mut recorder = TrajectoryRecorder::create(&path, &trajectory(&["tau.leg1"])).unwrap();
-        recorder.push(STEP, &joints(0), &[0.0]).unwrap();
-        let error = wrong(&mut recorder).unwrap_err();
+        recorder.push(STEP, &all, &[0.0]).unwrap();
+        let error = recorder.push(time, joints, imaginary).unwrap_err();
         assert!(matches!(error, RecordError::Time { .. } | RecordError::Row { .. }), "{error}");
-        let after = recorder.push(2 * STEP, &joints(1), &[0.0]);
+        let after = recorder.push(2 * STEP, &all, &[0.0]);
         assert!(matches!(after, Err(RecordError::AfterFailure)));
         assert!(recorder.finish(&record([])).is_err());
         assert!(!path.exists());
