@@ -281,7 +281,7 @@ impl Compiled {
 }
 
 impl ImaginaryJoint {
-    fn new(leg: &Leg, number: usize, task: &Task) -> Self {
+    pub(crate) fn new(leg: &Leg, number: usize, task: &Task) -> Self {
         let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
         let (home, sign) = match &leg.imaginary {
             Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
@@ -293,7 +293,7 @@ impl ImaginaryJoint {
     /// The value to report for a displacement along the intersection motion; of a turn, the one
     /// nearest to `reference`.
     #[inline]
-    fn value(&self, tau: Amount, reference: f64) -> f64 {
+    pub(crate) fn value(&self, tau: Amount, reference: f64) -> f64 {
         self.home + self.sign * tau.nearest(self.sign * (reference - self.home))
     }
 }
