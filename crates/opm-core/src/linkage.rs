@@ -214,6 +214,11 @@ impl Linkage {
         &self.coordinates
     }
 
+    /// The limits of every joint coordinate, in the order of [`Linkage::coordinates`].
+    pub fn limits(&self) -> &[Limits] {
+        &self.limits
+    }
+
     /// The imaginary joint.
     pub fn imaginary(&self) -> &ImaginaryJoint {
         &self.imaginary
