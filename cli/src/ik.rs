@@ -206,7 +206,8 @@ impl<'a> Answer<'a> {
                 let kind = if joint.actuated { "actuated" } else { "passive" };
                 for coordinate in &joint.coordinates {
                     let value = solution.joints[number];
-                    row(&leg.name, &coordinate.name, kind, value, Of::Joint(coordinate));
+                    let of = Of::Joint(coordinate, &self.manipulator.limits()[number]);
+                    row(&leg.name, &coordinate.name, kind, value, of);
                     number += 1;
                 }
             }
@@ -257,28 +258,28 @@ impl<'a> Answer<'a> {
 /// Whose value it is.
 #[derive(Clone, Copy)]
 enum Of<'a> {
-    Joint(&'a JointCoordinate),
+    Joint(&'a JointCoordinate, &'a Limits),
     Imaginary(Quantity),
 }
 
 impl Of<'_> {
     fn quantity(self) -> Quantity {
         match self {
-            Self::Joint(coordinate) => coordinate.quantity,
+            Self::Joint(coordinate, _) => coordinate.quantity,
             Self::Imaginary(quantity) => quantity,
         }
     }
 
     fn limits(self) -> Option<[f64; 2]> {
         match self {
-            Self::Joint(coordinate) => coordinate.limits,
+            Self::Joint(coordinate, _) => coordinate.limits,
             Self::Imaginary(_) => None,
         }
     }
 
     fn admits(self, value: f64) -> bool {
         match self {
-            Self::Joint(c) => Limits::new(c.limits, c.home).admits(Amount::Value(value - c.home)),
+            Self::Joint(c, limits) => limits.admits(Amount::Value(value - c.home)),
             Self::Imaginary(_) => true,
         }
     }

@@ -8,7 +8,9 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::{Misread, Number};
 use crate::text::{self, Table};
+use opm_core::chain::Amount;
 use opm_core::joint::{JointCoordinate, Quantity};
+use opm_core::limits::Limits;
 use opm_core::linkage::{Input, InputRange, Linkage, Position};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -167,7 +169,12 @@ impl Run<'_> {
                 for coordinate in &joint.coordinates {
                     let value = |position: &Position| {
                         let value = position.joints[number];
-                        angle(value) + if within(coordinate, value) { "" } else { "*" }
+                        angle(value)
+                            + if within(&self.linkage.limits()[number], coordinate, value) {
+                                ""
+                            } else {
+                                "*"
+                            }
                     };
                     let values = positions.iter().map(value).collect();
                     let kind = if joint.actuated { "actuated" } else { "passive" };
@@ -185,10 +192,7 @@ impl Run<'_> {
 }
 
 /// Whether a value is within the limits of its joint.
-fn within(coordinate: &JointCoordinate, value: f64) -> bool {
-    use opm_core::chain::Amount;
-    use opm_core::limits::Limits;
-    let limits = Limits::new(coordinate.limits, coordinate.home);
+fn within(limits: &Limits, coordinate: &JointCoordinate, value: f64) -> bool {
     limits.admits(Amount::Value(value - coordinate.home))
 }
 

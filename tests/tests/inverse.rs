@@ -144,3 +144,99 @@ fn angles_stay_on_their_branch_along_a_path() {
     }
     assert!(turned > 100, "no path went further than half a turn from home");
 }
+
+/// What `inverse_all` knows of a mode is what `inverse` says of it, the legs out of reach and their
+/// gaps included; a buffer that has seen no pose holds no mode.
+#[test]
+fn picked_modes_are_those_of_inverse() {
+    let mut rng = Rng::with_seed(6);
+    let (mut reached, mut missed) = (0, 0);
+    for pair in PAIRS {
+        for _ in 0..30 {
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mut all = manipulator.all_modes();
+            let (mut one, mut picked) = (manipulator.solution(), manipulator.solution());
+            assert!(!manipulator.pick(&all, manipulator.home_mode(), &mut picked));
+            assert_eq!(all.modes(&manipulator).count(), 0);
+            for _ in 0..10 {
+                let pose = pose(&mut rng, &manipulator);
+                manipulator.inverse_all(&pose, &mut all).unwrap();
+                for signs in 0..1_u64 << manipulator.choices() {
+                    let sign = |i| if signs >> i & 1 == 1 { '-' } else { '+' };
+                    let text: String = (0..manipulator.choices()).map(sign).collect();
+                    let mode = manipulator.parse_mode(&text).unwrap();
+                    let inside = manipulator.inverse(&pose, mode, &mut one).unwrap();
+                    assert_eq!(manipulator.pick(&all, mode, &mut picked), inside);
+                    assert_eq!(picked.unreachable, one.unreachable, "{pair:?} {text}");
+                    if inside {
+                        assert_eq!(picked, one);
+                    }
+                    reached += u32::from(inside);
+                    missed += u32::from(!inside);
+                }
+            }
+        }
+    }
+    assert!(reached > 5_000 && missed > 5_000, "{reached} in reach, {missed} out of it");
+}
+
+/// A new buffer holds home: following a path from there, no joint starts a turn away from home.
+#[test]
+fn a_path_starts_at_home() {
+    let mut rng = Rng::with_seed(7);
+    for pair in PAIRS {
+        for _ in 0..20 {
+            let (mut mechanism, decomposition) =
+                mechanism(&mut rng, pair, Options { limited: 0.0, balls: true });
+            let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+            joints.flat_map(|joint| &mut joint.coordinates).for_each(|c| c.home += 20.0);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mut solution = manipulator.solution();
+            let home = manipulator.task().home();
+            let mode = manipulator.home_mode();
+            assert!(manipulator.inverse_near(&home, mode, &mut solution).unwrap());
+            for (coordinate, q) in manipulator.coordinates().iter().zip(&solution.joints) {
+                let off = (coordinate.home - q).abs();
+                assert!(off < 1e-6, "{pair:?} {}: off by {off:e}", coordinate.name);
+            }
+        }
+    }
+}
+
+/// The largest poses that are taken still give numbers that close the legs, to rounding.
+#[test]
+fn enormous_poses_are_answered_or_refused() {
+    let mut rng = Rng::with_seed(8);
+    let mut answered = 0;
+    for pair in PAIRS {
+        for _ in 0..100 {
+            let options = Options { limited: 0.0, balls: true };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mut solution = manipulator.solution();
+            for size in [1e20, 1e40, 1e74, 1e90, 1e160, f64::MAX] {
+                let far = |c: &opm_core::task::TaskCoordinate| match c.quantity.unit() {
+                    "m" => size * (rng.f64() - 0.5),
+                    _ => rng.f64() - 0.5,
+                };
+                let pose: Vec<f64> = manipulator.task_coordinates().iter().map(far).collect();
+                let mode = manipulator.home_mode();
+                let Ok(true) = manipulator.inverse(&pose, mode, &mut solution) else { continue };
+                answered += 1;
+                let target = manipulator.task().displacement(&pose);
+                let mut joints = &solution.joints[..];
+                for leg in &manipulator.mechanism().legs {
+                    let (own, rest) = joints.split_at(leg.coordinates().count());
+                    joints = rest;
+                    // Directions only: beside such lengths the legs' own are lost in rounding.
+                    let turned = leg.displacement(own).rotation.angle_to(&target.rotation);
+                    let helical =
+                        leg.joints.iter().any(|j| matches!(j.kind, JointKind::Helical { .. }));
+                    assert!(helical || turned < 1e-6, "{pair:?} {}: {turned:e}", leg.name);
+                }
+            }
+        }
+    }
+    assert!(answered > 1_000, "{answered}");
+}

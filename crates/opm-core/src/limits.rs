@@ -1,11 +1,13 @@
 //! Limits of a joint coordinate, tested without trigonometry.
 
 use crate::chain::{Amount, unit};
+use crate::joint::{JointCoordinate, Quantity};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// A coordinate this far past its limit, as a share of the limit (or of one radian), is on it: the
-/// rounding of a solution that lies on a limit must not decide, and on a limit counts as inside.
+/// A coordinate this far past its limit, as a share of the largest number that it is computed from,
+/// is on it: the rounding of a solution that lies on a limit must not decide, and on a limit counts
+/// as inside.
 const SLACK: f64 = 1e-12;
 
 /// The displacements from home that a coordinate may take.
@@ -35,16 +37,21 @@ pub struct Arc {
 }
 
 impl Limits {
-    /// From the reported limits and the value reported at home.
-    pub fn new(limits: Option<[f64; 2]>, home: f64) -> Self {
-        let Some([low, high]) = limits else { return Self::Free };
-        let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(f64::MIN_POSITIVE);
+    /// From a coordinate's limits and its value at home; `size` is the mechanism's, in metres, which
+    /// the rounding of a length is in proportion to however short the length.
+    pub fn new(coordinate: &JointCoordinate, size: f64) -> Self {
+        let Some([low, high]) = coordinate.limits else { return Self::Free };
+        let home = coordinate.home;
+        let size = match coordinate.quantity {
+            Quantity::Angle => 1.0,
+            Quantity::Length => size,
+        };
+        let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(size);
         let (low, high) = (low - home - slack, high - home + slack);
-        let slack = SLACK.max(slack);
-        let arc = (high - low + 2.0 * slack < TAU).then(|| Arc {
-            from: unit(low - slack),
-            to: unit(high + slack),
-            wide: high - low + 2.0 * slack > PI,
+        let arc = (high - low < TAU).then(|| Arc {
+            from: unit(low),
+            to: unit(high),
+            wide: high - low > PI,
         });
         Self::Range { low, high, arc }
     }
@@ -111,6 +118,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn limits(quantity: Quantity, limits: [f64; 2], home: f64, size: f64) -> Limits {
+        let name = "q".to_owned();
+        Limits::new(&JointCoordinate { name, quantity, home, limits: Some(limits) }, size)
+    }
+
+    fn of_angle(low: f64, high: f64, home: f64) -> Limits {
+        limits(Quantity::Angle, [low, high], home, 1.0)
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
@@ -119,7 +135,7 @@ mod tests {
         fn arcs_are_ranges_modulo_a_turn(
             home in -7.0..7.0_f64, low in -7.0..7.0_f64, width in 0.0..7.0_f64, angle in -7.0..7.0_f64,
         ) {
-            let limits = Limits::new(Some([low, low + width]), home);
+            let limits = of_angle(low, low + width, home);
             let from_low = (angle + home - low).rem_euclid(TAU);
             let margin = (from_low - width).abs().min(from_low).min(TAU - from_low);
             prop_assume!(margin > 1e-9);
@@ -136,7 +152,7 @@ mod tests {
         for (low, high, home) in
             [(-0.3, 0.3, 0.1), (0.0, 0.0, 0.0), (-3.0, 3.0, 2.0), (1.0, 1.5, 1.2)]
         {
-            let limits = Limits::new(Some([low, high]), home);
+            let limits = of_angle(low, high, home);
             for end in [low, high] {
                 assert!(limits.admits(Amount::Value(end - home)), "{low} {high} {home}");
                 assert!(limits.admits(Amount::Turn(unit(end - home))), "{low} {high} {home}");
@@ -144,5 +160,20 @@ mod tests {
             assert!(!limits.admits(Amount::Value(high - home + 1e-9)));
             assert!(!limits.admits(Amount::Turn(unit(high - home + 1e-9))));
         }
+    }
+    /// Zero is a limit like any other: what rounds there is the size of the mechanism.
+    #[test]
+    fn a_limit_at_zero_is_inside() {
+        for size in [1e-6, 1.0, 1e6] {
+            let locked = limits(Quantity::Length, [0.0, 0.0], 0.0, size);
+            for rounding in [0.0, f64::EPSILON, -f64::EPSILON] {
+                assert!(locked.admits(Amount::Value(rounding * size)));
+            }
+            assert!(!locked.admits(Amount::Value(1e-9 * size)));
+        }
+        let locked = of_angle(0.0, 0.0, 0.0);
+        assert!(locked.admits(Amount::Value(f64::EPSILON)));
+        assert!(locked.admits(Amount::Turn(unit(f64::EPSILON))));
+        assert!(!locked.admits(Amount::Value(1e-9)));
     }
 }

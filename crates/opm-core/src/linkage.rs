@@ -51,6 +51,7 @@ use crate::leg::Leg;
 use crate::limits::Limits;
 use crate::manipulator::{ImaginaryJoint, Section};
 use crate::mechanism::Mechanism;
+use crate::mobility::frame;
 use crate::task::{SubspaceKind, Task, TaskError};
 use four_bar::FourBar;
 use nalgebra::{Unit, Vector3};
@@ -186,10 +187,11 @@ impl Linkage {
         ];
         let owner = decomposition.legs.iter().position(|split| split.imaginary).unwrap_or(0);
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
+        let size = frame(&mechanism).length;
         Ok(Self {
             imaginary: ImaginaryJoint::new(&mechanism.legs[owner], owner, &task),
             reversed: owner == 1,
-            limits: coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect(),
+            limits: coordinates.iter().map(|c| Limits::new(c, size)).collect(),
             coordinates,
             sections,
             mechanism,
@@ -210,6 +212,11 @@ impl Linkage {
     /// Every joint coordinate, leg by leg: the order of [`Position::joints`].
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
+    }
+
+    /// The limits of every joint coordinate, in the order of [`Linkage::coordinates`].
+    pub fn limits(&self) -> &[Limits] {
+        &self.limits
     }
 
     /// The imaginary joint.

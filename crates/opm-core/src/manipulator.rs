@@ -23,12 +23,13 @@ pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use reach::{Follow, Mark, Row};
 
-use crate::chain::Amount;
+use crate::chain::{Amount, Chain};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
 use crate::joint::{JointCoordinate, Quantity};
 use crate::leg::Leg;
 use crate::limits::Limits;
 use crate::mechanism::Mechanism;
+use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
 use leg::CompiledLeg;
 use mode::ModeLayout;
@@ -135,9 +136,27 @@ impl Manipulator {
         &self.task.coordinates
     }
 
+    /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
+    pub fn counts_turns(&self, name: &str) -> bool {
+        let counts = |chain: &Chain| match chain {
+            Chain::Cylindrical(chain) => chain.counts_turns(),
+            _ => false,
+        };
+        match name {
+            "theta" => self.legs.iter().any(|leg| counts(&leg.lower.chain)),
+            "phi" => self.legs.iter().any(|leg| counts(&leg.upper.chain)),
+            _ => false,
+        }
+    }
+
     /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
+    }
+
+    /// The limits of every joint coordinate, in the order of [`Manipulator::coordinates`].
+    pub fn limits(&self) -> &[Limits] {
+        &self.limits
     }
 
     /// Numbers of the actuated coordinates, ascending: the order of [`Drives::actuated`].
@@ -209,7 +228,8 @@ impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c.limits, c.home)).collect();
+        let size = frame(mechanism).length;
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, size)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {

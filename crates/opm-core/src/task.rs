@@ -189,16 +189,6 @@ impl Task {
             * self.upper.isometry(&self.upper(&pose[self.lower_count..]))
     }
 
-    /// Whether a coordinate is an angle that counts whole turns, since a helical joint may.
-    pub fn counts_turns(&self, name: &str) -> bool {
-        let cylindrical = |subspace: &Subspace| subspace.kind == SubspaceKind::Cylindrical;
-        match name {
-            "theta" => cylindrical(&self.lower),
-            "phi" => cylindrical(&self.upper),
-            _ => false,
-        }
-    }
-
     /// The pose at home.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()

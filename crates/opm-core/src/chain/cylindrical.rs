@@ -1,7 +1,7 @@
 //! Chains of two coaxial joints: revolute, prismatic or helical. Linear, and counting whole turns,
-//! since a helical joint does.
+//! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
 
-use super::{Amount, ChainError, DEGENERATE};
+use super::{Amount, ChainError, DEGENERATE, unit};
 
 /// A displacement about and along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,17 @@ pub struct CoaxialJoint {
     pub turn: f64,
     /// Metres a unit: 0 revolute, ±1 prismatic, ± the pitch helical.
     pub advance: f64,
+}
+
+impl CoaxialJoint {
+    fn is_revolute(&self) -> bool {
+        self.turn != 0.0 && self.advance == 0.0
+    }
+
+    #[inline]
+    fn amount(&self, value: f64) -> Amount {
+        if self.is_revolute() { Amount::Turn(unit(value)) } else { Amount::Value(value) }
+    }
 }
 
 /// Two coaxial joints: one solution.
@@ -43,16 +54,21 @@ impl CylindricalChain {
         Ok(Self { joints, determinant })
     }
 
+    /// Whether targets whole turns apart differ: no revolute joint makes up for a turn.
+    pub fn counts_turns(&self) -> bool {
+        !self.joints.iter().any(CoaxialJoint::is_revolute)
+    }
+
     /// The joints' amounts that displace the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: &CylindricalDisplacement) -> [Amount; 2] {
         let [p, q] = self.joints;
         let first = (target.angle * q.advance - q.turn * target.advance) / self.determinant;
         let second = (p.turn * target.advance - target.angle * p.advance) / self.determinant;
-        [Amount::Value(first), Amount::Value(second)]
+        [p.amount(first), q.amount(second)]
     }
 
-    /// The displacement of the outer link.
+    /// The displacement of the outer link; its whole turns are those that the amounts hold.
     pub fn forward(&self, amounts: &[Amount; 2]) -> CylindricalDisplacement {
         let [p, q] = self.joints;
         let [a, b] = amounts.map(Amount::value);

@@ -9,8 +9,9 @@ use crate::task::Displacement;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// Coordinates beyond this size are refused: their squares would overflow.
-const LARGEST: f64 = 1e100;
+/// Coordinates beyond this size are refused: their fourth powers, which the lengths of products of
+/// two are the roots of, would overflow.
+const LARGEST: f64 = 1e75;
 
 /// A pose that cannot be computed with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,20 +78,17 @@ pub struct AllModes {
     count: u32,
 }
 
-/// A leg's solutions, by [`super::mode::ModeLayout::of_leg`].
-#[derive(Clone, Debug)]
-struct LegModes {
-    solutions: [Option<LegSolution>; 4],
-    /// Of the first combination, where none closes.
-    unreachable: Option<Unreachable>,
-}
+/// A leg's solutions, by [`super::mode::ModeLayout::of_leg`]; `None` for combinations that it does
+/// not have, and before the first pose.
+type LegModes = [Option<Result<LegSolution, Unreachable>>; 4];
 
 impl Manipulator {
-    /// A buffer for [`Manipulator::inverse`].
+    /// A buffer for [`Manipulator::inverse`]. It holds home, which a first
+    /// [`Manipulator::inverse_near`] starts from.
     pub fn solution(&self) -> Solution {
         Solution {
-            joints: vec![0.0; self.coordinates.len()],
-            imaginary: vec![0.0; self.imaginary.len()],
+            joints: self.coordinates.iter().map(|c| c.home).collect(),
+            imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
             cuts: vec![0.0; self.legs.len()],
             within_limits: false,
             unreachable: Vec::with_capacity(self.legs.len()),
@@ -108,8 +106,7 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        let leg = LegModes { solutions: [None; 4], unreachable: None };
-        AllModes { legs: vec![leg; self.legs.len()], count: self.modes.count() }
+        AllModes { legs: vec![[None; 4]; self.legs.len()], count: self.modes.count() }
     }
 
     /// Every joint at a pose in one working mode, angles within half a turn of home; `false` where
@@ -184,32 +181,31 @@ impl Manipulator {
     pub fn inverse_all(&self, pose: &[f64], out: &mut AllModes) -> Result<bool, PoseError> {
         let (v, b) = self.displacements(pose)?;
         for (number, (leg, modes)) in self.legs.iter().zip(&mut out.legs).enumerate() {
-            modes.solutions = [None; 4];
-            modes.unreachable = None;
+            *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
                 let branches = self.modes.branches(mode, number);
-                match leg.solve(&self.task, [&v, &b], branches, 0.0) {
-                    Ok(solution) => modes.solutions[part] = Some(solution),
-                    Err((section, gap)) => {
-                        let unreachable = Unreachable { leg: number, section, gap };
-                        modes.unreachable.get_or_insert(unreachable);
-                    }
-                }
+                let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
+                modes[part] = Some(solution.map_err(|(section, gap)| Unreachable {
+                    leg: number,
+                    section,
+                    gap,
+                }));
             }
         }
         Ok(out.unreachable().next().is_none())
     }
 
     /// The joints of one working mode out of `all`, angles within half a turn of home; `false` where
-    /// the pose is out of reach in that mode.
+    /// the pose is out of reach in that mode (`out.unreachable` says of which legs), or where `all`
+    /// has not seen a pose yet.
     pub fn pick(&self, all: &AllModes, mode: Mode, out: &mut Solution) -> bool {
         out.unreachable.clear();
         out.within_limits = true;
         for (number, modes) in all.legs.iter().enumerate() {
-            match (&modes.solutions[self.modes.of_leg(mode, number)], modes.unreachable) {
-                (Some(solution), _) => self.write(number, solution, out, |_, home| home),
-                (None, Some(unreachable)) => out.unreachable.push(unreachable),
-                (None, None) => unreachable!("a combination of signs that the leg does not have"),
+            match &modes[self.modes.of_leg(mode, number)] {
+                Some(Ok(solution)) => self.write(number, solution, out, |_, home| home),
+                Some(Err(unreachable)) => out.unreachable.push(*unreachable),
+                None => return false,
             }
         }
         out.unreachable.is_empty()
@@ -225,8 +221,8 @@ impl Manipulator {
                     && leg.upper.admits(&self.limits, &solution.upper)
             };
             // No two legs share a choice, so that the first mode is made of each leg's first.
-            let mode = (self.modes.leg_modes(number).zip(&modes.solutions))
-                .find(|(_, solution)| solution.as_ref().is_some_and(within))?
+            let mode = (self.modes.leg_modes(number).zip(modes))
+                .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
                 .0;
             picked.0 |= mode.0;
         }
@@ -341,10 +337,9 @@ impl Manipulator {
 impl AllModes {
     /// The legs that are out of reach in every mode.
     pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        self.legs
-            .iter()
-            .filter(|leg| leg.solutions.iter().all(Option::is_none))
-            .filter_map(|leg| leg.unreachable)
+        // Of the first combination, where none closes.
+        let closes = |leg: &LegModes| leg.iter().any(|way| matches!(way, Some(Ok(_))));
+        self.legs.iter().filter(move |leg| !closes(leg)).filter_map(|leg| leg[0]?.err())
     }
 
     /// The modes in which the pose is in reach, all-plus first.
@@ -352,7 +347,7 @@ impl AllModes {
         let layout = &manipulator.modes;
         (0..1u64 << self.count).map(Mode).filter(move |&mode| {
             let mut legs = self.legs.iter().enumerate();
-            legs.all(|(number, leg)| leg.solutions[layout.of_leg(mode, number)].is_some())
+            legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
         })
     }
 }
@@ -364,6 +359,24 @@ fn nearest_rotation(vector: Vector3<f64>, reference: &Vector3<f64>) -> Vector3<f
         return vector;
     }
     let axis = vector / angle;
-    let turns = ((reference.dot(&axis) - angle) / TAU).round();
-    axis * (angle + TAU * turns)
+    let turns = (reference.dot(&axis) - angle) / TAU;
+    // Half a turn is as near as its opposite: it stays what it is.
+    if turns.abs() <= 0.5 { vector } else { axis * (angle + TAU * turns.round()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Limits are tested on the vector that a ball gives, so that the reported one must be the same.
+    #[test]
+    fn a_half_turn_from_home_stays_what_it_is() {
+        for half in [Vector3::z() * PI, Vector3::z() * -PI] {
+            assert_eq!(nearest_rotation(half, &Vector3::zeros()), half);
+            assert_eq!(nearest_rotation(half, &half), half);
+        }
+        let beyond = nearest_rotation(Vector3::z() * (0.1 - PI), &(Vector3::z() * PI));
+        assert!((beyond - Vector3::z() * (0.1 + PI)).norm() < 1e-12);
+    }
 }

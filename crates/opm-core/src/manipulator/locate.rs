@@ -66,7 +66,7 @@ impl Manipulator {
         }
         let (off, mut pose) = best.unwrap_or_else(|| (f64::INFINITY, self.task.home()));
         for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
-            if c.quantity == Quantity::Angle && !self.task.counts_turns(c.name) {
+            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
                 *q -= TAU * ((*q - c.home) / TAU).round();
             }
         }

@@ -23,7 +23,7 @@ pub(in crate::mechanism) use file::read;
 use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried};
 use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
 use crate::chain::translational::TranslationalChain;
-use crate::chain::unit;
+use crate::chain::{Amount, unit};
 use crate::joint::{Joint, JointKind};
 use crate::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
@@ -148,6 +148,11 @@ impl TranslationalLeg {
             CoaxialJoint { turn: 1.0, advance: pitch },
         ])?
         .inverse(&CylindricalDisplacement { angle: home.phi, advance: 0.0 });
+        // A revolute joint is at home's φ too, whole turns included, unless its limits say where.
+        let phi = match (self.pitch, self.limits.phi) {
+            (None, None) => Amount::Value(home.phi),
+            _ => phi,
+        };
 
         // Lower section: the sliders bring C from the origin to its place.
         let c = Complex::new(home.x, home.y) + k_hat * (self.k + imaginary.value());

@@ -1,0 +1,119 @@
+//! The default grid: it holds the workspace, closely, whatever the workspace's size and place.
+
+use fastrand::Rng;
+use nalgebra::{Matrix3, Vector3};
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::{Mechanism, examples, file};
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::{Extent, Grid, Modes, Progress, Sweep, default_grid};
+use std::f64::consts::{PI, TAU};
+
+fn example(name: &str, edit: impl Fn(&str) -> String) -> Mechanism {
+    file::read(&edit(examples::find(name).unwrap().text)).unwrap().mechanism
+}
+
+/// Limits of this much about home on every joint: metres and radians.
+fn limited(mut mechanism: Mechanism, metres: f64, radians: f64) -> Manipulator {
+    let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    for coordinate in joints.flat_map(|joint| &mut joint.coordinates) {
+        let width = if coordinate.quantity.unit() == "m" { metres } else { radians };
+        coordinate.limits = Some([coordinate.home - width, coordinate.home + width]);
+    }
+    Manipulator::new(mechanism).unwrap()
+}
+
+fn fitted(manipulator: &Manipulator) -> (Grid, Vec<Extent>, u64) {
+    let modes = Modes::One(manipulator.home_mode());
+    let (grid, extents) = default_grid(manipulator, modes, &Progress::default()).unwrap();
+    let count = Sweep::new(manipulator, &grid, modes).count(&Progress::default()).unwrap();
+    (grid, extents, count.reachable)
+}
+
+/// Poses of the second manipulator between its sliders' limits are a parallelepiped, whose corners
+/// are where three sliders are at their ends (NOTES: `S = n·P + sin(beta) (k + [i = 1] p phi)`).
+#[test]
+fn it_holds_the_second_manipulators_workspace_closely() {
+    let manipulator =
+        Manipulator::new(example("translational-helical-3dof", str::to_owned)).unwrap();
+    let (alpha, beta) = ([210.0, 330.0, 90.0_f64], [45.0, 285.0, 165.0_f64]);
+    let (k, pitch, end) = ([0.010, 0.015, 0.025], 0.020, 0.4);
+    let sine = |i: usize| beta[i].to_radians().sin();
+    let row = |i: usize| {
+        let (sin, cos) = alpha[i].to_radians().sin_cos();
+        [-sin, cos, if i == 0 { sine(0) * pitch } else { 0.0 }]
+    };
+    let rows = Matrix3::from_fn(|i, j| row(i)[j]).try_inverse().unwrap();
+    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for corner in 0..8 {
+        let side = |i: usize| if corner >> i & 1 == 1 { end } else { -end };
+        let pose = rows * Vector3::from_fn(|i, _| side(i) - sine(i) * k[i]);
+        for (ends, &q) in ends.iter_mut().zip(pose.iter()) {
+            *ends = [ends[0].min(q), ends[1].max(q)];
+        }
+    }
+    let (grid, extents, _) = fitted(&manipulator);
+    for ((axis, extent), [low, high]) in grid.axes().iter().zip(&extents).zip(ends) {
+        assert!(!extent.unbounded);
+        assert!(axis.min <= low && axis.max >= high, "{axis:?}, expected {low} to {high}");
+        let wide = (axis.max - axis.min) / (high - low);
+        assert!(wide < 1.15, "{axis:?} is {wide} times as wide as {low} to {high}");
+    }
+}
+
+/// A workspace that fits between the poses of any coarse grid, about a home that is on none.
+#[test]
+fn it_finds_a_small_workspace() {
+    for (xi, radians) in [(0.0, 0.05), (7.5, 0.05), (7.5, 0.002), (-40.0, 0.01), (200.0, 0.01)] {
+        let turned = |text: &str| text.replace("xi = 0", &format!("zeta = 250, xi = {xi}"));
+        let turned = |text: &str| turned(&text.replace("zeta = 0,", ""));
+        let manipulator = limited(example("plano-spherical-5dof", turned), 0.003, radians);
+        let (grid, _, reachable) = fitted(&manipulator);
+        assert!(reachable > grid.poses() / 1000, "{reachable} of {} at {xi}", grid.poses());
+        for (axis, home) in grid.axes().iter().zip(manipulator.task().home()) {
+            assert!((axis.min..=axis.max).contains(&home), "{axis:?}");
+        }
+    }
+}
+
+/// Locked joints leave one pose: the grid closes in on it and comes to an end.
+#[test]
+fn it_ends_at_a_workspace_of_one_pose() {
+    let manipulator = limited(example("plano-spherical-5dof", str::to_owned), 0.0, 0.0);
+    let (grid, _, reachable) = fitted(&manipulator);
+    assert!(reachable >= 1);
+    assert!(grid.axes()[0].max - grid.axes()[0].min < 1e-5);
+}
+
+/// Without limits many workspaces have no end: then the grid keeps to the mechanism's size, and
+/// angles to one turn unless a helical joint counts them.
+#[test]
+fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
+    // Random mechanisms are a few metres in size.
+    const FAR: f64 = 30.0;
+    let mut rng = Rng::with_seed(31);
+    let mut told = 0;
+    for pair in PAIRS {
+        let options = Options { limited: 0.0, balls: true };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let (grid, extents, reachable) = fitted(&manipulator);
+        assert!(reachable > 0, "{pair:?}");
+        for ((axis, extent), c) in
+            grid.axes().iter().zip(&extents).zip(manipulator.task_coordinates())
+        {
+            let width = axis.max - axis.min;
+            let angle = c.quantity.unit() == "rad";
+            if angle && !manipulator.counts_turns(c.name) {
+                assert!(width <= TAU + 1e-9 && !extent.unbounded, "{pair:?} {axis:?}");
+            }
+            if c.name == "nu" {
+                assert!(width <= PI + 1e-9, "{pair:?} {axis:?}");
+            }
+            if extent.unbounded {
+                assert!(width < FAR, "{pair:?} {axis:?}");
+                told += 1;
+            }
+        }
+    }
+    assert!(told > 10, "{told} coordinates without an end");
+}
