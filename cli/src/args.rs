@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+use crate::linkage::InputValue;
 use crate::pose::{GridAxis, Pose};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -30,6 +31,7 @@ Examples:
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm inspect cloud.mcap                               what a recording holds";
 
 /// Options of every subcommand.
@@ -57,6 +59,7 @@ pub enum Format {
 pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
+    Linkage(LinkageArgs),
     Workspace(WorkspaceArgs),
     Inspect(InspectArgs),
     Examples(ExamplesArgs),
@@ -119,6 +122,54 @@ pub struct IkArgs {
         value_name = "OUT.csv",
         requires = "poses",
         conflicts_with = "pose",
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
+}
+
+/// Positions of a linkage: every joint for a value of its input, or for one turn of it
+///
+/// For single loops that decompose into two spherical four-bars which share an imaginary joint
+/// (Bennett's double spherical 6R). Any joint can be the input; without --input it is the actuated
+/// one, at home. Every branch is given, named by its signs, and the range of the input. An input out
+/// of its range is an answer (exit status 0).
+///
+/// --sweep follows the branch of home once round: one turn of an input that can make it; else to the
+/// end of its range, back in the branch that meets there, and so on until the linkage is home. CSV:
+/// all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in radians. MCAP: `/joints` and
+/// `/imaginary_joints`, ten seconds a round.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm linkage bennett-double-spherical-6r --input a1=30deg
+  opm linkage bennett-double-spherical-6r --input b3=10deg --format json
+  opm linkage bennett-double-spherical-6r --input a1 --sweep > turn.csv
+  opm linkage bennett-double-spherical-6r --sweep --count 1001 -o turn.mcap")]
+pub struct LinkageArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The joint that moves the linkage, and its value where that is not home
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    pub input: Option<InputValue>,
+    /// One round of the input instead of one value
+    #[arg(long)]
+    pub sweep: bool,
+    /// Positions of the sweep, home at both ends
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "sweep",
+        default_value_t = 361,
+        value_parser = clap::value_parser!(u32).range(2..=10_000_000)
+    )]
+    pub count: u32,
+    /// Where the sweep goes, by its ending; - or nothing is CSV on standard output
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv|OUT.mcap",
+        requires = "sweep",
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,

@@ -46,7 +46,9 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         ));
     }
     if let Err(error) = &compiled {
-        output.note(format_args!("{label}: no closed-form inverse kinematics: {}", chain(error)));
+        let hint = loaded.linkage_hint();
+        let error = chain(error);
+        output.note(format_args!("{label}: no closed-form inverse kinematics: {error}{hint}"));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Mechanism files, by path or by the name of a shipped example.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, chain};
+use opm_core::linkage::Linkage;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::{self, MechanismFile};
@@ -67,7 +68,17 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
 impl Loaded {
     /// The mechanism compiled for inverse kinematics.
     pub fn compile(&self) -> Result<Manipulator, Failure> {
-        Manipulator::new(self.file.mechanism.clone()).map_err(|e| Failure::at(&self.label, &e))
+        Manipulator::new(self.file.mechanism.clone()).map_err(|error| {
+            Failure::Work(format!("{}: {}{}", self.label, chain(&error), self.linkage_hint()))
+        })
+    }
+
+    /// Of a mechanism without inverse kinematics: that it is a linkage, if it is one.
+    pub fn linkage_hint(&self) -> String {
+        match Linkage::new(&self.file.mechanism) {
+            Ok(_) => format!("; it is a linkage: use `opm linkage {}`", self.label),
+            Err(_) => String::new(),
+        }
     }
 
     /// Refuses to write over the mechanism file or another input.

@@ -10,6 +10,7 @@ mod failure;
 mod ik;
 mod inspect;
 mod lines;
+mod linkage;
 mod load;
 mod output;
 mod pose;
@@ -35,6 +36,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
+        Command::Linkage(command) => linkage::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),

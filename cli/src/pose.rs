@@ -76,16 +76,20 @@ impl FromStr for Number {
 impl Number {
     /// The value for a coordinate, which it must suit.
     fn of(self, coordinate: &TaskCoordinate) -> Result<f64, Misread> {
+        self.value_of(coordinate.name, coordinate.quantity)
+    }
+
+    /// The value for what is called `name` and measures `quantity`, which it must suit.
+    pub fn value_of(self, name: &str, quantity: Quantity) -> Result<f64, Misread> {
         let what = |quantity| match quantity {
             Quantity::Angle => "an angle",
             Quantity::Length => "a length",
         };
         match self.quantity {
-            Some(quantity) if quantity != coordinate.quantity => Err(Misread(format!(
-                "{} is {}, but its value has the unit of {}",
-                coordinate.name,
-                what(coordinate.quantity),
-                what(quantity)
+            Some(given) if given != quantity => Err(Misread(format!(
+                "{name} is {}, but its value has the unit of {}",
+                what(quantity),
+                what(given)
             ))),
             _ => Ok(self.value),
         }

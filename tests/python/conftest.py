@@ -1,4 +1,4 @@
-"""The `opm` program under test, built as its users build it."""
+"""The programs under test."""
 
 import json
 import subprocess
@@ -7,17 +7,25 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).parents[2]
-BUILD = "cargo build --quiet --release -p opm-kinematics --message-format=json-render-diagnostics"
+# The whole workspace at once: what `cargo test --workspace` has built need not be built again.
+BUILD = "cargo build --quiet --workspace --bins --examples --message-format=json-render-diagnostics"
 
 
 @pytest.fixture(scope="session")
-def opm():
-    """Path of the program."""
+def programs():
+    """Paths of the programs and the examples, by their names."""
     build = subprocess.run(
         BUILD.split(), cwd=REPOSITORY, check=True, stdout=subprocess.PIPE, text=True
     )
-    executables = (json.loads(line).get("executable") for line in build.stdout.splitlines())
-    return next(path for path in executables if path)
+    messages = map(json.loads, build.stdout.splitlines())
+    built = (message for message in messages if message.get("executable"))
+    return {message["target"]["name"]: message["executable"] for message in built}
+
+
+@pytest.fixture(scope="session")
+def opm(programs):
+    """Path of the program."""
+    return programs["opm"]
 
 
 @pytest.fixture(scope="session")

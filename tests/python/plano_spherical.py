@@ -1,7 +1,7 @@
 """The paper's 5-DoF plano-spherical manipulator (section 3.1) in closed form, for arrays of poses.
 
 Written from the geometry of its legs for these tests alone. Metres and radians; leg by leg in the
-last axis; the working mode is `++ ++ ++ +`.
+last axis.
 """
 
 import numpy as np
@@ -26,21 +26,28 @@ def platform_axes(zeta, xi, psi):
     return np.cos(zeta) * x - np.sin(zeta) * y, np.sin(zeta) * x + np.cos(zeta) * y, z
 
 
-def imaginary(zeta, xi, psi):
-    """theta11, theta12, theta13, and how far each leg is within reach: the margin of its sine."""
+def imaginary(zeta, xi, psi, upper=1):
+    """theta11, theta12, theta13, and how far each leg is within reach: the margin of its sine.
+
+    Of the two solutions the upper, `atan2 + asin`, or the other one, -1.
+    """
     x, y, z = platform_axes(zeta, xi, psi)
     sine = (np.cos(ARC) - np.cos(ARC) * z) / (np.sin(ARC) * np.hypot(x, y))
-    return np.arctan2(y, x) + np.arcsin(np.clip(sine, -1, 1)), 1 - np.abs(sine)
+    turn = np.arcsin(np.clip(sine, -1, 1))
+    return np.arctan2(y, x) + np.where(upper == 1, turn, np.pi - turn), 1 - np.abs(sine)
 
 
-def sliders(x, y, theta):
-    """S1, S2, S3, and the smaller margin of reach and of the sliders' limits."""
+def sliders(x, y, theta, root=1):
+    """S1, S2, S3, and the smaller margin of reach and of the sliders' limits.
+
+    With the positive square root, or with the negative one, -1.
+    """
     link, crank = LINKS
     to_platform = np.stack([x, y], axis=-1)[..., None, :]
     q = to_platform + crank * direction(theta) - OFFSET * direction(ALPHA)
     across = np.sum(q * direction(ALPHA), axis=-1)
-    root = np.sqrt(np.maximum(link**2 - across**2, 0))
-    value = np.sum(q * direction(ALPHA + np.pi / 2), axis=-1) + root
+    height = np.sqrt(np.maximum(link**2 - across**2, 0))
+    value = np.sum(q * direction(ALPHA + np.pi / 2), axis=-1) + root * height
     return value, np.minimum(link - np.abs(across), SLIDER - np.abs(value))
 
 
@@ -65,8 +72,8 @@ def nearest(angle, reference):
 def joints(x, y, zeta, xi, psi):
     """Every imaginary and actuated joint by its name, and the smallest margin of each pose.
 
-    Angles are of the turn nearest to home. A pose is in the workspace when its margin is not
-    negative.
+    In the working mode `++ ++ ++ +`; angles are of the turn nearest to home. A pose is in the
+    workspace when its margin is not negative.
     """
     home = np.zeros(1)
     theta_home = imaginary(home, home, home)[0][..., :1] + ETA  # the legs are alike
@@ -82,3 +89,14 @@ def joints(x, y, zeta, xi, psi):
     values["phi24"] = nearest(elbow, elbow_home)
     margin = np.minimum(np.minimum(upper, lower).min(axis=-1), stretch)
     return values, margin
+
+
+def margins(x, y, zeta, xi, psi):
+    """The smallest margin of each leg, a dictionary by its choices: (1, 1), (1, -1), ... Then that
+    of the arm, which is the same for both of its elbows."""
+
+    def leg(upper, root):
+        theta, within_reach = imaginary(zeta, xi, psi, upper)
+        return np.minimum(within_reach, sliders(x, y, theta, root)[1])
+
+    return {(upper, root): leg(upper, root) for upper in (1, -1) for root in (1, -1)}, arm(x, y)[2]

@@ -8,7 +8,6 @@ import check_recording
 import numpy as np
 import pytest
 
-REPOSITORY = Path(__file__).parents[2]
 # Centimetres. The number of grid points in the ball is sequence A000605 of the OEIS.
 RADIUS, POINTS = 10, 4169
 
@@ -22,18 +21,19 @@ def ball(radius):
             yield *(n / 100 for n in point), squared**0.5 / 100
 
 
-def record(path, radius):
-    command = "cargo run --quiet --release -p opm-mcap --example ball --".split()
-    subprocess.run([*command, path, str(radius)], cwd=REPOSITORY, check=True)
-
-
 def write(path, rows):
     with open(path, "w", newline="") as file:
         csv.writer(file).writerows([("x", "y", "z", "distance"), *rows])
 
 
+@pytest.fixture(scope="session")
+def record(programs):
+    """Records a ball."""
+    return lambda path, radius: subprocess.run([programs["ball"], path, str(radius)], check=True)
+
+
 @pytest.fixture(scope="module")
-def recording(tmp_path_factory):
+def recording(record, tmp_path_factory):
     path = tmp_path_factory.mktemp("recording") / "ball.mcap"
     record(path, RADIUS)
     return path
@@ -47,7 +47,7 @@ def test_the_points_are_those_of_the_ball(recording, tmp_path):
     assert found == (POINTS, 2 * RADIUS + 1)
 
 
-def test_a_decimated_recording(tmp_path):
+def test_a_decimated_recording(record, tmp_path):
     radius = 80
     record(tmp_path / "large.mcap", radius)
     points, slices = check_recording.check(tmp_path / "large.mcap")

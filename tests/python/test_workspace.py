@@ -83,6 +83,29 @@ def test_every_point_is_where_the_closed_form_says(workspace, expected, tmp_path
     assert slices == np.prod([GRID[name][2] for name in ("zeta", "xi", "psi")])
 
 
+def test_every_mode_counts_what_the_closed_form_counts(workspace):
+    grid = {
+        "x": (-0.23, 0.21, 31),
+        "y": (-0.17, 0.29, 29),
+        "zeta": (-3.0, 2.9, 7),
+        "xi": (-3.1, 3.0, 9),
+        "psi": (-2.8, 3.1, 5),
+    }
+    legs, arm = plano_spherical.margins(**poses(grid))
+    assert min(np.abs(margin).min() for margin in (*legs.values(), arm)) > ROUNDING
+    counts = {}
+    for signs in ("++ +- -+ +", "-- -- -- -", "+- -+ ++ -", "-+ ++ +- +"):
+        inside = arm > 0
+        for leg, choices in enumerate(signs.split()[:3]):
+            inside &= legs[tuple(int(f"{sign}1") for sign in choices)][:, leg] > 0
+        counts[signs] = inside.sum()
+    counts["any"] = ((arm > 0) & (np.max(list(legs.values()), axis=0).min(axis=-1) > 0)).sum()
+    assert len(set(counts.values())) == len(counts), "modes that count the same tell nothing apart"
+    for mode, expected in counts.items():
+        answer = workspace(MECHANISM, *flags(grid), f"--mode={mode}")
+        assert (mode, answer["reachable"]) == (mode, expected)
+
+
 def test_the_mechanism_is_attached_as_it_is(opm, workspace, tmp_path):
     shipped = (REPOSITORY / "data" / "mechanisms" / f"{MECHANISM}.toml").read_bytes()
     own = tmp_path / "own.toml"

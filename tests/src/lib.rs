@@ -1,5 +1,11 @@
-//! Tests that span the crates, and what they share: the paper's formulas as an oracle, and random
-//! mechanisms of every pair of partial subspaces.
+//! Tests that span the crates, and what they share: the paper's formulas as an oracle, random
+//! mechanisms of every pair of partial subspaces, and sweeps the slow way.
 
+pub mod by_inverse;
 pub mod paper;
 pub mod random;
+
+/// The README's Rust is compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

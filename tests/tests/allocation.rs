@@ -1,8 +1,10 @@
-//! Inverse kinematics does not allocate: it may run in a control loop.
+//! Inverse kinematics does not allocate, nor does a linkage's position: both may run in a control loop.
 
 use allocation_counter::measure;
 use fastrand::Rng;
+use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::{examples, file};
 use opm_tests::random::{Options, PAIRS, mechanism};
 
 #[test]
@@ -37,4 +39,26 @@ fn inverse_kinematics_does_not_allocate() {
         }
     }
     assert!(reached > 500, "{reached} poses in reach");
+}
+
+#[test]
+fn positions_of_a_linkage_do_not_allocate() {
+    let text = examples::find("bennett-double-spherical-6r").unwrap().text;
+    let linkage = Linkage::new(&file::read(text).unwrap().mechanism).unwrap();
+    let mut reached = 0;
+    for name in ["a1", "b2"] {
+        let input = linkage.input(name).unwrap();
+        let mut position = input.home();
+        for i in 0..100 {
+            let value = 0.1 * f64::from(i);
+            let info = measure(|| {
+                for branch in LinkageBranch::ALL {
+                    reached += u32::from(input.position(value, branch, &mut position));
+                    reached += u32::from(input.position_near(value, branch, &mut position));
+                }
+            });
+            assert_eq!(info.count_total, 0, "{name} {value}");
+        }
+    }
+    assert!(reached >= 800, "{reached} positions");
 }

@@ -3,8 +3,9 @@
 
 use fastrand::Rng;
 use opm_core::manipulator::Manipulator;
+use opm_tests::by_inverse::by_inverse;
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
 
 /// A grid about home with more values along the coordinates of the lower section.
 fn grid(rng: &mut Rng, manipulator: &Manipulator) -> Grid {
@@ -19,37 +20,6 @@ fn grid(rng: &mut Rng, manipulator: &Manipulator) -> Grid {
         }
     });
     Grid::new(manipulator, axes.collect()).unwrap()
-}
-
-/// The reachable poses and imaginary ranges by one IK call per pose and mode.
-fn by_inverse(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> (Vec<Vec<f64>>, Count) {
-    let mut all = manipulator.all_modes();
-    let mut solution = manipulator.solution();
-    let mut reached = Vec::new();
-    let mut imaginary: Vec<Option<[f64; 2]>> = vec![None; manipulator.imaginary().len()];
-    for index in 0..grid.poses() {
-        let pose = grid.pose(index);
-        let mut inside = false;
-        manipulator.inverse_all(&pose, &mut all).unwrap();
-        for mode in all.modes(manipulator) {
-            if modes != Modes::Any && modes != Modes::One(mode) {
-                continue;
-            }
-            assert!(manipulator.pick(&all, mode, &mut solution));
-            if solution.within_limits {
-                inside = true;
-                for (range, &value) in imaginary.iter_mut().zip(&solution.imaginary) {
-                    let [low, high] = range.unwrap_or([value; 2]);
-                    *range = Some([low.min(value), high.max(value)]);
-                }
-            }
-        }
-        if inside {
-            reached.push(pose);
-        }
-    }
-    let count = Count { poses: grid.poses(), reachable: reached.len() as u64, imaginary };
-    (reached, count)
 }
 
 fn points(sweep: &Sweep<'_>) -> Vec<Vec<f64>> {

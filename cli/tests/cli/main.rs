@@ -5,6 +5,7 @@ mod batch;
 mod decompose;
 mod ik;
 mod inspect;
+mod linkage;
 mod run;
 mod small;
 mod workspace;

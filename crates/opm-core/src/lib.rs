@@ -38,6 +38,7 @@ pub mod decomposition;
 pub mod joint;
 pub mod leg;
 pub mod limits;
+pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
 pub mod mobility;

@@ -13,11 +13,13 @@
 
 mod inverse;
 mod leg;
+mod locate;
 mod mode;
 mod reach;
 
 pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
+pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use reach::{Follow, Mark, Row};
 
@@ -279,7 +281,7 @@ impl Compiled {
 }
 
 impl ImaginaryJoint {
-    fn new(leg: &Leg, number: usize, task: &Task) -> Self {
+    pub(crate) fn new(leg: &Leg, number: usize, task: &Task) -> Self {
         let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
         let (home, sign) = match &leg.imaginary {
             Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
@@ -291,7 +293,7 @@ impl ImaginaryJoint {
     /// The value to report for a displacement along the intersection motion; of a turn, the one
     /// nearest to `reference`.
     #[inline]
-    fn value(&self, tau: Amount, reference: f64) -> f64 {
+    pub(crate) fn value(&self, tau: Amount, reference: f64) -> f64 {
         self.home + self.sign * tau.nearest(self.sign * (reference - self.home))
     }
 }

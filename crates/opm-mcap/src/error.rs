@@ -46,6 +46,14 @@ pub enum RecordError {
         /// Values a row has.
         columns: usize,
     },
+    /// Messages came out of order.
+    #[error("a message at {time} ns after one at {last} ns")]
+    Time {
+        /// Time of the message.
+        time: u64,
+        /// Time of the one before it.
+        last: u64,
+    },
     /// A value that a float32 cannot hold as a finite number.
     #[error("{column} of point {point} is {value}, expected a finite float32")]
     NonFinite {

@@ -1,8 +1,9 @@
 //! MCAP recordings of what a manipulator does, and reading them back.
 //!
 //! A recording opens in Foxglove, Lichtblick and Rerun. Its messages are of well-known schemas
-//! (`foxglove.PointCloud`), in chunks of about 1 MiB compressed with zstd on one thread. What is in a
-//! workspace recording is said in [`workspace`].
+//! (`foxglove.PointCloud`), or flat ones that carry their own ([`joints`]), in chunks of about 1 MiB
+//! compressed with zstd on one thread. What is in a recording is said in [`workspace`] and
+//! [`trajectory`].
 //!
 //! * Numbers are SI and radians.
 //! * No clock is read: the same calls write the same bytes.
@@ -14,8 +15,10 @@ pub mod cloud;
 mod decode;
 mod error;
 mod file;
+pub mod joints;
 mod log;
 mod reader;
+pub mod trajectory;
 pub mod workspace;
 
 pub use cloud::CloudLayout;
@@ -24,4 +27,5 @@ pub use error::{ReadError, RecordError};
 pub use file::{PartialFile, Sink};
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use trajectory::{Trajectory, TrajectoryRecorder};
 pub use workspace::{MAX_SLICES, Workspace, WorkspaceRecorder};

@@ -64,6 +64,21 @@ impl<W: Sink> Log<W> {
         })
     }
 
+    /// Adds a topic that carries protobuf messages of the type `schema`, which `descriptor` describes
+    /// (an encoded `google.protobuf.FileDescriptorSet`).
+    pub fn topic_of(
+        &mut self,
+        name: &str,
+        schema: &str,
+        descriptor: &[u8],
+    ) -> Result<Topic, RecordError> {
+        self.attempt(|writer| {
+            let schema = writer.add_schema(schema, "protobuf", descriptor)?;
+            let channel = writer.add_channel(schema, name, "protobuf", &Metadata::new())?;
+            Ok(Topic { channel, sequence: 0 })
+        })
+    }
+
     /// Writes one encoded message. `time` is in nanoseconds and must not go back.
     pub fn message(
         &mut self,

@@ -11,7 +11,7 @@ pub struct Example {
     pub text: &'static str,
 }
 
-/// Every example, families first.
+/// Every example: the paper's mechanisms, families first, then those designed for this project.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -37,6 +37,36 @@ pub const EXAMPLES: &[Example] = &[
         name: "bennett-double-spherical-6r",
         description: "Bennett's double spherical 6R: one loop, one freedom (Selvi, Fig. 1)",
         text: include_str!("../../mechanisms/bennett-double-spherical-6r.toml"),
+    },
+    Example {
+        name: "planar-planar-5dof",
+        description: "3-PRR(RR) + RR(RRR), two planes: three translations, two rotations",
+        text: include_str!("../../mechanisms/planar-planar-5dof.toml"),
+    },
+    Example {
+        name: "planar-planar-5dof-joints",
+        description: "the same as planar-planar-5dof, as a list of joints",
+        text: include_str!("../../mechanisms/planar-planar-5dof-joints.toml"),
+    },
+    Example {
+        name: "double-spherical-5dof",
+        description: "3-RRR(RR) + RR(S), two centres: five rotations",
+        text: include_str!("../../mechanisms/double-spherical-5dof.toml"),
+    },
+    Example {
+        name: "plano-cylindrical-4dof",
+        description: "3-RRR(R) + RRR(H), axis in the plane: two translations, two rotations",
+        text: include_str!("../../mechanisms/plano-cylindrical-4dof.toml"),
+    },
+    Example {
+        name: "schoenflies-4dof",
+        description: "2-RRR(H|P), axis square to the plane: three translations, one rotation",
+        text: include_str!("../../mechanisms/schoenflies-4dof.toml"),
+    },
+    Example {
+        name: "translational-planar-4dof",
+        description: "4-PP(RR): three translations, one rotation",
+        text: include_str!("../../mechanisms/translational-planar-4dof.toml"),
     },
 ];
 

@@ -6,10 +6,12 @@
 //! from.
 
 mod assembly;
+pub mod planar_planar;
 pub mod plano_spherical;
 pub mod translational_helical;
 
 pub use assembly::{AssemblyError, AssemblyProblem, AssemblyReason};
+pub use planar_planar::PlanarPlanar;
 pub use plano_spherical::PlanoSpherical;
 pub use translational_helical::TranslationalHelical;
 
@@ -22,6 +24,8 @@ pub enum Family {
     PlanoSpherical(PlanoSpherical),
     /// 2-PPR + PPH, 3 freedoms.
     TranslationalHelical(TranslationalHelical),
+    /// 3-PRR(RR) + RR(RRR), 5 freedoms.
+    PlanarPlanar(PlanarPlanar),
 }
 
 impl Family {
@@ -33,6 +37,7 @@ impl Family {
         match self {
             Self::PlanoSpherical(family) => family.assemble(),
             Self::TranslationalHelical(family) => family.assemble(),
+            Self::PlanarPlanar(family) => family.assemble(),
         }
     }
 
@@ -41,6 +46,7 @@ impl Family {
         match self {
             Self::PlanoSpherical(family) => family.mode(),
             Self::TranslationalHelical(_) => String::new(),
+            Self::PlanarPlanar(family) => family.mode(),
         }
     }
 }

@@ -40,7 +40,7 @@ pub(super) use reader::Table;
 
 use super::Mechanism;
 use super::family::{
-    AssemblyError, AssemblyReason, Family, plano_spherical, translational_helical,
+    AssemblyError, AssemblyReason, Family, planar_planar, plano_spherical, translational_helical,
 };
 use crate::chain::Branch;
 use crate::joint::Quantity;
@@ -113,6 +113,7 @@ fn read_document(root: &Table<'_>) -> Option<MechanismFile> {
     let read = family.word::<Read>(&[
         ("plano-spherical", plano_spherical::read),
         ("translational-helical", translational_helical::read),
+        ("planar-planar", planar_planar::read),
     ])?;
     let (family, mechanism) = read(root, name)?;
     Some(MechanismFile { mechanism, units, mode: Some(family.mode()), family: Some(family) })

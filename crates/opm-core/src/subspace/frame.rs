@@ -8,6 +8,9 @@ use nalgebra::{Matrix3, Point3, Vector3, Vector6};
 /// parallel), and the points that were given decide.
 const DETERMINED: f64 = 1e-2;
 
+/// Shorter than this share of the coordinates, a length is their rounding: to six digits, at worst.
+const ROUNDING: f64 = 5e-6;
+
 /// Origin in the middle of a set of axes, lengths over their spread.
 ///
 /// Screws mix radians and metres, so the rank of a set of them within a tolerance depends on the
@@ -60,7 +63,9 @@ impl Frame {
         let spread = size(lines.iter().map(|(_, p, _)| (p - mean).norm_squared()).sum());
         let arms =
             size(lines.iter().map(|(a, p, h)| across(a, p - origin).norm_squared() + h * h).sum());
-        let length = [arms, spread].into_iter().find(|&l| l > TOLERANCE * spread).unwrap_or(1.0);
+        let farthest = lines.iter().map(|(_, p, _)| p.amax()).fold(0.0, f64::max);
+        let least = (TOLERANCE * spread).max(ROUNDING * farthest);
+        let length = [arms, spread].into_iter().find(|&l| l > least).unwrap_or(1.0);
         Self { origin: origin.into(), length }
     }
 

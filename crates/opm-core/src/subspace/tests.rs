@@ -238,3 +238,20 @@ fn classes_are_told_in_words() {
         "helical about (0, 0, 1) through (0.1, 0, 0) m, pitch 0.020000 m/rad"
     );
 }
+
+/// Axes that meet in one point have no size of their own, wherever that point is and however it is
+/// rounded.
+#[test]
+fn axes_that_meet_in_one_point_are_measured_in_metres() {
+    for digits in [15, 6] {
+        let point = Point3::from([1.0 / 3.0, 200.0 / 7.0, -3.0 / 11.0].map(|x: f64| {
+            let scale = 10_f64.powi(digits - 1 - x.abs().log10().floor() as i32);
+            (x * scale).round() / scale
+        }));
+        let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()].map(|axis| {
+            let rounding = Vector3::repeat(0.5 * 10_f64.powi(2 - digits));
+            (Screw::rotation(axis, point + axis.cross(&rounding)), point + axis.cross(&rounding))
+        });
+        assert_eq!(Frame::of(&axes).length, 1.0, "{digits} digits");
+    }
+}

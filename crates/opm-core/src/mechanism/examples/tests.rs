@@ -27,7 +27,7 @@ fn every_example_can_be_read_under_its_own_name() {
 /// is the text that the file should have below its comment.
 #[test]
 fn joint_lists_are_the_assembled_families() {
-    for name in ["plano-spherical-5dof", "translational-helical-3dof"] {
+    for name in ["plano-spherical-5dof", "translational-helical-3dof", "planar-planar-5dof"] {
         let (family, list) = (read(name), read(&format!("{name}-joints")));
         let mut expected = family.mechanism;
         expected.name.push_str("-joints");

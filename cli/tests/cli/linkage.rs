@@ -1,0 +1,191 @@
+//! `opm linkage`: positions and sweeps of Bennett's double spherical 6R.
+
+use crate::run::{Folder, Run, keys, number, opm};
+use crate::{HELICAL, PLANO};
+use serde_json::{Value, json};
+use std::f64::consts::{PI, TAU};
+
+const BENNETT: &str = "bennett-double-spherical-6r";
+/// The file's axes are unit vectors to fifteen digits.
+const ROUNDING: f64 = 1e-9;
+
+fn linkage(args: &[&str]) -> Run {
+    opm(&[&["linkage", BENNETT], args].concat())
+}
+
+fn solved(input: &str) -> Value {
+    linkage(&["--input", input, "--format", "json"]).json()
+}
+
+/// The rows of a sweep, a number a column; of the branch, nothing.
+fn rows(csv: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+    csv.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn every_branch_is_told() {
+    let found = solved("a1=30deg");
+    let expected = ["name", "input", "range", "full_turn", "home_branch", "solutions"];
+    assert_eq!(keys(&found), expected);
+    assert_eq!(keys(&found["input"]), ["joint", "value"]);
+    assert_eq!(found["input"]["joint"], "a1");
+    assert!((number(&found["input"]["value"]) - PI / 6.0).abs() < 1e-15);
+    assert_eq!((&found["range"], &found["full_turn"]), (&json!([[-PI, PI]]), &json!(true)));
+    let solutions = found["solutions"].as_array().unwrap();
+    let branches: Vec<_> = solutions.iter().map(|s| s["branch"].as_str().unwrap()).collect();
+    assert_eq!(branches, ["+ +", "+ -", "- +", "- -"]);
+    for solution in solutions {
+        assert_eq!(keys(solution), ["branch", "within_limits", "joints", "imaginary"]);
+        assert_eq!(keys(&solution["joints"]), ["a1", "b3", "a2", "a3", "b1", "b2"]);
+        assert_eq!(keys(&solution["imaginary"]), ["tau.leg1"]);
+    }
+}
+
+/// At home, which is where the actuated joint is without --input, one branch is home.
+#[test]
+fn home_is_one_of_the_branches() {
+    let found = linkage(&["--format", "json"]).json();
+    assert_eq!(found["input"], json!({ "joint": "a1", "value": 0.0 }));
+    let solutions = found["solutions"].as_array().unwrap();
+    let home = solutions.iter().find(|s| s["branch"] == found["home_branch"]).unwrap();
+    for value in home["joints"].as_object().unwrap().values() {
+        assert!(number(value).abs() < ROUNDING, "{home}");
+    }
+    assert!(linkage(&[]).text().contains("home is in - +"));
+}
+
+/// The law of cosines on both sides of each four-bar's diagonal, with the arcs that the file states
+/// and the angle at the imaginary joint, which is 100 degrees at home in the one and 80 in the other.
+#[test]
+fn a_turn_keeps_the_arcs_that_the_file_states() {
+    let run = linkage(&["--sweep", "--count", "73"]);
+    let text = run.text();
+    assert!(text.starts_with("a1,b3,a2,a3,b1,b2,tau.leg1,branch,within_limits\n"));
+    let rows = rows(text);
+    assert_eq!(rows.len(), 73);
+    // Arcs on both sides of the imaginary joint, its angle at home, arcs beside the joint opposite.
+    for (arcs, home, beside, opposite) in
+        [([30.0, 75.0], 100.0, [70.0, 60.0], 2), ([35.0, 70.0], 80.0, [65.0, 80.0], 5)]
+    {
+        let law = |arcs: [f64; 2], angle: f64| {
+            let [(s1, c1), (s2, c2)] = arcs.map(|arc| arc.to_radians().sin_cos());
+            c1 * c2 + s1 * s2 * angle.cos()
+        };
+        let angle = |arcs: [f64; 2], diagonal: f64| {
+            let [(s1, c1), (s2, c2)] = arcs.map(|arc| arc.to_radians().sin_cos());
+            ((diagonal - c1 * c2) / (s1 * s2)).acos()
+        };
+        let home = home * PI / 180.0;
+        let across = angle(beside, law(arcs, home));
+        // The senses in which the two angles count are the axes' own: one choice of signs fits all.
+        let worst = |signs: [f64; 2]| {
+            let off = |row: &Vec<f64>| {
+                let near = law(arcs, home + signs[0] * row[6]);
+                (near - law(beside, across + signs[1] * row[opposite])).abs()
+            };
+            rows.iter().map(off).fold(0.0, f64::max)
+        };
+        let fits = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(worst);
+        assert_eq!(fits.iter().filter(|&&off| off < ROUNDING).count(), 1, "{fits:?}");
+    }
+    let (first, last) = (&rows[0], &rows[72]);
+    assert!((last[0] - first[0] - TAU).abs() < ROUNDING);
+    for (a, b) in first[..7].iter().zip(&last[..7]) {
+        assert!(((a - b) / TAU - ((a - b) / TAU).round()).abs() < ROUNDING, "{first:?} {last:?}");
+    }
+}
+
+#[test]
+fn a_range_ends_where_its_branches_meet() {
+    let found = solved("a2");
+    assert_eq!(found["full_turn"], false);
+    let ranges = found["range"].as_array().unwrap();
+    assert_eq!(ranges.len(), 2);
+    for range in ranges {
+        let [low, high] = [0, 1].map(|i| number(&range[i]));
+        let count = |value: f64| {
+            let input = format!("a2={value}");
+            solved(&input)["solutions"].as_array().unwrap().len()
+        };
+        assert_eq!([count(low - 1e-6), count(high + 1e-6)], [0, 0]);
+        assert_eq!([count(low + 1e-6), count(high - 1e-6), count(0.5 * (low + high))], [4; 3]);
+    }
+    let text = linkage(&["--input", "a2=60deg"]);
+    assert!(text.text().contains("range of a2: -214.0466 .. -140.9589, -43.3695 .. 29.7182 deg"));
+    assert!(text.text().contains("out of range"));
+}
+
+/// Out and back: the rows stay inside the range, and end at home.
+#[test]
+fn a_sweep_of_a_limited_input_goes_there_and_back() {
+    let run = linkage(&["--input", "a2", "--sweep", "--count", "201"]);
+    let rows = rows(run.text());
+    let a2: Vec<f64> = rows.iter().map(|row| row[2]).collect();
+    let (low, high) = a2.iter().fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(*v), h.max(*v)));
+    let ranges = solved("a2")["range"].clone();
+    for (reached, end) in [(low, 0), (high, 1)] {
+        let end = number(&ranges[1][end]);
+        assert!(reached.abs() <= end.abs() + ROUNDING, "{reached} {end}");
+        assert!(reached.abs() > end.abs() - 1e-3, "{reached} {end}");
+    }
+    assert!(a2[1] > a2[0], "it grows at first");
+    assert!(a2[200].abs() < ROUNDING);
+    for pair in rows.windows(2) {
+        for (a, b) in pair[0].iter().zip(&pair[1]).take(7) {
+            assert!((a - b).abs() < 0.2, "{pair:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sweep_goes_to_a_file() {
+    let folder = Folder::new();
+    let printed = linkage(&["--sweep", "--count", "5"]);
+    let csv = folder.arg("turn.csv");
+    let run = linkage(&["--sweep", "--count", "5", "-o", &csv]);
+    assert_eq!(run.text(), "");
+    assert!(run.stderr.contains("5 positions, one turn of a1"), "{}", run.stderr);
+    assert_eq!(folder.read("turn.csv"), printed.text());
+
+    let mcap = folder.arg("turn.mcap");
+    let run = linkage(&["--sweep", "--count", "5", "-o", &mcap, "--format", "json", "--quiet"]);
+    assert_eq!(run.stderr, "");
+    let found = run.json();
+    assert_eq!((&found["positions"], &found["turns"]), (&json!(5), &json!(true)));
+    let inside = opm(&["inspect", &mcap, "--format", "json"]).json();
+    assert_eq!(inside["complete"], true);
+    let topics: Vec<_> = inside["topics"].as_array().unwrap().iter().map(|t| &t["name"]).collect();
+    assert_eq!(topics, ["/imaginary_joints", "/joints"]);
+    assert_eq!(inside["metadata"]["run"]["input"], "a1");
+    assert_eq!(inside["attachments"][0]["name"], format!("{BENNETT}.toml"));
+    assert_eq!(folder.names(), ["turn.csv", "turn.mcap"]);
+}
+
+#[test]
+fn wrong_usage_names_the_flag() {
+    for (args, parts) in [
+        (&["--input", "j1"][..], &["--input", "\"j1\"", "a1, b3, a2, a3, b1, b2"][..]),
+        (&["--input", "a1=3mm"], &["--input", "a1 is an angle"]),
+        (&["--input", "a1=30deg", "--sweep"], &["--input", "a sweep starts at home"]),
+        (&["--sweep", "-o", "turn.txt"], &["--output", "turn.txt", ".csv or .mcap"]),
+        (&["--sweep", "--format", "json"], &["--format json", "--output"]),
+    ] {
+        linkage(args).fails_with_one_line(2, parts);
+    }
+    linkage(&["--input", "a1=much"]).fails(2, &["--input", "not a number"]);
+    linkage(&["--sweep", "--count", "1"]).fails(2, &["--count"]);
+    linkage(&["--count", "5"]).fails(2, &["--sweep"]);
+}
+
+#[test]
+fn what_is_no_linkage_is_told_so_and_a_linkage_its_command() {
+    for (name, legs) in [(PLANO, "4 legs"), (HELICAL, "3 legs")] {
+        opm(&["linkage", name]).fails_with_one_line(1, &[name, legs, "two spherical four-bars"]);
+    }
+    let hint = format!("use `opm linkage {BENNETT}`");
+    opm(&["ik", BENNETT, "--pose", ""]).fails_with_one_line(1, &["closed-form", &hint]);
+    opm(&["workspace", BENNETT]).fails_with_one_line(1, &["closed-form", &hint]);
+    let run = opm(&["decompose", BENNETT]);
+    assert!(run.stderr.contains(&hint), "{}", run.stderr);
+}

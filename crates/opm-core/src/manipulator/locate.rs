@@ -1,0 +1,155 @@
+//! From a displacement of the platform to task coordinates, for every pair of subspaces.
+//!
+//! The other way round, `Task::displacement` is a product of two exponentials; back, it is solved by
+//! least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
+//! reference point's position. One way for all pairs, and where the displacement is outside the
+//! motion it ends at the nearest pose, which is what one wants to be told.
+
+use super::Manipulator;
+use crate::joint::Quantity;
+use crate::mobility::frame;
+use nalgebra::{DMatrix, DVector, Isometry3, Vector3, Vector6};
+use std::f64::consts::TAU;
+
+/// A rotation, radians, or a distance over the mechanism's size: a displacement that is off the
+/// motion by less is on it. Far above the rounding of the solution, far below any tolerance of a
+/// machine.
+const ON: f64 = 1e-9;
+
+/// Starts: home, then poses spread over the angles.
+const STARTS: u32 = 24;
+
+/// Steps from one start. Near a solution each doubles the number of digits, but where the coordinates
+/// are singular (an Euler angle on its pole) it only halves the error.
+const STEPS: usize = 200;
+
+/// A displacement of the platform that the manipulator's motion does not hold.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "outside the manipulator's motion: off by {:.3e} rad about {:.3?} and by {:.3e} m along {:.3?}",
+    rotation.norm(), direction(rotation), translation.norm(), direction(translation)
+)]
+pub struct OutsideMotion {
+    /// The nearest pose that is in the motion.
+    pub nearest: Vec<f64>,
+    /// Rotation vector from that pose's orientation to the one given, base coordinates, radians.
+    pub rotation: Vector3<f64>,
+    /// From that pose's platform point to the one given, base coordinates, metres.
+    pub translation: Vector3<f64>,
+}
+
+fn direction(v: &Vector3<f64>) -> [f64; 3] {
+    v.try_normalize(0.0).unwrap_or_default().into()
+}
+
+impl Manipulator {
+    /// The pose whose displacement of the platform from home is `displacement` (base coordinates);
+    /// angles within half a turn of home. The inverse of `task().displacement(pose)`.
+    ///
+    /// # Errors
+    /// A displacement outside the motion `A · B`: how far, in which direction, and the nearest pose.
+    pub fn locate(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
+        let length = frame(&self.mechanism).length;
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in 0..STARTS {
+            let mut pose = self.start(start);
+            // The rotation alone first: it decides most angles, and has few false minima.
+            self.approach(displacement, 0.0, &mut pose);
+            let off = self.approach(displacement, 1.0 / length, &mut pose);
+            // Later starts must be better by more than rounding.
+            if best.as_ref().is_none_or(|(least, _)| off < 0.99 * least - ON * ON) {
+                best = Some((off, pose));
+            }
+            if off < ON {
+                break;
+            }
+        }
+        let (off, mut pose) = best.unwrap_or_else(|| (f64::INFINITY, self.task.home()));
+        for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
+            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
+                *q -= TAU * ((*q - c.home) / TAU).round();
+            }
+        }
+        if off < ON {
+            return Ok(pose);
+        }
+        let miss = self.miss(displacement, &pose, 1.0);
+        Err(OutsideMotion {
+            nearest: pose,
+            rotation: miss.fixed_rows::<3>(0).into(),
+            translation: miss.fixed_rows::<3>(3).into(),
+        })
+    }
+
+    /// Home, then angles by an additive recurrence, which spreads over the torus.
+    fn start(&self, number: u32) -> Vec<f64> {
+        let n = f64::from(number);
+        self.task_coordinates()
+            .iter()
+            .enumerate()
+            .map(|(i, c)| match c.quantity {
+                Quantity::Length => c.home,
+                // Irrational steps: the roots of successive primes.
+                Quantity::Angle => {
+                    let step = [2.0_f64, 3.0, 5.0, 7.0, 11.0][i % 5].sqrt();
+                    c.home + TAU * ((n * step).fract() - (n * step).fract().round())
+                }
+            })
+            .collect()
+    }
+
+    /// Least squares from `pose`, which it moves; returns what is left.
+    fn approach(&self, target: &Isometry3<f64>, weight: f64, pose: &mut [f64]) -> f64 {
+        let mut miss = self.miss(target, pose, weight);
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            let jacobian = self.sensitivity(target, weight, pose);
+            let normal = jacobian.tr_mul(&jacobian);
+            let gradient = jacobian.tr_mul(&miss);
+            let damped = &normal + DMatrix::identity(pose.len(), pose.len()) * damping;
+            let Some(step) = damped.cholesky().map(|c| c.solve(&gradient)) else {
+                damping *= 10.0;
+                continue;
+            };
+            let tried: Vec<f64> = pose.iter().zip(&step).map(|(q, s)| q - s).collect();
+            let after = self.miss(target, &tried, weight);
+            if after.norm() < miss.norm() {
+                pose.copy_from_slice(&tried);
+                miss = after;
+                damping = (damping * 0.1).max(1e-15);
+            } else {
+                damping *= 10.0;
+            }
+            if miss.norm() < 1e-15 || damping > 1e6 {
+                break;
+            }
+        }
+        miss.norm()
+    }
+
+    /// From the pose to the target: rotation vector, and the platform point's way times `weight`.
+    fn miss(&self, target: &Isometry3<f64>, pose: &[f64], weight: f64) -> Vector6<f64> {
+        let here = self.task.displacement(pose);
+        let turn = (target.rotation * here.rotation.inverse()).scaled_axis();
+        let way = (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
+        Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+    }
+
+    /// Derivative of the miss by the coordinates, central differences: exact enough, since what is
+    /// solved is `miss = 0`, not the derivative.
+    fn sensitivity(&self, target: &Isometry3<f64>, weight: f64, pose: &[f64]) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(6, pose.len());
+        for (i, c) in self.task_coordinates().iter().enumerate() {
+            // Lengths enter linearly: for them any step will do.
+            let h =
+                1e-6 * if c.quantity == Quantity::Length { pose[i].abs().max(1.0) } else { 1.0 };
+            let at = |q: f64| {
+                let mut moved = DVector::from_column_slice(pose);
+                moved[i] += q;
+                self.miss(target, moved.as_slice(), weight)
+            };
+            jacobian.set_column(i, &((at(h) - at(-h)) / (2.0 * h)));
+        }
+        jacobian
+    }
+}

@@ -1,0 +1,261 @@
+//! Every shipped mechanism: that it decomposes as its page in docs/gallery says, and that its closed
+//! forms and its sweep are those of its undecomposed legs.
+
+use fastrand::Rng;
+use opm_core::decomposition::{Decomposition, decompose};
+use opm_core::joint::Joint;
+use opm_core::leg::Leg;
+use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::{Mechanism, file};
+use opm_tests::by_inverse::by_inverse;
+use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
+
+/// The bound on closure, as a share of the metre: the mechanisms are smaller.
+const CLOSURE: f64 = 1e-10;
+
+/// Home lies well inside of reach, so no digits are lost on the way there and back: 12 decimals of
+/// millimetres and degrees, and what a family computes from its parameters.
+const HOME: f64 = 1e-12;
+
+/// Poses that must be closed in each mechanism.
+const REACHED: usize = 1_000;
+
+/// Bennett's linkage has no platform to position.
+const LINKAGE: &str = "bennett-double-spherical-6r";
+
+/// What a mechanism's page says: lambda, N, J, M, its subspaces, what they share, and each leg's
+/// freedoms in the lower and in the upper section, `*` where it has an imaginary joint.
+struct Page {
+    name: &'static str,
+    numbers: [usize; 4],
+    subspaces: [&'static str; 2],
+    shared: &'static str,
+    legs: &'static str,
+    redundant: usize,
+    coordinates: &'static str,
+}
+
+const PAGES: &[Page] = &[
+    PLANO_SPHERICAL,
+    TRANSLATIONAL_HELICAL,
+    Page { name: "plano-spherical-5dof-joints", ..PLANO_SPHERICAL },
+    Page { name: "translational-helical-3dof-joints", ..TRANSLATIONAL_HELICAL },
+    Page {
+        name: LINKAGE,
+        numbers: [5, 1, 1, 0],
+        subspaces: ["spherical", "spherical"],
+        shared: "rotation",
+        legs: "1|1* 2|2",
+        redundant: 0,
+        coordinates: "",
+    },
+    PLANAR_PLANAR,
+    Page { name: "planar-planar-5dof-joints", ..PLANAR_PLANAR },
+    Page {
+        name: "double-spherical-5dof",
+        numbers: [5, 5, 3, 2],
+        subspaces: ["spherical", "spherical"],
+        shared: "rotation",
+        legs: "3|2* 3|2* 3|2* 2|3",
+        redundant: 0,
+        coordinates: "mu nu zeta xi psi",
+    },
+    Page {
+        name: "plano-cylindrical-4dof",
+        numbers: [4, 4, 1, 3],
+        subspaces: ["planar", "cylindrical"],
+        shared: "translation",
+        legs: "3|1 3|1 3|1 3|1*",
+        redundant: 0,
+        coordinates: "x y theta phi",
+    },
+    Page {
+        name: "schoenflies-4dof",
+        numbers: [4, 4, 2, 2],
+        subspaces: ["planar", "cylindrical"],
+        shared: "rotation",
+        legs: "3|1* 3|1*",
+        redundant: 0,
+        coordinates: "x y phi z",
+    },
+    Page {
+        name: "translational-planar-4dof",
+        numbers: [4, 4, 3, 1],
+        subspaces: ["translational plane", "planar"],
+        shared: "translation",
+        legs: "2|2* 2|2* 2|2* 2|2*",
+        redundant: 1,
+        coordinates: "x y w phi",
+    },
+];
+
+const PLANO_SPHERICAL: Page = Page {
+    name: "plano-spherical-5dof",
+    numbers: [5, 5, 3, 2],
+    subspaces: ["planar", "spherical"],
+    shared: "rotation",
+    legs: "3|2* 3|2* 3|2* 2|3",
+    redundant: 0,
+    coordinates: "x y zeta xi psi",
+};
+
+const TRANSLATIONAL_HELICAL: Page = Page {
+    name: "translational-helical-3dof",
+    numbers: [3, 3, 1, 2],
+    subspaces: ["translational plane", "cylindrical"],
+    shared: "translation",
+    legs: "2|1* 2|1 2|1",
+    redundant: 0,
+    coordinates: "x y phi",
+};
+
+const PLANAR_PLANAR: Page = Page {
+    name: "planar-planar-5dof",
+    numbers: [5, 5, 3, 2],
+    subspaces: ["planar", "planar"],
+    shared: "translation",
+    legs: "3|2* 3|2* 3|2* 2|3",
+    redundant: 0,
+    coordinates: "x y theta w phi",
+};
+
+fn mechanism(text: &str) -> Mechanism {
+    file::read(text).unwrap_or_else(|errors| panic!("{errors}")).mechanism
+}
+
+/// Every shipped mechanism that has a platform to position.
+fn manipulators() -> impl Iterator<Item = Manipulator> {
+    let shipped = EXAMPLES.iter().filter(|example| example.name != LINKAGE);
+    shipped.map(|example| Manipulator::new(mechanism(example.text)).unwrap())
+}
+
+fn legs(decomposition: &Decomposition) -> String {
+    let leg = decomposition.legs.iter().map(|split| {
+        let mark = if split.imaginary { "*" } else { "" };
+        format!("{}|{}{mark}", split.lower.len(), split.upper.len())
+    });
+    leg.collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn every_mechanism_decomposes_as_its_page_says() {
+    let names: Vec<_> = EXAMPLES.iter().map(|example| example.name).collect();
+    assert_eq!(names, PAGES.iter().map(|page| page.name).collect::<Vec<_>>());
+    for (page, example) in PAGES.iter().zip(EXAMPLES) {
+        let mechanism = mechanism(example.text);
+        let d = &decompose(&mechanism).unwrap()[0];
+        let numbers = [d.lambda, d.mobility, d.imaginary_joints, d.first_section_motions];
+        assert_eq!(numbers, page.numbers, "{}", page.name);
+        assert_eq!([d.lower.name(), d.upper.name()], page.subspaces, "{}", page.name);
+        assert_eq!(d.intersection.name(), page.shared, "{}", page.name);
+        assert_eq!(legs(d), page.legs, "{}", page.name);
+        assert_eq!((d.redundancy, d.upper_mobility), (page.redundant, 0), "{}", page.name);
+        if page.name != LINKAGE {
+            let manipulator = Manipulator::new(mechanism).unwrap();
+            assert_eq!(manipulator.decomposition(), d, "{}", page.name);
+            let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+            assert_eq!(names.join(" "), page.coordinates);
+        }
+    }
+}
+
+/// As many motors as freedoms: no leg works against another.
+#[test]
+fn every_mechanism_has_as_many_actuators_as_freedoms() {
+    for example in EXAMPLES {
+        let mechanism = mechanism(example.text);
+        let actuated: usize =
+            mechanism.joints().filter(|joint| joint.actuated).map(Joint::freedoms).sum();
+        assert_eq!(actuated, decompose(&mechanism).unwrap()[0].mobility, "{}", example.name);
+    }
+}
+
+#[test]
+fn home_s_mode_gives_home_s_values_at_home() {
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        let mut solution = manipulator.solution();
+        let home = manipulator.task().home();
+        assert!(manipulator.inverse(&home, manipulator.home_mode(), &mut solution).unwrap());
+        assert!(solution.within_limits, "{name}");
+        for (coordinate, q) in manipulator.coordinates().iter().zip(&solution.joints) {
+            let off = (coordinate.home - q).abs();
+            assert!(off < HOME, "{name} {}: off by {off:e}", coordinate.name);
+        }
+    }
+}
+
+#[test]
+fn a_family_s_working_mode_is_that_of_its_joints() {
+    let mut families = 0;
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        let text = find(name).unwrap().text;
+        if let Some(mode) = file::read(text).unwrap().mode {
+            assert_eq!(mode, manipulator.format_mode(manipulator.home_mode()), "{name}");
+            families += 1;
+        }
+    }
+    assert_eq!(families, 3);
+}
+
+/// The largest distance of a leg's end, by its product of exponentials, from where the platform is.
+fn gap(manipulator: &Manipulator, pose: &[f64], solution: &Solution) -> f64 {
+    let target = manipulator.task().displacement(pose).to_homogeneous();
+    let mut joints = &solution.joints[..];
+    let off = |leg: &Leg| {
+        let (own, rest) = joints.split_at(leg.coordinates().count());
+        joints = rest;
+        (leg.displacement(own).to_homogeneous() - target).norm()
+    };
+    manipulator.mechanism().legs.iter().map(off).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_working_mode_closes_every_leg() {
+    let mut rng = Rng::with_seed(20);
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        let (grid, _) = default_grid(&manipulator, Modes::Any, &Progress::default()).unwrap();
+        let mut all = manipulator.all_modes();
+        let mut solution = manipulator.solution();
+        let (mut tried, mut reached, mut worst) = (0, 0, 0.0_f64);
+        while reached < REACHED {
+            tried += 1;
+            assert!(tried < 1_000 * REACHED, "{name}: {reached} of {tried} poses in reach");
+            let within = |axis: &Axis| axis.min + (axis.max - axis.min) * rng.f64();
+            let pose: Vec<f64> = grid.axes().iter().map(within).collect();
+            if !manipulator.inverse_all(&pose, &mut all).unwrap() {
+                continue;
+            }
+            reached += 1;
+            for mode in all.modes(&manipulator) {
+                assert!(manipulator.pick(&all, mode, &mut solution));
+                let off = gap(&manipulator, &pose, &solution);
+                worst = worst.max(off);
+                assert!(off < CLOSURE, "{name} at {pose:?}: off by {off:e}");
+            }
+        }
+        println!("{name}: {reached} of {tried} poses, worst {worst:.1e}");
+    }
+}
+
+/// In home's mode and in any, over the workspace's whole extent: neither all nor none of it.
+#[test]
+fn a_sweep_counts_what_inverse_kinematics_finds() {
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        for modes in [Modes::One(manipulator.home_mode()), Modes::Any] {
+            let (grid, _) = default_grid(&manipulator, modes, &Progress::default()).unwrap();
+            // An even number of values, so that the grid does not just probe the symmetric poses.
+            let axes = grid.axes().iter().map(|a| Axis::new(a.name.clone(), a.min, a.max, 6));
+            let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+            let (reached, expected) = by_inverse(&manipulator, &grid, modes);
+            let count = Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap();
+            println!("{name} {modes:?}: {} of {}", count.reachable, count.poses);
+            assert_eq!(count, expected, "{name}");
+            assert!(reached.len() > 10 && count.reachable < count.poses, "{name}: {count:?}");
+        }
+    }
+}

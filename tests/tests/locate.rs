@@ -1,0 +1,69 @@
+//! From displacements of the platform to task coordinates and back.
+
+use fastrand::Rng;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use opm_core::manipulator::Manipulator;
+use opm_core::subspace::SubspaceClass;
+use opm_tests::random::{Options, PAIRS, direction, mechanism};
+
+const OPTIONS: Options = Options { limited: 0.0, balls: true };
+
+fn off(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    (a.to_homogeneous() - b.to_homogeneous()).norm()
+}
+
+#[test]
+fn poses_come_back_from_their_displacements() {
+    let mut rng = Rng::with_seed(40);
+    for pair in PAIRS {
+        for _ in 0..20 {
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            for _ in 0..20 {
+                let home = manipulator.task().home();
+                let pose: Vec<f64> = home.iter().map(|q| q + 5.0 * (rng.f64() - 0.5)).collect();
+                let displacement = manipulator.task().displacement(&pose);
+                let located = manipulator.locate(&displacement);
+                let located = located.unwrap_or_else(|e| panic!("{pair:?} {pose:?}: {e}"));
+                let back = manipulator.task().displacement(&located);
+                assert!(off(&back, &displacement) < 1e-8, "{pair:?} {pose:?} {located:?}");
+            }
+        }
+    }
+}
+
+/// A pose of the motion, moved out of it: along directions that the motion lacks, the distance is
+/// the one moved, for the paper's pair: planar and spherical lack the plane's normal.
+#[test]
+fn outside_says_how_far_and_where() {
+    let mut rng = Rng::with_seed(41);
+    for _ in 0..50 {
+        let (mut mechanism, decomposition) = mechanism(&mut rng, PAIRS[0], OPTIONS);
+        let SubspaceClass::Spherical { centre } = decomposition.upper else { unreachable!() };
+        mechanism.platform = centre;
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let pose: Vec<f64> =
+            manipulator.task().home().iter().map(|q| q + rng.f64() - 0.5).collect();
+        let normal = manipulator.task().direction;
+        let by = 0.01 + 0.2 * rng.f64();
+        let out =
+            Translation3::from(normal.into_inner() * by) * manipulator.task().displacement(&pose);
+        let outside = manipulator.locate(&out).unwrap_err();
+        assert!(outside.rotation.norm() < 1e-6, "{outside}");
+        assert!((outside.translation - normal.into_inner() * by).norm() < 1e-6, "{outside}");
+    }
+    for pair in PAIRS {
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let anywhere = Isometry3::from_parts(
+            Translation3::from(direction(&mut rng).into_inner() * 0.7),
+            UnitQuaternion::from_axis_angle(&direction(&mut rng), 1.0),
+        );
+        // Five freedoms at most: a random displacement is outside.
+        let outside = manipulator.locate(&anywhere).unwrap_err();
+        let nearest = manipulator.task().displacement(&outside.nearest);
+        let turn = (anywhere.rotation * nearest.rotation.inverse()).scaled_axis();
+        assert!((turn - outside.rotation).norm() < 1e-9);
+        assert!(outside.rotation.norm() + outside.translation.norm() > 1e-6);
+    }
+}
