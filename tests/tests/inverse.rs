@@ -2,7 +2,8 @@
 //! are: each leg's product of exponentials must bring the platform to the pose.
 
 use fastrand::Rng;
-use opm_core::joint::JointKind;
+use opm_core::joint::{JointKind, Quantity};
+use opm_core::leg::Leg;
 use opm_core::manipulator::Manipulator;
 use opm_tests::random::{Options, PAIRS, mechanism};
 
@@ -97,6 +98,14 @@ fn home_is_where_the_joints_are() {
     }
 }
 
+/// The joints of legs with a screw: that may run away near a singularity, and a revolute on its axis
+/// with it.
+fn screws(manipulator: &Manipulator) -> Vec<&str> {
+    let screw = |leg: &&Leg| leg.joints.iter().any(|j| matches!(j.kind, JointKind::Helical { .. }));
+    let legs = manipulator.mechanism().legs.iter().filter(screw);
+    legs.flat_map(|leg| leg.coordinates().map(|c| c.name.as_str())).collect()
+}
+
 /// Along a smooth path no angle jumps: every step is as short as the path's own speed makes it.
 #[test]
 fn angles_stay_on_their_branch_along_a_path() {
@@ -107,13 +116,7 @@ fn angles_stay_on_their_branch_along_a_path() {
             let options = Options { limited: 0.0, balls: true };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            // A screw may run away near a singularity, and a revolute on its axis with it.
-            let screws: Vec<_> = (manipulator.mechanism().legs.iter())
-                .filter(|leg| {
-                    leg.joints.iter().any(|j| matches!(j.kind, JointKind::Helical { .. }))
-                })
-                .flat_map(|leg| leg.coordinates().map(|c| c.name.as_str()))
-                .collect();
+            let screws = screws(&manipulator);
             let mode = manipulator.home_mode();
             let mut solution = manipulator.solution();
             let mut pose = manipulator.task().home();
@@ -239,4 +242,51 @@ fn enormous_poses_are_answered_or_refused() {
         }
     }
     assert!(answered > 1_000, "{answered}");
+}
+
+/// A joint that follows a path beyond its limits is told to be there: it does not jump to a turn that
+/// they would allow, and comes back within them where it left them.
+#[test]
+fn a_path_beyond_limits_does_not_jump() {
+    const STEP: f64 = 0.01;
+    let mut rng = Rng::with_seed(9);
+    let (mut inside, mut beyond) = (0, 0);
+    for pair in PAIRS {
+        for _ in 0..20 {
+            let options = Options { limited: 0.0, balls: true };
+            let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+            for c in joints.flat_map(|joint| &mut joint.coordinates) {
+                // More than half a turn to either side: both ends have a turn inside beyond them.
+                c.limits = Some([c.home - 3.5, c.home + 3.5]);
+            }
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mode = manipulator.home_mode();
+            let mut solution = manipulator.solution();
+            let mut pose = manipulator.task().home();
+            let direction: Vec<f64> = pose.iter().map(|_| rng.f64() * 2.0 - 1.0).collect();
+            let screws = screws(&manipulator);
+            for _ in 0..1_000 {
+                let before = solution.joints.clone();
+                pose.iter_mut().zip(&direction).for_each(|(q, d)| *q += STEP * d);
+                if !manipulator.inverse_near(&pose, mode, &mut solution).unwrap() {
+                    break;
+                }
+                let mut within = true;
+                for ((q, before), c) in
+                    solution.joints.iter().zip(&before).zip(manipulator.coordinates())
+                {
+                    let [low, high] = c.limits.unwrap();
+                    within &= (low - 1e-9..=high + 1e-9).contains(q);
+                    let angle = c.quantity == Quantity::Angle && !screws.contains(&c.name.as_str());
+                    let turn = angle && (q - before).abs() > 6.0;
+                    assert!(!turn, "{pair:?} {} from {before} to {q}", c.name);
+                }
+                assert_eq!(solution.within_limits, within, "{pair:?}");
+                inside += u32::from(within);
+                beyond += u32::from(!within);
+            }
+        }
+    }
+    assert!(inside > 10_000 && beyond > 10_000, "{inside} inside, {beyond} beyond");
 }

@@ -69,11 +69,11 @@ impl Limits {
         }
     }
 
-    /// The value to report for an amount: the turn nearest to `reference`, but one within the limits
-    /// where there is one. All are displacements from home.
+    /// The value to report for an amount, a displacement from home: the turn nearest to home, but one
+    /// within the limits where there is one.
     #[inline]
-    pub fn report(&self, amount: Amount, reference: f64) -> f64 {
-        let nearest = amount.nearest(reference);
+    pub fn report(&self, amount: Amount) -> f64 {
+        let nearest = amount.value();
         let (Self::Range { low, high, .. }, Amount::Turn(_)) = (self, amount) else {
             return nearest;
         };
@@ -86,6 +86,20 @@ impl Limits {
             return if down >= *low { down } else { nearest };
         }
         nearest
+    }
+
+    /// The value to report for an amount and whether it is allowed, displacements from home: as
+    /// [`Limits::report`] and [`Limits::admits`] say, or (`held`) at the turn nearest to a value that
+    /// a motion comes from, wherever the limits are.
+    #[inline]
+    pub fn place(&self, amount: Amount, held: Option<f64>) -> (f64, bool) {
+        match held {
+            None => (self.report(amount), self.admits(amount)),
+            Some(held) => {
+                let value = amount.nearest(held);
+                (value, self.admits(Amount::Value(value)))
+            }
+        }
     }
 
     /// Lowest and highest value of a length, as a displacement from home.
@@ -141,7 +155,7 @@ mod tests {
             prop_assume!(margin > 1e-9);
             let inside = from_low <= width;
             prop_assert_eq!(limits.admits(Amount::Turn(unit(angle))), inside);
-            let reported = home + limits.report(Amount::Turn(unit(angle)), 0.0);
+            let reported = home + limits.report(Amount::Turn(unit(angle)));
             prop_assert!((unit(reported) - unit(home + angle)).norm() < 1e-9);
             prop_assert_eq!(inside, (low..=low + width).contains(&reported));
         }

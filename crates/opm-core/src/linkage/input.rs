@@ -100,12 +100,11 @@ impl<'a> Input<'a> {
     /// loop does not close.
     #[inline]
     pub fn position(&self, value: f64, branch: LinkageBranch, position: &mut Position) -> bool {
-        let home = |coordinate: usize, _: &Position| self.linkage.coordinates[coordinate].home;
-        self.solve_at(value, branch, position, (home, self.linkage.imaginary.home))
+        self.solve_at(value, branch, position, (|_, _| None, self.linkage.imaginary.home))
     }
 
     /// As [`Input::position`], with every angle at the turn that is nearest to where `position` has
-    /// it: along a motion in small steps no angle jumps.
+    /// it: along a motion in small steps no angle jumps, not even to stay within its limits.
     #[inline]
     pub fn position_near(
         &self,
@@ -114,8 +113,8 @@ impl<'a> Input<'a> {
         position: &mut Position,
     ) -> bool {
         let imaginary = position.imaginary;
-        let before = |coordinate: usize, position: &Position| position.joints[coordinate];
-        self.solve_at(value, branch, position, (before, imaginary))
+        let held = |coordinate: usize, position: &Position| Some(position.joints[coordinate]);
+        self.solve_at(value, branch, position, (held, imaginary))
     }
 
     fn solve_at(
@@ -123,7 +122,7 @@ impl<'a> Input<'a> {
         value: f64,
         branch: LinkageBranch,
         position: &mut Position,
-        (reference, imaginary): (impl Fn(usize, &Position) -> f64, f64),
+        (held, imaginary): (impl Fn(usize, &Position) -> Option<f64>, f64),
     ) -> bool {
         let linkage = self.linkage;
         let displacement = value - self.coordinate().home;
@@ -133,11 +132,11 @@ impl<'a> Input<'a> {
             linkage.limits[self.coordinate].admits(Amount::Value(displacement));
         position.joints[self.coordinate] = value;
         let mut put = |coordinate: usize, amount: Amount| {
-            let (home, limits) =
-                (linkage.coordinates[coordinate].home, &linkage.limits[coordinate]);
-            let near = reference(coordinate, position) - home;
-            position.joints[coordinate] = home + limits.report(amount, near);
-            position.within_limits &= limits.admits(amount);
+            let home = linkage.coordinates[coordinate].home;
+            let held = held(coordinate, position).map(|held| held - home);
+            let (value, within) = linkage.limits[coordinate].place(amount, held);
+            position.joints[coordinate] = home + value;
+            position.within_limits &= within;
         };
         for (i, &amount) in own.iter().enumerate() {
             let place = (self.place + 1 + i) % 4;

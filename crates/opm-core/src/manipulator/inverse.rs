@@ -116,12 +116,14 @@ impl Manipulator {
     /// A pose of the wrong length, or with a coordinate that is not a finite number.
     pub fn inverse(&self, pose: &[f64], mode: Mode, out: &mut Solution) -> Result<bool, PoseError> {
         let (v, b) = self.displacements(pose)?;
-        self.solve_legs(&v, &b, mode, out, |_, home| home);
+        self.solve_legs(&v, &b, mode, out, Turns::NearHome);
         Ok(out.unreachable.is_empty())
     }
 
     /// As [`Manipulator::inverse`], but each angle is the one nearest to what `out` held before:
-    /// along a trajectory no joint jumps by a turn. Out of reach, `out` keeps the last good values.
+    /// along a trajectory no joint jumps by a turn, not even to stay within its limits, and
+    /// `out.within_limits` says whether it is at that turn. Out of reach, `out` keeps the last good
+    /// values.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
@@ -132,7 +134,7 @@ impl Manipulator {
         out: &mut Solution,
     ) -> Result<bool, PoseError> {
         let (v, b) = self.displacements(pose)?;
-        self.solve_legs(&v, &b, mode, out, |held, _| held);
+        self.solve_legs(&v, &b, mode, out, Turns::NearHeld);
         Ok(out.unreachable.is_empty())
     }
 
@@ -203,7 +205,7 @@ impl Manipulator {
         out.within_limits = true;
         for (number, modes) in all.legs.iter().enumerate() {
             match &modes[self.modes.of_leg(mode, number)] {
-                Some(Ok(solution)) => self.write(number, solution, out, |_, home| home),
+                Some(Ok(solution)) => self.write(number, solution, out, Turns::NearHome),
                 Some(Err(unreachable)) => out.unreachable.push(*unreachable),
                 None => return false,
             }
@@ -255,7 +257,7 @@ impl Manipulator {
         for (slot, &amount) in section.slots.iter().zip(amounts) {
             if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
                 let home = self.coordinates[coordinate].home;
-                out.actuated[drive] = home + self.limits[coordinate].report(amount, 0.0);
+                out.actuated[drive] = home + self.limits[coordinate].report(amount);
             }
         }
     }
@@ -266,15 +268,15 @@ impl Manipulator {
         b: &Displacement,
         mode: Mode,
         out: &mut Solution,
-        reference: impl Fn(f64, f64) -> f64 + Copy,
+        turns: Turns,
     ) {
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let near = reference(out.cuts[number], 0.0);
+            let near = turns.near(out.cuts[number], 0.0);
             match leg.solve(&self.task, [v, b], branches, near) {
-                Ok(solution) => self.write(number, &solution, out, reference),
+                Ok(solution) => self.write(number, &solution, out, turns),
                 Err((section, gap)) => {
                     out.unreachable.push(Unreachable { leg: number, section, gap });
                 }
@@ -282,23 +284,16 @@ impl Manipulator {
         }
     }
 
-    /// Reports a leg's solution; `reference` says near which value an angle is to be, from the value
-    /// that `out` holds and the one at home.
+    /// Reports a leg's solution.
     #[inline]
-    fn write(
-        &self,
-        number: usize,
-        solution: &LegSolution,
-        out: &mut Solution,
-        reference: impl Fn(f64, f64) -> f64 + Copy,
-    ) {
+    fn write(&self, number: usize, solution: &LegSolution, out: &mut Solution, turns: Turns) {
         let leg = &self.legs[number];
-        self.write_section(&leg.lower, &solution.lower, out, reference);
-        self.write_section(&leg.upper, &solution.upper, out, reference);
-        out.cuts[number] = solution.tau.nearest(reference(out.cuts[number], 0.0));
+        self.write_section(&leg.lower, &solution.lower, out, turns);
+        self.write_section(&leg.upper, &solution.upper, out, turns);
+        out.cuts[number] = solution.tau.nearest(turns.near(out.cuts[number], 0.0));
         if let Some(imaginary) = leg.imaginary {
             let joint = &self.imaginary[imaginary];
-            let near = reference(out.imaginary[imaginary], joint.home);
+            let near = turns.near(out.imaginary[imaginary], joint.home);
             out.imaginary[imaginary] = joint.value(solution.tau, near);
         }
     }
@@ -309,27 +304,47 @@ impl Manipulator {
         section: &CompiledSection,
         amounts: &[Amount; 3],
         out: &mut Solution,
-        reference: impl Fn(f64, f64) -> f64,
+        turns: Turns,
     ) {
-        out.within_limits &= section.admits(&self.limits, amounts);
-        let near = |coordinate: usize, held: f64| {
-            let home = self.coordinates[coordinate].home;
-            reference(held, home) - home
-        };
+        let home = |coordinate: usize| self.coordinates[coordinate].home;
         if matches!(section.chain, Chain::Ball(_)) {
             let first = section.slots[0].map_or(0, |slot| slot.coordinate);
-            let near = Vector3::from_fn(|i, _| near(first + i, out.joints[first + i]));
+            let near = Vector3::from_fn(|i, _| {
+                turns.near(out.joints[first + i], home(first + i)) - home(first + i)
+            });
             let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
             for i in 0..3 {
-                out.joints[first + i] = self.coordinates[first + i].home + vector[i];
+                out.within_limits &= self.limits[first + i].admits(Amount::Value(vector[i]));
+                out.joints[first + i] = home(first + i) + vector[i];
             }
             return;
         }
         for (slot, &amount) in section.slots.iter().zip(amounts) {
             let Some(Slot { coordinate, .. }) = *slot else { continue };
-            let reference = near(coordinate, out.joints[coordinate]);
-            let value = self.limits[coordinate].report(amount, reference);
-            out.joints[coordinate] = self.coordinates[coordinate].home + value;
+            let home = home(coordinate);
+            let held = (turns == Turns::NearHeld).then(|| out.joints[coordinate] - home);
+            let (value, within) = self.limits[coordinate].place(amount, held);
+            out.joints[coordinate] = home + value;
+            out.within_limits &= within;
+        }
+    }
+}
+
+/// At which whole number of turns an angle is reported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turns {
+    /// Within half a turn of home, or where the limits allow it.
+    NearHome,
+    /// Nearest to the value that the buffer holds.
+    NearHeld,
+}
+
+impl Turns {
+    #[inline]
+    fn near(self, held: f64, home: f64) -> f64 {
+        match self {
+            Self::NearHome => home,
+            Self::NearHeld => held,
         }
     }
 }
