@@ -4,3 +4,8 @@
 pub mod by_inverse;
 pub mod paper;
 pub mod random;
+
+/// The README's Rust is compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

@@ -56,7 +56,8 @@ pub struct Decomposition {
     pub lower: SubspaceClass,
     /// Group that the upper parts of the legs move in, `B`.
     pub upper: SubspaceClass,
-    /// What both have in common: a rotation, translation or helical motion.
+    /// What both have in common: a rotation, translation or helical motion. Its axis is its positive
+    /// direction: on the side of the mechanism's [`TaskHints`](crate::mechanism::TaskHints), else up.
     pub intersection: SubspaceClass,
     /// A split a leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
@@ -230,12 +231,16 @@ impl<'a> Sections<'a> {
             imaginary: choice.legs.contains(&i),
         };
         let imaginary_joints = choice.mobility.min(mobility);
+        let mut intersection = self.intersection.class.restored(frame);
+        if let Some(hint) = &mechanism.task.axis {
+            intersection = intersection.towards(hint);
+        }
         Decomposition {
             lambda,
             mobility,
             lower: self.lower.class.restored(frame),
             upper: self.upper.class.restored(frame),
-            intersection: self.intersection.class.restored(frame),
+            intersection,
             legs: self.legs.iter().enumerate().map(split).collect(),
             imaginary_joints,
             first_section_motions: mobility - imaginary_joints,

@@ -1,6 +1,6 @@
-//! Position analysis of single loops that decompose: Bennett's double spherical 6R linkage (G. T.
-//! Bennett, "The skew isogram mechanism", Proc. London Math. Soc. s2-13, 1914; Fig. 1 of the paper)
-//! as an input-output linkage.
+//! Position analysis of single loops that decompose: Bennett's double spherical 6R linkage (Selvi,
+//! "Kinematic analysis of overconstrained manipulators with partial subspaces using decomposition
+//! method", Robotica, Fig. 1) as an input-output linkage.
 //!
 //! Two legs close one loop, `L₁U₁ = L₂U₂`, where the lower parts turn about a centre `A` and the
 //! upper parts about a centre `B`. Then

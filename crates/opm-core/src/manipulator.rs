@@ -9,7 +9,7 @@
 //!   `U = exp(-I τ) · b`.
 //!
 //! Either way both sections have as many freedoms as their subspace, and each is one
-//! [`Chain`](crate::chain::Chain).
+//! [`Chain`].
 
 mod inverse;
 mod leg;

@@ -26,10 +26,9 @@ use crate::chain::unit;
 use crate::decomposition::Decomposition;
 use crate::joint::Quantity;
 use crate::mechanism::Mechanism;
-use crate::subspace::SubspaceClass;
+use crate::subspace::{SubspaceClass, TOLERANCE};
 use displacement::{cylindrical, planar};
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, Vector3};
-use subspace::positive;
 
 /// One coordinate of the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +52,19 @@ pub enum TaskError {
         "the partial subspaces meet in a screw motion, for which there are no closed-form chains"
     )]
     Screw,
+    /// The mechanism's hint says neither of the intersection motion's two directions.
+    #[error(
+        "[task] axis is {}, square to the intersection motion, expected a direction along that or \
+         against it: {}",
+        triple(given),
+        triple(along)
+    )]
+    Axis {
+        /// The direction given.
+        given: [f64; 3],
+        /// The intersection motion's.
+        along: [f64; 3],
+    },
     /// The mechanism names a coordinate that its subspaces do not have.
     #[error("home gives `{name}`, but the task coordinates are {expected}")]
     Unknown {
@@ -61,6 +73,10 @@ pub enum TaskError {
         /// The names there are.
         expected: String,
     },
+}
+
+fn triple([x, y, z]: &[f64; 3]) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
 /// The subspaces' frames and the coordinates of a pose.
@@ -91,15 +107,19 @@ impl Task {
     /// Frames and coordinates for a decomposition.
     ///
     /// # Errors
-    /// A subspace or an intersection motion that no chain covers, or a home value for a coordinate
-    /// that there is not.
+    /// A subspace or an intersection motion that no chain covers, a positive direction square to
+    /// that motion, or a home value for a coordinate that there is not.
     pub fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, TaskError> {
         let (axis, point) = match &decomposition.intersection {
             SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
             SubspaceClass::Translation { axis } => (*axis, None),
             _ => return Err(TaskError::Screw),
         };
-        let axis = positive(axis, mechanism.task.axis);
+        if let Some(hint) = mechanism.task.axis
+            && hint.normalize().dot(&axis).abs() <= TOLERANCE
+        {
+            return Err(TaskError::Axis { given: hint.into(), along: axis.into_inner().into() });
+        }
         let frame = |class: &SubspaceClass, along_axis: bool| {
             Subspace::new(class, axis, point, &mechanism.platform, along_axis)
         };

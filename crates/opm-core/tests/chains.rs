@@ -301,6 +301,35 @@ proptest! {
     }
 }
 
+/// Sliders that are next to parallel close as well as any: what is lost in telling them apart is not
+/// lost in their sum.
+#[test]
+fn sliders_next_to_parallel_close() {
+    let revolute = PlanarJoint::Revolute { at: Complex::new(0.3, -0.2), reversed: false };
+    let slide = |angle| PlanarJoint::Prismatic { along: e(angle) };
+    for i in 0..2_000 {
+        let angle = 0.003_1 * f64::from(i);
+        let apart = 1e-8 * (1.0 + f64::from(i));
+        let (u, v) = (angle, angle + apart);
+        let made = [0.9, -1.4].map(Amount::Value);
+        let turn = Amount::Turn(e(0.7));
+        for (joints, amounts) in [
+            ([slide(u), slide(v), revolute], [made[0], made[1], turn]),
+            ([revolute, slide(u), slide(v)], [turn, made[0], made[1]]),
+            ([slide(u), revolute, slide(v - 0.7)], [made[0], turn, made[1]]),
+        ] {
+            let target = forward(&joints, &amounts);
+            let chain = PlanarChain::new(joints).unwrap();
+            let solution = chain.inverse(&target, Branch::Plus).unwrap();
+            let off = distance(&forward(&joints, &solution), &target);
+            assert!(off < 1e-14, "{joints:?}: off by {off:e}");
+        }
+        let chain = TranslationalChain::new([e(u), e(v)]).unwrap();
+        let target = chain.forward(&made);
+        assert!((chain.forward(&chain.inverse(target)) - target).norm() < 1e-14);
+    }
+}
+
 #[test]
 fn the_rim_is_inside_and_both_branches_meet_there() {
     let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };

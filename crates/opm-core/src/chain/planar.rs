@@ -205,13 +205,15 @@ pub fn forward(joints: &[PlanarJoint; 3], amounts: &[Amount; 3]) -> PlanarDispla
 
 /// `a × b`, the third component of the cross product.
 #[inline]
-fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
+pub(super) fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.im - a.im * b.re
 }
 
-/// `z = m u + n v`: the coordinates of `z` along two unit directions that are not parallel.
+/// `z = m u + n v`: the coordinates of `z` along two unit directions that are not parallel. The first
+/// makes up for the rounding of the second, so that the sum is `z` however near to parallel they are.
 #[inline]
-fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
-    let area = cross(u, v);
-    (cross(z, v) / area, cross(u, z) / area)
+pub(super) fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
+    let n = cross(u, z) / cross(u, v);
+    let rest = z - v * n;
+    (rest.re * u.re + rest.im * u.im, n)
 }

@@ -1,5 +1,6 @@
 //! Chains of two prismatic joints in a plane.
 
+use super::planar::{along, cross};
 use super::{Amount, ChainError, DEGENERATE};
 use nalgebra::Complex;
 
@@ -7,8 +8,6 @@ use nalgebra::Complex;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TranslationalChain {
     slides: [Complex<f64>; 2],
-    /// The rows of the inverse of the matrix whose columns are the slides.
-    rows: [Complex<f64>; 2],
 }
 
 impl TranslationalChain {
@@ -18,18 +17,17 @@ impl TranslationalChain {
     /// Where they are parallel.
     pub fn new(slides: [Complex<f64>; 2]) -> Result<Self, ChainError> {
         let [u, v] = slides;
-        let area = u.re * v.im - u.im * v.re;
-        if area.abs() <= DEGENERATE {
+        if cross(u, v).abs() <= DEGENERATE {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
-        let rows = [Complex::new(v.im, -v.re) / area, Complex::new(-u.im, u.re) / area];
-        Ok(Self { slides, rows })
+        Ok(Self { slides })
     }
 
     /// The sliders' amounts that translate the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: Complex<f64>) -> [Amount; 2] {
-        self.rows.map(|row| Amount::Value(row.re * target.re + row.im * target.im))
+        let (first, second) = along(self.slides[0], self.slides[1], target);
+        [Amount::Value(first), Amount::Value(second)]
     }
 
     /// The translation of the outer link.

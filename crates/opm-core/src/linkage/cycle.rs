@@ -25,7 +25,9 @@ pub struct Cycle {
 #[derive(Clone, Debug, PartialEq)]
 enum Motion {
     Turn(LinkageBranch),
-    /// Arcs from fold to fold, and how far into the first of them home is, 0 to 1.
+    /// Arcs from fold to fold, the last of which ends where the first starts, and how far into the
+    /// first one home is, 0 to 1. (Back and forth the input does not get round: what its four-bar
+    /// can do without a full turn lies between two folds of that four-bar.)
     Arcs(Vec<Arc>, f64),
 }
 
@@ -54,13 +56,12 @@ impl Cycle {
         match &self.motion {
             Motion::Turn(branch) => (self.home + TAU * phase, *branch),
             Motion::Arcs(arcs, start) => {
-                // Home itself, not what it is rounded to.
-                if phase == 0.0 || phase == 1.0 {
-                    return (self.home, arcs[0].branch);
-                }
                 let place = phase * arcs.len() as f64 + start;
                 let arc = arcs[place as usize % arcs.len()];
-                (self.home + arc.at(place.fract()), arc.branch)
+                // At both ends home itself, not what it is rounded to.
+                let ends = phase == 0.0 || phase == 1.0;
+                let displacement = if ends { 0.0 } else { arc.at(place.fract()) };
+                (self.home + displacement, arc.branch)
             }
         }
     }

@@ -13,7 +13,7 @@
 //! ```
 //!
 //! whose first equation is the input-output equation `A cos q₁ + B sin q₁ = C` of the textbooks (J. M.
-//! McCarthy and G. S. Soh, *Geometric Design of Linkages*, 2nd ed., section 7.2): the link between
+//! McCarthy and G. S. Soh, *Geometric Design of Linkages*, on spherical linkages): the link between
 //! `a₁` and `a₂` keeps its arc, seen from where the input puts `w = exp(-a₀q₀) a₃`.
 //!
 //! The loop closes exactly where the arc between `a₁` and `w` can be spanned by the two links

@@ -9,7 +9,7 @@
 use super::Input;
 use crate::chain::{Branch, unit};
 use nalgebra::Complex;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Values of the input this close to each other are one: two roots that meet are apart by the
 /// square root of what they are rounded by, and no gap as small as this can be told from none.
@@ -165,6 +165,5 @@ fn near_home([low, high]: [f64; 2]) -> [f64; 2] {
         return [low - around, high - around];
     }
     let turns = (0.5 * (low + high) / TAU - 0.5).ceil() * TAU;
-    debug_assert!((0.5 * (low + high) - turns).abs() <= PI + SAME);
     [low - turns, high - turns]
 }

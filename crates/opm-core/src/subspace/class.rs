@@ -169,6 +169,21 @@ impl SubspaceClass {
     }
 }
 
+impl SubspaceClass {
+    /// The same one-parameter motion, its axis on the side of `hint`.
+    pub(crate) fn towards(self, hint: &Vector3<f64>) -> Self {
+        let turned = |axis: Unit<Vector3<f64>>| if axis.dot(hint) < 0.0 { -axis } else { axis };
+        match self {
+            Self::Rotation { axis, point } => Self::Rotation { axis: turned(axis), point },
+            Self::Translation { axis } => Self::Translation { axis: turned(axis) },
+            Self::Helical { axis, point, pitch } => {
+                Self::Helical { axis: turned(axis), point, pitch }
+            }
+            other => other,
+        }
+    }
+}
+
 impl fmt::Display for SubspaceClass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let triple = |v: &Vector3<f64>| {

@@ -45,18 +45,16 @@ impl Subspace {
             .map_or(*platform, |p| p + cut_axis.into_inner() * cut_axis.dot(&(platform - p)));
         let rotation = cut_point.is_some();
         let (kind, origin, third) = match class {
-            SubspaceClass::Planar { normal } => (
-                SubspaceKind::Planar,
-                reference,
-                if rotation { cut_axis } else { positive(*normal, None) },
-            ),
+            SubspaceClass::Planar { normal } => {
+                (SubspaceKind::Planar, reference, if rotation { cut_axis } else { *normal })
+            }
             SubspaceClass::Spherical { centre } => (SubspaceKind::Spherical, *centre, cut_axis),
             SubspaceClass::Cylindrical { axis, point } => {
                 let on_axis = point + axis.into_inner() * axis.dot(&(reference - point));
                 (SubspaceKind::Cylindrical, on_axis, cut_axis)
             }
             SubspaceClass::TranslationalPlane { normal } => {
-                (SubspaceKind::TranslationalPlane, reference, positive(*normal, None))
+                (SubspaceKind::TranslationalPlane, reference, *normal)
             }
             other => return Err(TaskError::Subspace(other.name())),
         };
@@ -125,18 +123,6 @@ impl Subspace {
             }
         }
     }
-}
-
-/// The direction or its opposite: the one on `hint`'s side, else the one that points up, where it
-/// is level the one towards base y, and so on.
-pub(super) fn positive(axis: Unit<Vector3<f64>>, hint: Option<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    /// A component shorter than this is rounding in a file's digits, not a direction.
-    const LEVEL: f64 = 1e-6;
-    let side = match hint {
-        Some(hint) => hint.dot(&axis),
-        None => [axis.z, axis.y, axis.x].into_iter().find(|c| c.abs() > LEVEL).unwrap_or(1.0),
-    };
-    if side < 0.0 { -axis } else { axis }
 }
 
 /// A direction square to `third`: base x laid into the plane, or base y where x is nearly normal.

@@ -34,7 +34,7 @@ impl Arcs {
         ]
     }
 
-    /// `A cos ψ + B sin ψ = C` of the output crank's angle for one of the input's (section 7.2).
+    /// `A cos ψ + B sin ψ = C` of the output crank's angle for one of the input's.
     fn equation(&self, input: f64) -> [f64; 3] {
         let (sa, ca) = self.crank.sin_cos();
         let (sb, cb) = self.output.sin_cos();
@@ -54,7 +54,7 @@ impl Arcs {
         spread.is_finite().then(|| [b.atan2(a) + spread, b.atan2(a) - spread])
     }
 
-    /// Whether the input is a crank, by the textbook's signs of sums of arcs (section 7.2.3).
+    /// Whether the input is a crank, by the textbook's signs of sums of arcs.
     fn is_crank(&self) -> bool {
         let Self { crank: a, coupler: n, output: b, base: g } = *self;
         let t1 = g - a + n - b;
