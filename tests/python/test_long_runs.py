@@ -20,6 +20,9 @@ COUNTED = ("x=-0.25:0.25:251", "y=-0.15:0.30:251", "zeta=-1:1:25", "xi=0:1:26", 
 # More than twenty million of these are in reach, more than four million a slice.
 RECORDED = ("x=-0.25:0.25:5001", "y=-0.15:0.30:5001", "xi=0:0.6:4")
 
+# All of these are in reach, the most that can wait to be written; several messages a slice.
+REACHABLE = ("x=-0.05:0.05:2201", "y=-0.05:0.05:2201", "xi=0:0.3:5")
+
 # A process of its own, because a child's peak counts the memory of the one that started it.
 MEASURE = """
 import resource, subprocess, sys
@@ -106,7 +109,9 @@ def test_memory_while_counting(opm):
     assert peak < 64 * MIB
 
 
-def test_memory_while_recording(opm, tmp_path):
-    answer, peak = measured(command(opm, RECORDED, "-o", tmp_path / "w.mcap"))
-    assert answer["reachable"] > 20e6
+@pytest.mark.parametrize("scalars", ["zeta,psi", "zeta,psi,theta11,theta12,theta13,S1,S2,S3"])
+def test_memory_while_recording(opm, tmp_path, scalars):
+    flags = ("-o", tmp_path / "w.mcap", "--threads=16", f"--scalars={scalars}")
+    answer, peak = measured(command(opm, REACHABLE, *flags))
+    assert answer["reachable"] == answer["poses"] > 20e6
     assert peak < 256 * MIB

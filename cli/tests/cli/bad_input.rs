@@ -35,6 +35,7 @@ fn wrong_usage_names_the_flag() {
         (&workspace, &["--grid", "x=0:1deg:3"], &["--grid", "x is a length"]),
         (&workspace, &["--grid", "x=0", "--grid", "x=1"], &["--grid", "axis x", "twice"]),
         (&workspace, &["--grid", "x=1:0:3"], &["--grid", "axis x", "smaller one first"]),
+        (&workspace, &["--grid", "x=-1e308:1e308:5"], &["--grid", "axis x", "up to 1e75"]),
         (&workspace, &["--grid", "x=0:1:0"], &["--grid", "axis x", "at least 1"]),
         (&workspace, &["--grid", "x=0:1:1"], &["--grid", "axis x", "at least 2"]),
         (

@@ -17,7 +17,7 @@ mod locate;
 mod mode;
 mod reach;
 
-pub use inverse::{AllModes, Drives, PoseError, Solution, Unreachable};
+pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};

@@ -1,6 +1,6 @@
 //! Grids of poses: one axis a task coordinate, both ends on the grid.
 
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{LARGEST, Manipulator};
 
 /// Most poses of a grid: indices beyond are not exact in double precision, which JSON readers use.
 const MOST_POSES: u64 = 1 << 53;
@@ -33,7 +33,9 @@ pub enum GridError {
     #[error("grid axis {0}: given twice")]
     Twice(String),
     /// An end that is not a number, or the ends reversed.
-    #[error("grid axis {name}: {min} to {max}, expected finite numbers, the smaller one first")]
+    #[error(
+        "grid axis {name}: {min} to {max}, expected numbers up to {LARGEST:e}, the smaller one first"
+    )]
     Range {
         /// The axis.
         name: String,
@@ -87,7 +89,7 @@ impl Axis {
 
     fn check(&self) -> Result<(), GridError> {
         let Self { name, min, max, count } = self.clone();
-        if !(min.is_finite() && max.is_finite() && min <= max) {
+        if !(min <= max && min.abs().max(max.abs()) <= LARGEST) {
             return Err(GridError::Range { name, min, max });
         }
         let expected = match count {

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// Coordinates beyond this size are refused: their fourth powers, which the lengths of products of
 /// two are the roots of, would overflow.
-const LARGEST: f64 = 1e75;
+pub const LARGEST: f64 = 1e75;
 
 /// A pose that cannot be computed with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
