@@ -81,7 +81,7 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv") {
+                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap") {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {
