@@ -89,7 +89,7 @@ fn a_mechanism_that_cannot_be_had() {
     let empty = folder.write("empty.toml", "");
     opm(&["ik", &empty, "--pose", ""]).fails(1, &["empty.toml:1:1: `format`"]);
     opm(&["workspace", "bennett-double-spherical-6r"])
-        .fails_with_one_line(1, &["bennett-double-spherical-6r: leg leg1", "closed-form"]);
+        .fails_with_one_line(1, &["bennett-double-spherical-6r:21:1: leg leg1", "closed-form"]);
     opm(&["examples", "none"]).fails_with_one_line(2, &["\"none\"", PLANO]);
 }
 
