@@ -54,7 +54,7 @@ use crate::leg::Section;
 use crate::mechanism::{Mechanism, TaskKey};
 use crate::subspace::{SubspaceClass, TOLERANCE};
 use displacement::{cylindrical, planar};
-use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, Vector3};
+use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::fmt;
 use subspace::Meeting;
 
@@ -305,6 +305,16 @@ impl Task {
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
         self.lower.isometry(&self.lower(pose))
             * self.upper.isometry(&self.upper(&pose[self.lower_count..]))
+    }
+
+    /// The platform's orientation at home, base coordinates: where Euler angles measure it that of
+    /// their home values about the upper frame's axes, else none.
+    pub fn home_orientation(&self) -> UnitQuaternion<f64> {
+        let Some(inverse) = self.home_orientation_inverse else {
+            return UnitQuaternion::identity();
+        };
+        let turn = self.upper.axes * inverse.transpose() * self.upper.axes.transpose();
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn))
     }
 
     /// The pose at home.
