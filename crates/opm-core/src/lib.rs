@@ -46,3 +46,4 @@ pub mod screw;
 pub mod subspace;
 mod svd;
 pub mod task;
+pub mod velocity;
