@@ -8,6 +8,7 @@ mod cuts;
 mod runs;
 mod scratch;
 
+use crate::condition::ConditionLimit;
 use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
@@ -65,6 +66,7 @@ pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
     grid: &'a Grid,
     modes: Modes,
+    limit: Option<ConditionLimit>,
     /// Segments a row.
     segments: u64,
     /// Segments a block.
@@ -76,7 +78,15 @@ impl<'a> Sweep<'a> {
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
         let row = grid.axes()[0].count;
         let stride = (BLOCK / row.min(SEGMENT)).max(1);
-        Self { manipulator, grid, modes, segments: row.div_ceil(SEGMENT), stride }
+        let segments = row.div_ceil(SEGMENT);
+        Self { manipulator, grid, modes, limit: None, segments, stride }
+    }
+
+    /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
+    /// enough. That is decided pose by pose, a few microseconds each and mode.
+    #[must_use]
+    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        Self { limit, ..self }
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
