@@ -26,8 +26,9 @@ lint: ## Check format, lints and documentation, warnings being errors
 test-rust: ## Run the Rust tests, build the examples
 	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
 
-test-python: $(TESTS_VENV)/made ## Check the program and its recordings with public decoders
-	$(TESTS_VENV)/bin/python -m pytest -q tests/python
+test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
+	$(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
+	$(TESTS_VENV)/bin/python -m pytest -q tests/python py/tests
 
 bench: ## Measure, and write BENCHMARKS.md
 	@mkdir -p target
