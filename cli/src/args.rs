@@ -1,7 +1,7 @@
 //! Every argument of the command line; the doc comments are the help.
 
 use crate::linkage::InputValue;
-use crate::pose::{GridAxis, Pose};
+use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -31,6 +31,7 @@ Examples:
   opm examples                                         what comes with opm
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
+  opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm inspect cloud.mcap                               what a recording holds";
@@ -60,6 +61,7 @@ pub enum Format {
 pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
+    Velocity(VelocityArgs),
     Linkage(LinkageArgs),
     Workspace(WorkspaceArgs),
     Inspect(InspectArgs),
@@ -135,6 +137,40 @@ pub struct IkArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
+}
+
+/// Velocities: the rates of every joint for rates of the task coordinates, at a pose
+///
+/// Also the Jacobian of the actuated joints, and how near the pose is to a singularity of each section:
+/// signed measures that are zero at one, with the legs that come nearest. Serial: a leg is stretched,
+/// folded or flat, and its joints have no rates there (null). Parallel: the platform is loose with the
+/// inputs locked; null where the inputs are too few to hold the section at all.
+///
+/// The condition number is that of the actuated joints by the platform's twist, lengths over --length;
+/// null is infinite: a singularity, or fewer actuators than freedoms. Singular Euler angles are none of
+/// it: `coordinates` is zero there. Out of reach is an answer (exit status 0).
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm velocity plano-spherical-5dof --pose x=10mm,xi=15deg --rates zeta=1,x=10mm
+  opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
+  opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
+pub struct VelocityArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The pose, for example x=10mm,xi=15deg; what is not given is at home
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub pose: Pose,
+    /// Rates of the task coordinates a second, for example zeta=1,x=10mm; what is not given is 0
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub rates: Pose,
+    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH")]
+    pub length: Option<Number>,
 }
 
 /// Positions of a linkage: every joint for a value of its input, or for one turn of it

@@ -18,6 +18,7 @@ mod progress;
 mod record;
 mod text;
 mod transform;
+mod velocity;
 mod workspace;
 
 use crate::args::{Args, Command};
@@ -37,6 +38,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
+        Command::Velocity(command) => velocity::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
