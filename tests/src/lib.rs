@@ -1,7 +1,9 @@
 //! Tests that span the crates, and what they share: the paper's formulas as an oracle, random
-//! mechanisms of every pair of partial subspaces, and sweeps the slow way.
+//! mechanisms of every pair of partial subspaces, a numeric solver for their legs, and sweeps the
+//! slow way.
 
 pub mod by_inverse;
+pub mod newton;
 pub mod paper;
 pub mod random;
 
