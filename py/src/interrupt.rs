@@ -33,7 +33,10 @@ pub fn run<T: Send>(
                 match receiver.recv_timeout(PATIENCE) {
                     Ok(result) => return Ok(result),
                     Err(RecvTimeoutError::Timeout) => {
-                        if let Err(raised) = Python::attach(Python::check_signals) {
+                        // A function of any lifetime, which the method alone is not.
+                        #[allow(clippy::redundant_closure_for_method_calls)]
+                        let heard = Python::attach(|py| py.check_signals());
+                        if let Err(raised) = heard {
                             cancel();
                             return Err(raised);
                         }
