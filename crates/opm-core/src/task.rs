@@ -17,6 +17,7 @@
 //! their home values at home.
 
 mod displacement;
+mod pose;
 mod subspace;
 
 pub use displacement::{Cut, Displacement};
@@ -169,9 +170,7 @@ impl Task {
             (SubspaceKind::Planar, Cut::Turn) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
             (SubspaceKind::Planar, _) => planar(unit(q(2)), q(0), q(1)),
             (SubspaceKind::Spherical, _) => {
-                let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), q(0))
-                    * Rotation3::from_axis_angle(&Vector3::y_axis(), q(1));
-                Displacement::Spherical(tilt.into_inner())
+                Displacement::Spherical(tilt(q(0), q(1)))
             }
             (SubspaceKind::Cylindrical, Cut::Turn) => cylindrical(0.0, q(0)),
             (SubspaceKind::Cylindrical, _) => cylindrical(q(0), q(1)),
@@ -205,14 +204,26 @@ impl Task {
 
     /// The platform's displacement from home at a pose, `g = v · b`, base coordinates.
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
-        self.lower.isometry(&self.lower(pose))
-            * self.upper.isometry(&self.upper(&pose[self.lower_count..]))
+        self.isometry(&self.lower(pose), &self.upper(&pose[self.lower_count..]))
+    }
+
+    /// `v · b` in base coordinates.
+    pub(crate) fn isometry(&self, v: &Displacement, b: &Displacement) -> Isometry3<f64> {
+        self.lower.isometry(v) * self.upper.isometry(b)
     }
 
     /// The pose at home.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
     }
+}
+
+/// `Rx(mu) Ry(nu)`.
+#[inline]
+fn tilt(mu: f64, nu: f64) -> Matrix3<f64> {
+    let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), mu)
+        * Rotation3::from_axis_angle(&Vector3::y_axis(), nu);
+    tilt.into_inner()
 }
 
 /// `Rz(zeta) Ry(xi) Rz(psi)`.

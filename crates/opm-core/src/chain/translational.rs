@@ -23,6 +23,11 @@ impl TranslationalChain {
         Ok(Self { slides })
     }
 
+    /// The sliders' directions, base first.
+    pub fn slides(&self) -> &[Complex<f64>; 2] {
+        &self.slides
+    }
+
     /// The sliders' amounts that translate the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: Complex<f64>) -> [Amount; 2] {

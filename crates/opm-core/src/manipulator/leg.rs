@@ -57,7 +57,7 @@ pub enum RefusedLeg {
 
 /// Where a chain's amount goes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slot {
+pub(crate) struct Slot {
     /// Number of the joint coordinate in the mechanism.
     pub coordinate: usize,
     /// Its number among the actuated ones.
@@ -66,7 +66,7 @@ pub(super) struct Slot {
 
 /// One section: its chain, and where the chain's amounts go (`None`: the cut).
 #[derive(Clone, Debug)]
-pub(super) struct CompiledSection {
+pub(crate) struct CompiledSection {
     pub chain: Chain,
     pub slots: [Option<Slot>; 3],
     /// Any of its coordinates has limits.
@@ -77,7 +77,7 @@ pub(super) struct CompiledSection {
 
 /// A leg cut in two.
 #[derive(Clone, Debug)]
-pub(super) struct CompiledLeg {
+pub(crate) struct CompiledLeg {
     pub lower: CompiledSection,
     pub upper: CompiledSection,
     /// The section that takes the cut, and so is solved first when it is the upper one.
@@ -92,7 +92,7 @@ pub(super) struct CompiledLeg {
 
 /// One solution of a leg: displacements from home.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LegSolution {
+pub(crate) struct LegSolution {
     pub lower: [Amount; 3],
     pub upper: [Amount; 3],
     /// Along the intersection motion.
@@ -263,7 +263,7 @@ impl CompiledSection {
 
 /// The branch of each section's chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LegBranches {
+pub(crate) struct LegBranches {
     pub lower: Branch,
     pub upper: Branch,
 }

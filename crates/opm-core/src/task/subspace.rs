@@ -2,6 +2,8 @@
 
 use super::TaskError;
 use super::displacement::{Cut, Displacement};
+use crate::chain::cylindrical::CylindricalDisplacement;
+use crate::chain::planar::PlanarDisplacement;
 use crate::subspace::SubspaceClass;
 use nalgebra::{
     Complex, Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3,
@@ -18,6 +20,29 @@ pub enum SubspaceKind {
     Cylindrical,
     /// Two translations.
     TranslationalPlane,
+}
+
+impl SubspaceKind {
+    /// The displacement of this kind that displaces nothing.
+    pub(crate) fn identity(self) -> Displacement {
+        match self {
+            Self::Planar => Displacement::Planar(PlanarDisplacement::IDENTITY),
+            Self::Spherical => Displacement::Spherical(Matrix3::identity()),
+            Self::Cylindrical | Self::TranslationalPlane => self.flat(0.0, 0.0),
+        }
+    }
+
+    /// The displacement with these two numbers, of a kind whose displacements add up: angle and advance,
+    /// or a translation.
+    pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
+        match self {
+            Self::Cylindrical => Displacement::Cylindrical(CylindricalDisplacement {
+                angle: first,
+                advance: second,
+            }),
+            _ => Displacement::Translational(Complex::new(first, second)),
+        }
+    }
 }
 
 /// A subspace with the frame that its chains and its task coordinates use.

@@ -1,6 +1,6 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
-use super::{Amount, ChainError, Pivot, PlanarDisplacement, Rpp};
+use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
 use nalgebra::Complex;
 
 /// Two sliders, then a pivot: one solution.
@@ -14,6 +14,11 @@ impl Ppr {
         pivot: Pivot,
     ) -> Result<Self, ChainError> {
         Rpp::new(pivot, d2, d1).map(Self)
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [third, second, first] = self.0.joints();
+        [first, second, third]
     }
 
     /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.

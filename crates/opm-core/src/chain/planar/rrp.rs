@@ -1,6 +1,6 @@
 //! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, Prr};
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint, Prr};
 use nalgebra::Complex;
 
 /// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
@@ -10,6 +10,11 @@ pub struct Rrp(Prr);
 impl Rrp {
     pub(super) fn new(p1: Pivot, p2: Pivot, slide: Complex<f64>) -> Result<Self, ChainError> {
         Prr::new(slide, p2, p1).map(Self)
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [third, second, first] = self.0.joints();
+        [first, second, third]
     }
 
     /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.
