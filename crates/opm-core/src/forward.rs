@@ -596,13 +596,7 @@ impl Search<'_> {
         let joints = &mut self.solution.joints;
         let mut residual = m.closure.residual(joints, target);
         if residual > SETTLED {
-            let mut settled = joints.clone();
-            m.closure.settle(&mut settled, target);
-            let after = m.closure.residual(&settled, target);
-            if after < residual {
-                residual = after;
-                joints.copy_from_slice(&settled);
-            }
+            residual = m.closure.settle(joints, target, residual);
         }
         if residual.is_nan() || residual > RESIDUAL {
             self.least = self.least.min(residual);

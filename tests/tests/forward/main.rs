@@ -79,13 +79,13 @@ fn explore() {
         let mut worst = 0.0_f64;
         let start = std::time::Instant::now();
         let mut time = 0.0;
-        for _ in 0..500 {
+        for _ in 0..2000 {
             let (pose, mode, actuated) = reached(&mut rng, &m, 0.6, 0.15);
             let start = std::time::Instant::now();
             let found = m.forward(&actuated).unwrap();
             time += start.elapsed().as_secs_f64();
             let contains = found.list.iter().any(|a| a.mode == mode && apart(&m, &a.pose, &pose) < 1e-7);
-            if !contains {
+            if !contains && found.loose.is_empty() {
                 lost += 1;
                 if lost < 4 {
                     println!("  lost {pose:?} {} {:?} {:?}", m.format_mode(mode), found.unmet, found.loose);
@@ -100,6 +100,6 @@ fn explore() {
                 check(&m, &actuated, a, 1e-7);
             }
         }
-        println!("  lost {lost}, worst {worst:e}, counts {counts:?}, {:.1} us, {:?}", time * 2e3, start.elapsed());
+        println!("  lost {lost}, worst {worst:e}, counts {counts:?}, {:.1} us, {:?}", time * 5e2, start.elapsed());
     }
 }

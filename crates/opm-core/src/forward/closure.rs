@@ -97,18 +97,28 @@ impl Closure {
 
     /// Moves the passive joints of every leg so that it closes, the actuated ones held: Newton's steps by
     /// least squares. For joints that were found from the pose alone where the actuated ones are all but
-    /// undone by it: near a serial singularity the root of the rounding is left in them.
-    pub fn settle(&self, joints: &mut [f64], target: &Isometry3<f64>) {
-        /// They start within the root of rounding.
-        const STEPS: usize = 3;
-        let mut first = 0;
-        for leg in &self.legs {
-            let values: usize = leg.iter().map(Motion::values).sum();
-            for _ in 0..STEPS {
-                self.step(leg, &mut joints[first..first + values], target);
+    /// undone by it: near a serial singularity the root of the rounding is left in them. Takes and returns
+    /// the residual.
+    pub fn settle(&self, joints: &mut [f64], target: &Isometry3<f64>, residual: f64) -> f64 {
+        /// Where the passive joints are singular themselves, a step only halves what is left.
+        const STEPS: usize = 40;
+        let mut residual = residual;
+        let mut tried = joints.to_vec();
+        for _ in 0..STEPS {
+            let mut first = 0;
+            for leg in &self.legs {
+                let values: usize = leg.iter().map(Motion::values).sum();
+                self.step(leg, &mut tried[first..first + values], target);
+                first += values;
             }
-            first += values;
+            let after = self.residual(&tried, target);
+            if !(after < residual) {
+                break;
+            }
+            residual = after;
+            joints.copy_from_slice(&tried);
         }
+        residual
     }
 
     fn step(&self, leg: &[Motion], joints: &mut [f64], target: &Isometry3<f64>) {

@@ -38,7 +38,12 @@ const LONGEST_STEP: f64 = 0.1;
 const POLISH: usize = 3;
 
 /// An equation in θ (rows: 1, cos, sin) and φ (columns: 1, cos, sin).
-type Bilinear = Matrix3<f64>;
+#[derive(Clone, Copy, Debug)]
+struct Bilinear {
+    coefficients: Matrix3<f64>,
+    /// Of the terms that they are differences of.
+    size: f64,
+}
 
 /// A group that three conditions are solved in, with a frame of size one.
 trait Group: Copy {
@@ -134,9 +139,9 @@ pub fn spherical(conditions: &[Condition; 3]) -> Solutions<Matrix3<f64>> {
                 Vector3::new(-v.y, v.x, 0.0) * sign,
             ])
         };
-        let mut bilinear: Bilinear = about(f, -1.0).tr_mul(&(tilt * about(c, 1.0)));
-        bilinear[(0, 0)] -= cosine;
-        bilinear
+        let mut coefficients = about(f, -1.0).tr_mul(&(tilt * about(c, 1.0)));
+        coefficients[(0, 0)] -= cosine;
+        Bilinear { coefficients, size: 1.0 }
     });
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
         from * turn(theta) * tilt * turn(phi) * to.transpose()
@@ -183,12 +188,12 @@ fn on_circle(
     radius: f64,
 ) -> Bilinear {
     // Re(z e(θ)) and so on, as coefficients of 1, cos, sin.
-    let mut bilinear = Bilinear::zeros();
+    let mut bilinear = Matrix3::zeros();
     let mut theta = |z: Complex<f64>| {
         bilinear[(1, 0)] += z.re;
         bilinear[(2, 0)] -= z.im;
     };
-    match *condition {
+    let size = match *condition {
         Condition::Circle { point: other, centre: aim, radius: reach } => {
             // |C + a e(θ) + d e(φ)|² = reach²
             let (c, d) = (centre - aim, other - point);
@@ -204,6 +209,7 @@ fn on_circle(
             bilinear[(2, 2)] = mixed.re;
             bilinear[(1, 2)] = -mixed.im;
             bilinear[(2, 1)] = mixed.im;
+            (c.norm() + radius + d.norm() + reach).powi(2)
         }
         Condition::Line { point: other, normal, offset } => {
             theta(radius * normal.conj());
@@ -211,6 +217,7 @@ fn on_circle(
             bilinear[(0, 0)] = dot(normal, centre) - offset;
             bilinear[(0, 1)] = z.re;
             bilinear[(0, 2)] = -z.im;
+            centre.norm() + offset.abs() + radius + z.norm()
         }
         Condition::CarriedLine { point: aim, normal, offset } => {
             // normal · (e(−φ) (aim − centre − a e(θ)) + point) = offset
@@ -224,14 +231,16 @@ fn on_circle(
             bilinear[(2, 2)] = mixed.re;
             bilinear[(1, 2)] = -mixed.im;
             bilinear[(2, 1)] = mixed.im;
+            point.norm() + offset.abs() + radius + z.norm()
         }
         Condition::Heading { rotation } => {
             bilinear[(0, 1)] = -rotation.im;
             bilinear[(0, 2)] = rotation.re;
+            1.0
         }
         Condition::Cone { .. } | Condition::Flat { .. } => unreachable!("not of the plane"),
-    }
-    bilinear
+    };
+    Bilinear { coefficients: bilinear, size }
 }
 
 /// Two equations in two angles.
@@ -240,7 +249,8 @@ fn torus<G: Group>(
     conditions: &[Condition; 3],
     place: impl Fn(Complex<f64>, Complex<f64>) -> G,
 ) -> Solutions<G> {
-    let [[c1, a1, b1], [c2, a2, b2]] = rest.map(|m| {
+    let [[c1, a1, b1], [c2, a2, b2]] = rest.map(|equation| {
+        let m = equation.coefficients;
         let column = |j: usize| Trigonometric::linear([m[(0, j)], m[(1, j)], m[(2, j)]]);
         [column(0), column(1), column(2)]
     });
@@ -252,13 +262,13 @@ fn torus<G: Group>(
     let y = minor(&c1, &a2, &c2, &a1);
     let z = minor(&a1, &b2, &a2, &b1);
     let polynomial = x.times(&x).plus(&y.times(&y)).minus(&z.times(&z));
-    let product = (a1.size() + b1.size() + c1.size()) * (a2.size() + b2.size() + c2.size());
+    let product = rest[0].size * rest[1].size;
     let Roots::At(roots) = polynomial.roots(product * product) else { return Solutions::Dependent };
     let mut found: Vec<G> = Vec::with_capacity(8);
     for theta in roots {
         let equations = [[&a1, &b1, &c1], [&a2, &b2, &c2]]
             .map(|equation| equation.map(|coefficient| coefficient.value(theta)));
-        for phi in common(&equations, [rest[0].amax(), rest[1].amax()]).into_iter().flatten() {
+        for phi in common(&equations, [rest[0].size, rest[1].size]).into_iter().flatten() {
             collect(polish(place(theta, phi), conditions), &mut found);
         }
     }
@@ -275,7 +285,11 @@ fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 
     if square == 0.0 || !square.is_finite() {
         return [None; 2];
     }
-    let root = (square - c * c).max(0.0).sqrt();
+    let square_of_root = square - c * c;
+    if square_of_root < -BELONGS * sizes[better] * sizes[better] {
+        return [None; 2];
+    }
+    let root = square_of_root.max(0.0).sqrt();
     let [p, q, r] = equations[1 - better];
     [1.0, -1.0].map(|sign| {
         let phi = Complex::new(a, b) * Complex::new(-c, sign * root) / square;
