@@ -17,6 +17,7 @@ mod pose;
 mod progress;
 mod record;
 mod text;
+mod transform;
 mod workspace;
 
 use crate::args::{Args, Command};

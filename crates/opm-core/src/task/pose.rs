@@ -1,7 +1,8 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
-use super::{Displacement, SubspaceKind, Task};
+use super::{Cut, Displacement, SubspaceKind, Task};
 use crate::chain::Amount;
+use crate::chain::planar::PlanarDisplacement;
 use crate::joint::Quantity;
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
@@ -91,11 +92,13 @@ impl Task {
 
     /// The way along the shared direction that `b` has beyond its coordinates.
     fn advanced(&self, b: &Displacement) -> Amount {
-        Amount::Value(match b {
-            Displacement::Planar(g) => g.translation.re,
-            Displacement::Cylindrical(g) => g.advance,
-            Displacement::Translational(t) => t.re,
-            Displacement::Spherical(_) => 0.0,
+        Amount::Value(match (b, self.upper_cut) {
+            (Displacement::Planar(PlanarDisplacement { translation: t, .. }), Cut::Slide(along))
+            | (Displacement::Translational(t), Cut::Slide(along)) => {
+                t.re * along.re + t.im * along.im
+            }
+            (Displacement::Cylindrical(g), Cut::Advance) => g.advance,
+            _ => 0.0,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::DEGENERATE;
+use crate::chain::region::{Region, parallelogram};
 use nalgebra::Complex;
 
 /// A pivot, then two sliders: one solution.
@@ -26,6 +27,12 @@ impl Rpp {
     pub(super) fn joints(&self) -> [PlanarJoint; 3] {
         let [first, second] = self.slides.map(|along| PlanarJoint::Prismatic { along });
         [self.pivot.joint(), first, second]
+    }
+
+    /// A parallelogram, turned with the target.
+    pub(super) fn region(&self, rotation: Complex<f64>, ranges: [[f64; 2]; 2]) -> Region {
+        let offset = rotation * self.pivot.at - self.pivot.at;
+        parallelogram(self.slides.map(|slide| rotation * slide), offset, ranges)
     }
 
     #[inline]
