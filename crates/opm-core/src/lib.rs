@@ -47,3 +47,4 @@ pub mod screw;
 pub mod subspace;
 mod svd;
 pub mod task;
+pub mod velocity;

@@ -32,6 +32,7 @@ use crate::limits::Limits;
 use crate::mechanism::Mechanism;
 use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
+use leg::Surroundings;
 pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution};
 use mode::ModeLayout;
 
@@ -50,7 +51,7 @@ pub struct ImaginaryJoint {
     /// Value at home, radians or metres.
     pub home: f64,
     /// `1` or `-1`: which way along the intersection motion counts as positive.
-    sign: f64,
+    pub(crate) sign: f64,
 }
 
 /// Why a mechanism cannot be compiled.
@@ -88,6 +89,7 @@ pub struct Manipulator {
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
     home_mode: Mode,
+    length: f64,
     /// How forward kinematics go about it.
     pub(crate) plan: Result<Plan, NoClosedForm>,
     /// Its legs' products of exponentials.
@@ -174,6 +176,13 @@ impl Manipulator {
         &self.imaginary
     }
 
+    /// Characteristic length, metres: [`Frame::length`](crate::subspace::Frame), the root mean square
+    /// of the distances of the joint axes at home from the point nearest to all of them, and of their
+    /// pitches. The same wherever the mechanism stands; of a mechanism twice the size, twice as long.
+    pub fn characteristic_length(&self) -> f64 {
+        self.length
+    }
+
     /// Number of two-valued choices; there are `2^choices` working modes.
     pub fn choices(&self) -> u32 {
         self.modes.count()
@@ -237,14 +246,15 @@ struct Compiled {
     actuated: Vec<usize>,
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
+    length: f64,
 }
 
 impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let size = frame(mechanism).length;
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, size)).collect();
+        let length = frame(mechanism).length;
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, length)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
@@ -260,7 +270,9 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let mut compiled = CompiledLeg::new(leg, split, &task, first, &drives, &limits)
+            let around =
+                Surroundings { task: &task, drives: &drives, limits: &limits, size: length };
+            let mut compiled = CompiledLeg::new(leg, split, first, around)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {
                 compiled.imaginary = Some(imaginary.len());
@@ -273,11 +285,11 @@ impl Compiled {
         if modes.count() > MOST_CHOICES {
             return Err(CompileError::Choices(modes.count()));
         }
-        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes })
+        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes, length })
     }
 
     fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
-        let Self { task, legs, coordinates, limits, actuated, imaginary, modes } = self;
+        let Self { task, legs, coordinates, limits, actuated, imaginary, modes, length } = self;
         let closure = Closure::new(&mechanism);
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
@@ -292,6 +304,7 @@ impl Compiled {
             imaginary,
             modes,
             home_mode: Mode::default(),
+            length,
         };
         manipulator.home_mode = manipulator.mode_at_home();
         manipulator

@@ -1,12 +1,13 @@
 //! One leg, cut in two closed-form chains.
 
-use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap};
+use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
 use crate::decomposition::{Freedom, LegSplit};
 use crate::joint::JointKind;
 use crate::leg::Leg;
 pub use crate::leg::Section;
 use crate::limits::Limits;
 use crate::task::{Displacement, Subspace, SubspaceKind, Task};
+use crate::velocity::determinant_scale;
 use nalgebra::{Unit, Vector3};
 
 /// Why a leg has no closed form.
@@ -50,6 +51,10 @@ pub(crate) struct Slot {
 #[derive(Clone, Debug)]
 pub(crate) struct CompiledSection {
     pub chain: Chain,
+    /// The chain's screws at home: see [`crate::chain::screws`].
+    pub screws: [Vector3<f64>; 3],
+    /// What the determinant of the screws is measured in.
+    pub scale: f64,
     pub slots: [Option<Slot>; 3],
     /// Any of its coordinates has limits.
     pub limited: bool,
@@ -72,8 +77,19 @@ pub(crate) struct CompiledLeg {
     unwinds: bool,
 }
 
+/// What a leg is compiled in.
+#[derive(Clone, Copy)]
+pub(crate) struct Surroundings<'a> {
+    pub task: &'a Task,
+    /// Each coordinate's number among the actuated ones.
+    pub drives: &'a [Option<usize>],
+    pub limits: &'a [Limits],
+    /// Of the mechanism, metres.
+    pub size: f64,
+}
+
 /// One solution of a leg: displacements from home.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegSolution {
     pub lower: [Amount; 3],
     pub upper: [Amount; 3],
@@ -81,16 +97,21 @@ pub(crate) struct LegSolution {
     pub tau: Amount,
 }
 
+impl LegSolution {
+    /// No displacement.
+    pub const HOME: Self = {
+        let none = Amount::Value(0.0);
+        Self { lower: [none; 3], upper: [none; 3], tau: none }
+    };
+}
+
 impl CompiledLeg {
-    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism; `drives`
-    /// gives each coordinate's number among the actuated ones.
+    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism.
     pub fn new(
         leg: &Leg,
         split: &LegSplit,
-        task: &Task,
         first: usize,
-        drives: &[Option<usize>],
-        limits: &[Limits],
+        Surroundings { task, drives, limits, size }: Surroundings<'_>,
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
@@ -116,11 +137,14 @@ impl CompiledLeg {
             if section == cut {
                 joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);
             }
-            let chain = Chain::new(subspace, &joints)
-                .map_err(|error| RefusedLeg::Chain { section, error })?;
+            let refused = |error| RefusedLeg::Chain { section, error };
+            let chain = Chain::new(subspace, &joints).map_err(refused)?;
+            let screws = screws(subspace, &joints).map_err(refused)?;
             let slot = || slots.iter().flatten();
             Ok(CompiledSection {
                 chain,
+                screws,
+                scale: determinant_scale(subspace.kind, &screws, size),
                 slots,
                 limited: slot().any(|s| limits[s.coordinate].any()),
                 driven: slot().any(|s| s.drive.is_some()),

@@ -3,7 +3,6 @@
 use super::displacement::{Cut, Displacement};
 use super::{FrameProblem, TaskError};
 use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::planar::PlanarDisplacement;
 use crate::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
 use crate::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
@@ -26,15 +25,6 @@ pub enum SubspaceKind {
 }
 
 impl SubspaceKind {
-    /// The displacement of this kind that displaces nothing.
-    pub(crate) fn identity(self) -> Displacement {
-        match self {
-            Self::Planar => Displacement::Planar(PlanarDisplacement::IDENTITY),
-            Self::Spherical => Displacement::Spherical(Matrix3::identity()),
-            Self::Cylindrical | Self::TranslationalPlane => self.flat(0.0, 0.0),
-        }
-    }
-
     /// The displacement with these two numbers, of a kind whose displacements add up: angle and advance,
     /// or a translation.
     pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
