@@ -125,10 +125,24 @@ impl FromStr for Pose {
 impl Pose {
     /// Every coordinate of the pose: what is not given has its home value.
     pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
+        self.resolve_for("--pose", coordinates)
+    }
+
+    /// What was given, in order.
+    pub fn assignments(&self) -> impl Iterator<Item = (&str, Number)> {
+        self.0.iter().map(|(name, number)| (&**name, *number))
+    }
+
+    /// As [`Pose::resolve`], for another flag.
+    pub fn resolve_for(
+        &self,
+        flag: &str,
+        coordinates: &[TaskCoordinate],
+    ) -> Result<Vec<f64>, Failure> {
         let mut pose: Vec<f64> = coordinates.iter().map(|c| c.home).collect();
         for (name, number) in &self.0 {
-            let index = find(name, coordinates).map_err(|e| Failure::flag("--pose", e))?;
-            pose[index] = number.of(&coordinates[index]).map_err(|e| Failure::flag("--pose", e))?;
+            let index = find(name, coordinates).map_err(|e| Failure::flag(flag, e))?;
+            pose[index] = number.of(&coordinates[index]).map_err(|e| Failure::flag(flag, e))?;
         }
         Ok(pose)
     }

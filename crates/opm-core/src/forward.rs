@@ -18,15 +18,17 @@ mod along;
 mod closure;
 mod condition;
 mod flat;
+mod near;
 mod plan;
 mod three;
 mod track;
 mod trigonometric;
 
+pub use near::{NearError, NotFound, Stop};
 pub use plan::NoClosedForm;
 pub(crate) use {closure::Closure, plan::Plan};
 
-use crate::chain::planar::PlanarDisplacement;
+use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
 use crate::chain::{Amount, Branch, Chain, Gap, planar, unit};
 use crate::joint::Quantity;
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Mode, Section, Solution, Unreachable};
@@ -57,6 +59,9 @@ const APART: f64 = 1e-4;
 /// A leg closes so well that what inverse kinematics say of its passive joints needs no mending.
 const SETTLED: f64 = 1e-13;
 
+/// Assemblies of one mode are one if no joint of them differs by more, radians or metres.
+const SAME: f64 = 1e-9;
+
 /// One way in which the mechanism can be assembled for given actuated joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
@@ -84,7 +89,7 @@ pub struct Assembly {
 pub struct Assemblies {
     /// All of them.
     pub list: Vec<Assembly>,
-    /// Where there is none, or fewer than there could be: what does not meet.
+    /// Where there is none: what does not meet.
     pub unmet: Vec<Unmet>,
     /// Sections that the actuated joints leave loose: the mechanism is on a singularity through which it
     /// moves with them held. The poses of that motion are not listed.
@@ -149,9 +154,10 @@ impl Manipulator {
     /// Every assembly that the actuated joints allow, in closed form; `actuated` in the order of
     /// [`Manipulator::actuated`], radians and metres. None is an answer: `unmet` says what is in the way.
     ///
-    /// Angles count modulo a turn, unless a screw makes their turns matter. Where a screw follows a joint
-    /// whose turns do not count, each turn of it is an assembly of its own, an advance of the screw away:
-    /// the one with the imaginary joint within half a turn is given.
+    /// Angles count modulo a turn, unless a screw makes their turns matter. Inverse kinematics do not tell
+    /// the turns of a revolute in a plane that hands them on to a screw: each is an assembly of its own, an
+    /// advance of the screw away. The one given is at the turns that `actuated` has from home, passive
+    /// joints within half a turn.
     ///
     /// Joint values on the verge of what they allow, to within rounding, are allowed. On a parallel
     /// singularity two assemblies merge; they are given as one, or as two within the root of rounding.
@@ -192,6 +198,42 @@ impl Manipulator {
                 Ok(value - c.home)
             })
             .collect()
+    }
+}
+
+impl Manipulator {
+    /// The assembly at a pose with the actuated joints `amounts` from home: the joints of a solution
+    /// there, mended where the actuated ones are not exactly what they should be.
+    fn assembly(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        amounts: &[f64],
+        (solution, target): (&mut Solution, &Isometry3<f64>),
+    ) -> Assembly {
+        // The values that were given, at the turn at which inverse kinematics give them.
+        for (&amount, &coordinate) in amounts.iter().zip(self.actuated()) {
+            let c = &self.coordinates()[coordinate];
+            let given = c.home + amount;
+            let joint = &mut solution.joints[coordinate];
+            let turns = match c.quantity {
+                Quantity::Angle => ((*joint - given) / TAU).round(),
+                Quantity::Length => 0.0,
+            };
+            *joint = given + TAU * turns;
+        }
+        let mut residual = self.closure.residual(&solution.joints, target);
+        if residual > SETTLED {
+            residual = self.closure.settle(&mut solution.joints, target, residual);
+        }
+        Assembly {
+            pose: pose.to_vec(),
+            mode,
+            joints: solution.joints.clone(),
+            imaginary: solution.imaginary.clone(),
+            within_limits: solution.within_limits,
+            residual,
+        }
     }
 }
 
@@ -417,10 +459,11 @@ impl Search<'_> {
             });
             match (leg.cut, tau) {
                 (Section::Upper, Some(tau)) => {
-                    // A turn is a turn: the least is taken.
                     let tau = match tau {
-                        Amount::Turn(_) => Amount::Turn(tau.turn()),
-                        Amount::Value(_) => *tau,
+                        Amount::Turn(_) if plan::adds_up(upper) => {
+                            Amount::Value(tau.value() + self.whole_turns(number))
+                        }
+                        Amount::Turn(_) | Amount::Value(_) => *tau,
                     };
                     conditions.extend(Condition::new(chain, 0, tau));
                     conditions.extend(own);
@@ -442,6 +485,20 @@ impl Search<'_> {
                 }
             }
         }
+    }
+
+    /// The whole turns, as an angle, that the actuated revolutes of a planar section hand on to a screw.
+    fn whole_turns(&self, leg: usize) -> f64 {
+        let Chain::Planar(chain) = &self.manipulator.legs[leg].lower.chain else { return 0.0 };
+        let joints = chain.joints();
+        let turns = |&slot: &usize| match joints[slot] {
+            PlanarJoint::Revolute { reversed, .. } => {
+                let turns = (self.amount(leg, Section::Lower, slot).value() / TAU).round();
+                if reversed { -turns } else { turns }
+            }
+            PlanarJoint::Prismatic { .. } => 0.0,
+        };
+        TAU * self.plan.legs[leg].lower.iter().map(turns).sum::<f64>()
     }
 
     /// The displacements that satisfy all conditions, or those of the first that are independent; `None`
@@ -582,41 +639,18 @@ impl Search<'_> {
     /// Adds the assembly in the buffer, unless it does not close or is there already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        // The values that were given, at the turn at which inverse kinematics give them.
-        for (drive, &coordinate) in m.actuated().iter().enumerate() {
-            let c = &m.coordinates()[coordinate];
-            let given = c.home + self.amounts[drive];
-            let joint = &mut self.solution.joints[coordinate];
-            let turns = match c.quantity {
-                Quantity::Angle => ((*joint - given) / TAU).round(),
-                Quantity::Length => 0.0,
-            };
-            *joint = given + TAU * turns;
-        }
-        let joints = &mut self.solution.joints;
-        let mut residual = m.closure.residual(joints, target);
-        if residual > SETTLED {
-            residual = m.closure.settle(joints, target, residual);
-        }
-        if residual.is_nan() || residual > RESIDUAL {
-            self.least = self.least.min(residual);
+        let assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        if assembly.residual.is_nan() || assembly.residual > RESIDUAL {
+            self.least = self.least.min(assembly.residual);
             return;
         }
         let known = |other: &Assembly| {
-            other.mode == mode
-                && other.joints.iter().zip(joints.iter()).all(|(a, b)| (a - b).abs() < 1e-9)
+            let joints = other.joints.iter().zip(&assembly.joints);
+            other.mode == mode && joints.into_iter().all(|(a, b)| (a - b).abs() < SAME)
         };
-        if self.out.list.iter().any(known) {
-            return;
+        if !self.out.list.iter().any(known) {
+            self.out.list.push(assembly);
         }
-        self.out.list.push(Assembly {
-            pose: pose.to_vec(),
-            mode,
-            joints: self.solution.joints.clone(),
-            imaginary: self.solution.imaginary.clone(),
-            within_limits: self.solution.within_limits,
-            residual,
-        });
     }
 
     fn finish(mut self) -> Assemblies {
@@ -629,8 +663,11 @@ impl Search<'_> {
         if self.upper_failed {
             self.out.unmet.push(Unmet::Section(Section::Upper));
         }
-        if self.out.list.is_empty() && self.least.is_finite() {
+        if self.least.is_finite() {
             self.out.unmet.push(Unmet::Contradiction(self.least));
+        }
+        if !self.out.list.is_empty() {
+            self.out.unmet.clear();
         }
         self.out
     }

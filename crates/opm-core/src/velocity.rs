@@ -30,7 +30,7 @@ pub(crate) use section::determinant_scale;
 
 use crate::chain::Amount;
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
-use local::Local;
+pub(crate) use local::Local;
 use nalgebra::Vector3;
 use section::Differential;
 
