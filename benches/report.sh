@@ -23,4 +23,5 @@ machine the times differ, the ratios hardly. The code is in \`benches/benches\` 
 \`benches/peers\`: there opm is called from Python.
 END
 # A blank line between paragraphs and tables.
-printf '%s\n' "$results" "" "$peers" | awk '{ table = /^\|/; if (!table || !before) print ""; before = table; print }'
+printf '%s\n' "$results" "" "$peers" |
+  awk '!NF { before = 0; next } { table = /^\|/; if (!table || !before) print ""; before = table; print }'
