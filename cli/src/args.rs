@@ -262,6 +262,9 @@ pub struct LinkageArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
+/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
+/// takes longer, and does not change the grid that is fitted.
+///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
 /// more than one value. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
@@ -271,6 +274,7 @@ Examples:
   opm workspace plano-spherical-5dof -o cloud.mcap --color theta11
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
+  opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
@@ -282,6 +286,12 @@ pub struct WorkspaceArgs {
     /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
+    /// Only poses with a condition number of at most C count, in a mode in which they have it
+    #[arg(long, value_name = "C", value_parser = condition_number)]
+    pub max_condition: Option<f64>,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", requires = "max_condition")]
+    pub length: Option<Number>,
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -297,6 +307,14 @@ pub struct WorkspaceArgs {
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// A condition number to compare with.
+fn condition_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
+        _ => Err(format!("{text:?}, expected a number of at least 1")),
+    }
 }
 
 /// Say what a recording holds
