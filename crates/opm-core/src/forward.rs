@@ -31,11 +31,13 @@ pub(crate) use {closure::Closure, plan::Plan};
 use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
 use crate::chain::{Amount, Branch, Chain, Gap, planar, unit};
 use crate::joint::Quantity;
-use crate::manipulator::{LARGEST, LegSolution, Manipulator, Mode, Section, Solution, Unreachable};
+use crate::manipulator::{
+    CompiledSection, LARGEST, LegSolution, Manipulator, Mode, Section, Slot, Solution, Unreachable,
+};
 use crate::task::{Displacement, SubspaceKind};
 use along::{Meeting, along};
-use condition::Condition;
-use nalgebra::Isometry3;
+use condition::{Condition, length};
+use nalgebra::{Complex, Isometry3};
 use plan::Anchor;
 use std::f64::consts::TAU;
 use three::Solutions;
@@ -171,6 +173,7 @@ impl Manipulator {
             manipulator: self,
             plan,
             amounts: &amounts,
+            turns: amounts.iter().map(|&amount| unit(amount)).collect(),
             solution: self.solution(),
             out: Assemblies::default(),
             least: f64::INFINITY,
@@ -243,6 +246,8 @@ struct Search<'a> {
     plan: &'a Plan,
     /// Displacements of the actuated joints from home.
     amounts: &'a [f64],
+    /// The same as turns.
+    turns: Vec<Complex<f64>>,
     /// A buffer.
     solution: Solution,
     out: Assemblies,
@@ -453,6 +458,7 @@ impl Search<'_> {
         let m = self.manipulator;
         let upper = m.task().upper.kind;
         let mut conditions = Vec::with_capacity(2 * taus.len());
+        let splined = self.splined(taus);
         for (number, (leg, tau)) in m.legs.iter().zip(taus).enumerate() {
             let chain = &leg.upper.chain;
             let own = self.plan.legs[number].upper.iter().filter_map(|&slot| {
@@ -462,7 +468,8 @@ impl Search<'_> {
                 (Section::Upper, Some(tau)) => {
                     let tau = match tau {
                         Amount::Turn(_) if plan::adds_up(upper) => {
-                            Amount::Value(tau.value() + self.whole_turns(number))
+                            let counted = tau.nearest(splined) + self.whole_turns(number);
+                            Amount::Value(if slides(chain) { splined } else { counted })
                         }
                         Amount::Turn(_) | Amount::Value(_) => *tau,
                     };
@@ -486,6 +493,17 @@ impl Search<'_> {
                 }
             }
         }
+    }
+
+    /// The angle that a leg whose upper joint only slides gives a platform on a cylinder: screws are then
+    /// taken within half a turn. Zero where there is no such leg.
+    fn splined(&self, taus: &[Option<Amount>]) -> f64 {
+        let legs = self.manipulator.legs.iter().zip(taus);
+        let splined = legs.filter_map(|(leg, tau)| match (leg.cut, tau) {
+            (Section::Upper, Some(tau)) if slides(&leg.upper.chain) => Some(tau.value()),
+            _ => None,
+        });
+        splined.take(1).sum()
     }
 
     /// The whole turns, as an angle, that the actuated revolutes of a planar section hand on to a screw.
@@ -575,8 +593,22 @@ impl Search<'_> {
         let m = self.manipulator;
         let compiled = &m.legs[leg];
         let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
+        // Most ways already have the lower joints elsewhere: they are dismissed before the rest is solved.
+        let quick = compiled.cut == Section::Upper && !self.plan.legs[leg].lower.is_empty();
+        let [v, b] = pose;
+        let cuts = Branch::BOTH.map(|branch| match quick {
+            true => compiled.upper.chain.first(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0)),
+            false => None,
+        });
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
+            if quick {
+                let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else { continue };
+                match compiled.solve_lower(m.task(), v, tau, branches.lower) {
+                    Ok(lower) if self.section_off(&compiled.lower, &lower) <= MATCH => {}
+                    _ => continue,
+                }
+            }
             let Ok(solution) = compiled.solve(m.task(), pose, branches, 0.0) else { continue };
             let off = self.off(leg, &solution);
             if off <= MATCH {
@@ -596,16 +628,17 @@ impl Search<'_> {
 
     /// By how much a leg's solution has its actuated joints elsewhere.
     fn off(&self, leg: usize, solution: &LegSolution) -> f64 {
-        let m = self.manipulator;
+        let leg = &self.manipulator.legs[leg];
+        let lower = self.section_off(&leg.lower, &solution.lower);
+        lower.max(self.section_off(&leg.upper, &solution.upper))
+    }
+
+    fn section_off(&self, section: &CompiledSection, amounts: &[Amount; 3]) -> f64 {
         let mut off = 0.0_f64;
-        for (section, amounts) in
-            [(&m.legs[leg].lower, &solution.lower), (&m.legs[leg].upper, &solution.upper)]
-        {
-            for (slot, amount) in section.slots.iter().zip(amounts) {
-                let Some(slot) = slot else { continue };
-                if let Some(drive) = slot.drive {
-                    off = off.max(self.apart(slot.coordinate, *amount, self.amounts[drive]));
-                }
+        for (slot, &amount) in section.slots.iter().zip(amounts) {
+            if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
+                let (value, turn) = (self.amounts[drive], self.turns[drive]);
+                off = off.max(self.apart(coordinate, amount, value, turn));
             }
         }
         off
@@ -621,15 +654,15 @@ impl Search<'_> {
         sections.iter().all(|(section, one, other)| {
             section.slots.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
                 let Some(slot) = slot else { return true };
-                self.apart(slot.coordinate, *one, other.value()) < APART
+                self.apart(slot.coordinate, *one, other.value(), other.turn()) < APART
             })
         })
     }
 
-    /// Distance of an amount from a value, radians or sizes.
-    fn apart(&self, coordinate: usize, amount: Amount, value: f64) -> f64 {
+    /// Distance of an amount from a value, and from its turn: radians or sizes.
+    fn apart(&self, coordinate: usize, amount: Amount, value: f64, turn: Complex<f64>) -> f64 {
         match amount {
-            Amount::Turn(_) => (amount.turn() - unit(value)).norm(),
+            Amount::Turn(_) => length(amount.turn() - turn),
             Amount::Value(given) => match self.manipulator.coordinates()[coordinate].quantity {
                 Quantity::Angle => (given - value).abs(),
                 Quantity::Length => (given - value).abs() / self.manipulator.closure.size,
@@ -671,6 +704,14 @@ impl Search<'_> {
             self.out.unmet.clear();
         }
         self.out
+    }
+}
+
+/// Whether a chain of the cut and one joint is a spline: the joint slides where the cut turns.
+fn slides(chain: &Chain) -> bool {
+    match chain {
+        Chain::Cylindrical(chain) => chain.joints()[0].turn != 0.0 && chain.joints()[1].turn == 0.0,
+        _ => false,
     }
 }
 

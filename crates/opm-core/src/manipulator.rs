@@ -33,7 +33,7 @@ use crate::mechanism::Mechanism;
 use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
 use leg::Surroundings;
-pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution};
+pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, Slot};
 use mode::ModeLayout;
 
 /// Choices that a [`Mode`] has room for.

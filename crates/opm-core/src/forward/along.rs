@@ -2,7 +2,7 @@
 //! about a point until its end is on a circle or a line, an axis that turns until it lies on a cone.
 
 use super::VERGE;
-use super::condition::{Condition, dot, flat};
+use super::condition::{Condition, dot, flat, length};
 use crate::chain::{Amount, Gap};
 use crate::task::{Cut, Displacement};
 use nalgebra::Complex;
@@ -24,7 +24,7 @@ pub fn along(condition: &Condition, v: &Displacement, cut: &Cut, size: f64) -> M
         (Condition::Circle { point, centre, radius }, Displacement::Planar(v), Cut::Turn) => {
             // |P − c + r w e(τ)| = a, P − c = d
             let (d, w) = (v.translation - centre, v.rotation * point);
-            let arm = point.norm();
+            let arm = length(*point);
             let constant = d.norm_sqr() + arm * arm - radius * radius;
             turning(2.0 * d.conj() * w, constant, size * size, || {
                 let far = d.norm() - (arm + radius);

@@ -193,6 +193,12 @@ pub fn dot(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.re + a.im * b.im
 }
 
+/// The length of a vector of the plane, without the care that overflow takes.
+#[inline]
+pub fn length(z: Complex<f64>) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
 fn planar(joints: &[PlanarJoint; 3], held: usize, amount: Amount) -> Condition {
     let known = joints[held].displacement(amount);
     let none = PlanarDisplacement::IDENTITY;
@@ -205,7 +211,7 @@ fn planar(joints: &[PlanarJoint; 3], held: usize, amount: Amount) -> Condition {
     match (first, second) {
         (PlanarJoint::Revolute { at: x, .. }, PlanarJoint::Revolute { at: y, .. }) => {
             let (point, centre) = (inner.apply(y), before.apply(x));
-            Condition::Circle { point, centre, radius: (y - x).norm() }
+            Condition::Circle { point, centre, radius: length(y - x) }
         }
         (PlanarJoint::Prismatic { along }, PlanarJoint::Revolute { at: y, .. }) => {
             let normal = QUARTER * before.rotation * along;

@@ -8,7 +8,7 @@
 //! highest coefficient vanishes. Three lines in a plane are linear in the translation instead, with the
 //! rotation as θ.
 
-use super::condition::{Condition, QUARTER, dot};
+use super::condition::{Condition, QUARTER, dot, length};
 use super::trigonometric::{Roots, Trigonometric};
 use crate::chain::planar::PlanarDisplacement;
 use crate::chain::unit;
@@ -87,11 +87,11 @@ impl Group for PlanarDisplacement {
     fn moved(&self, step: &Vector3<f64>) -> Self {
         let rotation = self.rotation * unit(step.x);
         let translation = self.translation + Complex::new(step.y, step.z);
-        Self { rotation: rotation / rotation.norm(), translation }
+        Self { rotation: rotation / length(rotation), translation }
     }
 
     fn apart(&self, other: &Self) -> f64 {
-        (self.rotation - other.rotation).norm() + (self.translation - other.translation).norm()
+        length(self.rotation - other.rotation) + length(self.translation - other.translation)
     }
 }
 
@@ -209,7 +209,7 @@ fn on_circle(
             bilinear[(2, 2)] = mixed.re;
             bilinear[(1, 2)] = -mixed.im;
             bilinear[(2, 1)] = mixed.im;
-            (c.norm() + radius + d.norm() + reach).powi(2)
+            (length(c) + radius + length(d) + reach).powi(2)
         }
         Condition::Line { point: other, normal, offset } => {
             theta(radius * normal.conj());
@@ -278,7 +278,7 @@ fn torus<G: Group>(
 /// The turns that satisfy two equations `a cos φ + b sin φ + c = 0`, of which one is a consequence of the
 /// other at the most.
 fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 2] {
-    let clear = |i: usize| equations[i][0].hypot(equations[i][1]) / sizes[i];
+    let clear = |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
     let better = usize::from(clear(1) > clear(0));
     let [a, b, c] = equations[better];
     let square = a * a + b * b;
@@ -293,7 +293,7 @@ fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 
     let [p, q, r] = equations[1 - better];
     [1.0, -1.0].map(|sign| {
         let phi = Complex::new(a, b) * Complex::new(-c, sign * root) / square;
-        let phi = phi / phi.norm();
+        let phi = phi / length(phi);
         let miss = (p * phi.re + q * phi.im + r).abs();
         (miss <= BELONGS * sizes[1 - better]).then_some(phi)
     })

@@ -118,13 +118,16 @@ impl Trigonometric {
             return Roots::Everywhere;
         }
         let mut found = Vec::with_capacity(HALF);
+        // Each halving leaves one interval to come back to, down to the shortest.
+        let mut open = Vec::with_capacity(32);
         for half in [1.0, -1.0] {
             let mut turned = *self;
             for c in turned.coefficients[1..].iter_mut().step_by(2) {
                 *c *= half;
             }
             let polynomial = turned.in_half_tangent();
-            isolate(&turned.bernstein(), &polynomial, noise, &mut |t| {
+            open.push((turned.bernstein(), -1.0, 2.0));
+            isolate(&mut open, &polynomial, noise, &mut |t| {
                 let square = t * t;
                 let e = Complex::new(1.0 - square, 2.0 * t) / (1.0 + square);
                 found.push(e * half);
@@ -203,16 +206,16 @@ const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
     table
 }
 
-/// Finds the roots of a polynomial on `-1 ≤ t ≤ 1`, ascending, given in both bases.
+/// An interval by its low end and its width, and Bernstein coefficients on it.
+type Interval = ([f64; COEFFICIENTS], f64, f64);
+
+/// Finds the roots of a polynomial on the intervals that are open, ascending.
 fn isolate(
-    bernstein: &[f64; COEFFICIENTS],
+    open: &mut Vec<Interval>,
     powers: &[f64; COEFFICIENTS],
     noise: f64,
     found: &mut impl FnMut(f64),
 ) {
-    // Each halving leaves one interval to come back to, down to the shortest.
-    let mut open = Vec::with_capacity(32);
-    open.push((*bernstein, -1.0, 2.0));
     while let Some((b, low, width)) = open.pop() {
         let (least, most) =
             b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
