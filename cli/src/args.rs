@@ -32,6 +32,8 @@ Examples:
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
+  opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
+                                                       poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm inspect cloud.mcap                               what a recording holds";
@@ -62,6 +64,7 @@ pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
     Velocity(VelocityArgs),
+    Fk(FkArgs),
     Linkage(LinkageArgs),
     Workspace(WorkspaceArgs),
     Inspect(InspectArgs),
@@ -171,6 +174,37 @@ pub struct VelocityArgs {
     /// Characteristic length of the condition number, instead of the spread of the joint axes
     #[arg(long, value_name = "LENGTH")]
     pub length: Option<Number>,
+}
+
+/// Forward kinematics: every pose that given actuated joints allow
+///
+/// In closed form where the mechanism's sections can be solved one after the other: then all assemblies
+/// are found, each with the working mode that it is in and how well its legs close (`residual`, radians
+/// and shares of the mechanism's size). Otherwise, or with --near, by Newton's method from a pose, which
+/// finds one assembly, in the working mode of --mode or home.
+///
+/// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
+/// modulo a turn, unless a screw follows them.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm fk plano-spherical-5dof --joints S1=170mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
+  opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
+pub struct FkArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The value of every actuated joint, for example S1=10mm,phi14=15deg
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub joints: Pose,
+    /// Start Newton's method at this pose; what is not given is at home
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub near: Option<Pose>,
+    /// Only assemblies in this working mode: `home`, or a sign for every two-valued choice
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
 }
 
 /// Positions of a linkage: every joint for a value of its input, or for one turn of it

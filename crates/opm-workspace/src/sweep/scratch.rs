@@ -27,6 +27,8 @@ pub struct Scratch<'a> {
     sweep: &'a Sweep<'a>,
     slice: Option<u64>,
     sheet: u64,
+    /// Number of the sheet's first row.
+    row: u64,
     /// Every leg's upper section closes in this slice.
     pub alive: bool,
     legs: Vec<Vec<Way>>,
@@ -80,6 +82,7 @@ impl<'a> Scratch<'a> {
             sweep,
             slice: None,
             sheet: 0,
+            row: 0,
             alive: false,
             legs: vec![Vec::new(); manipulator.legs()],
             found: Vec::new(),
@@ -112,6 +115,7 @@ impl<'a> Scratch<'a> {
             return;
         }
         self.sheet = sheet;
+        self.row = (slice * sweep.sheets + sheet) * sweep.side;
         if !self.alive {
             return;
         }
@@ -214,7 +218,8 @@ impl<'a> Scratch<'a> {
                 self.hits.clear();
                 self.hits.extend(runs::poses(&self.runs).map(|pose| axes[0].value(pose)));
                 let slice = self.slice.unwrap_or_default();
-                hit(&Hits { slice, first: &self.hits, others: &self.others });
+                let (runs, first, others) = (&self.runs[..], &self.hits[..], &self.others[..]);
+                hit(&Hits { slice, row: self.row + row, runs, first, others });
             }
         }
         if plain && reachable > 0 {
