@@ -145,7 +145,7 @@ impl<'a> Answer<'a> {
         let rateless: Vec<usize> = singular().flat_map(|s| manipulator.rateless(s)).collect();
         let rateless_imaginary =
             singular().filter_map(|s| manipulator.rateless_imaginary(s)).collect();
-        let all = &jacobians.joints * &jacobians.pose;
+        let all = jacobians.joints_by_pose();
         let row = |&c: &usize| {
             (!rateless.contains(&c)).then(|| all.row(c).iter().copied().collect::<Vec<f64>>())
         };

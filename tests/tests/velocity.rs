@@ -2,10 +2,14 @@
 //! differences of the inverse kinematics.
 
 use fastrand::Rng;
-use nalgebra::DVector;
-use opm_core::manipulator::{Manipulator, Mode, Solution};
+use nalgebra::{DMatrix, DVector};
+use opm_core::joint::Quantity;
+use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
+use opm_core::mechanism::{examples, file};
+use opm_core::velocity::{SingularCause, SingularLeg, VelocityError};
 use opm_tests::differences::{Estimate, derivatives};
 use opm_tests::random::{Options, PAIRS, mechanism};
+use std::f64::consts::TAU;
 
 /// Relative to the largest derivative of the same order at the pose.
 const RATE: f64 = 1e-9;
@@ -175,4 +179,199 @@ fn jacobians_compose_to_the_rates() {
         }
         assert!(compared > 50, "{pair:?}: {compared}");
     }
+}
+
+/// Once round, a passive ball's rotation vector has no derivative; the mechanism knows nothing of it.
+#[test]
+fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
+    let text = examples::find("plano-spherical-5dof").unwrap().text;
+    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let ball: Vec<usize> = (manipulator.coordinates().iter().enumerate())
+        .filter_map(|(i, c)| c.name.starts_with("s4.").then_some(i))
+        .collect();
+    let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+    let mut jacobians = manipulator.jacobians();
+    let mut path = |zeta: f64| {
+        let pose = [0.01, 0.0, zeta, 0.0, 0.0];
+        assert!(manipulator.inverse_near(&pose, manipulator.home_mode(), &mut at).unwrap());
+        // The ball turns against the arm, so that it is turned by zeta less the arm's angles.
+        let turned = ball.iter().map(|&i| at.joints[i].powi(2)).sum::<f64>().sqrt();
+        (turned, at.clone())
+    };
+    let mut zeta = 0.0;
+    while path(zeta).0 < TAU - 0.1 {
+        zeta += 0.01;
+    }
+    // What is left is known to the last digit or two.
+    for _ in 0..3 {
+        zeta += TAU - path(zeta).0 - 1e-9;
+    }
+    let (turned, at) = path(zeta);
+    assert!((turned - TAU).abs() < 1e-8, "{turned}");
+    let rates = [0.1, 0.2, 0.3, 0.4, 0.5];
+    assert!(!manipulator.velocity(&at, &rates, &rates, &mut motion).unwrap());
+    let singular =
+        SingularLeg { leg: 3, section: Section::Upper, cause: SingularCause::RotationVector };
+    assert_eq!(motion.singular, [singular]);
+    assert_eq!(manipulator.rateless(&singular).collect::<Vec<_>>(), ball);
+    assert_eq!(manipulator.rateless_imaginary(&singular), None);
+    assert!(!manipulator.differentiate(&at, &mut jacobians).unwrap());
+    let conditioning = manipulator.conditioning(&jacobians, 0.1);
+    assert!(conditioning.condition < 20.0, "{conditioning:?}");
+    // All others move as they do in a solution that has not turned.
+    let (mut fresh, mut known) = (manipulator.solution(), manipulator.motion());
+    let pose = [0.01, 0.0, zeta, 0.0, 0.0];
+    assert!(manipulator.inverse(&pose, manipulator.home_mode(), &mut fresh).unwrap());
+    manipulator.velocity(&fresh, &rates, &rates, &mut known).unwrap();
+    for i in (0..motion.joint_rates.len()).filter(|i| !ball.contains(i)) {
+        assert!((motion.joint_rates[i] - known.joint_rates[i]).abs() < 1e-9);
+        assert!((motion.joint_accelerations[i] - known.joint_accelerations[i]).abs() < 1e-9);
+    }
+}
+
+/// Whatever the pose and the rates, an answer is a number, or it is refused.
+#[test]
+fn enormous_poses_and_rates_give_numbers_or_are_refused() {
+    let mut rng = Rng::with_seed(72);
+    let (mut answered, mut refused) = (0, 0);
+    for pair in PAIRS {
+        for _ in 0..40 {
+            let options = Options { limited: 0.0, balls: true };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let (mut all, mut at) = (manipulator.all_modes(), manipulator.solution());
+            let (mut motion, mut jacobians) = (manipulator.motion(), manipulator.jacobians());
+            let mut measured = manipulator.singularities();
+            let mut any =
+                || 10.0_f64.powf(rng.f64() * 150.0 - 75.0) * if rng.bool() { 1.0 } else { -1.0 };
+            let n = manipulator.task_coordinates().len();
+            let [pose, rates, accelerations]: [Vec<f64>; 3] =
+                std::array::from_fn(|_| (0..n).map(|_| any()).collect());
+            manipulator.inverse_all(&pose, &mut all).unwrap();
+            for mode in all.modes(&manipulator).take(2) {
+                assert!(manipulator.pick(&all, mode, &mut at));
+                match manipulator.velocity(&at, &rates, &accelerations, &mut motion) {
+                    Ok(_) => {
+                        let rates = motion.joint_rates.iter().chain(&motion.imaginary_rates);
+                        let accelerations = motion
+                            .joint_accelerations
+                            .iter()
+                            .chain(&motion.imaginary_accelerations);
+                        assert!(rates.chain(accelerations).all(|rate| rate.is_finite()));
+                        answered += 1;
+                    }
+                    Err(error) => {
+                        assert!(matches!(error, VelocityError::Overflow { .. }), "{error}");
+                        refused += 1;
+                    }
+                }
+                manipulator.differentiate(&at, &mut jacobians).unwrap();
+                let conditioning =
+                    manipulator.conditioning(&jacobians, manipulator.characteristic_length());
+                assert!(conditioning.condition >= 1.0, "{pair:?} {conditioning:?}");
+                assert!(conditioning.manipulability >= 0.0, "{pair:?} {conditioning:?}");
+                manipulator.measure_singularities(&jacobians, &mut measured);
+                for measures in [measured.upper, measured.lower, measured.whole] {
+                    assert!(!measures.serial.is_nan(), "{pair:?} {measures:?}");
+                    assert!(!measures.parallel.unwrap_or(0.0).is_nan(), "{pair:?} {measures:?}");
+                }
+            }
+        }
+    }
+    println!("{answered} answered, {refused} refused");
+    assert!(answered > 200, "{answered}");
+}
+
+#[test]
+fn what_is_no_rate_is_refused() {
+    let text = examples::find("translational-helical-3dof").unwrap().text;
+    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+    let still = [0.0; 3];
+    for (rates, message) in [
+        (&[0.0; 2][..], "2 rates, expected 3"),
+        (&[0.0, f64::NAN, 0.0], "y is NaN"),
+        (&[f64::INFINITY, 0.0, 0.0], "x is inf"),
+        (&[0.0, 0.0, -1e80], "phi is -1e80"),
+    ] {
+        let error = manipulator.velocity(&at, rates, &still, &mut motion).unwrap_err();
+        assert!(error.to_string().contains(message), "{error}");
+        assert_eq!(
+            manipulator.velocity(&at, &still, rates, &mut motion).unwrap_err().to_string(),
+            error.to_string()
+        );
+    }
+    // Before any pose a solution is home.
+    assert!(manipulator.velocity(&at, &still, &still, &mut motion).unwrap());
+    let text = examples::find("plano-spherical-5dof").unwrap().text;
+    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    (at, motion) = (manipulator.solution(), manipulator.motion());
+    assert!(!manipulator.inverse(&[9.0; 5], manipulator.home_mode(), &mut at).unwrap());
+    let refused = manipulator.velocity(&at, &[0.0; 5], &[0.0; 5], &mut motion);
+    assert_eq!(refused, Err(VelocityError::OutOfReach));
+    assert!(manipulator.differentiate(&at, &mut manipulator.jacobians()).is_err());
+}
+
+/// The condition number and the manipulability by another program's singular values, from the platform's
+/// twist and the joints' rates by task coordinates; with fewer actuators than freedoms, with as many,
+/// and with all joints actuated.
+#[test]
+fn conditioning_is_that_of_the_singular_values() {
+    let mut rng = Rng::with_seed(73);
+    let (mut compared, mut few) = (0, 0);
+    for pair in PAIRS {
+        for round in 0..40 {
+            let options = Options { limited: 0.0, balls: round % 2 == 0 };
+            let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+                joint.actuated = rng.f64() < 0.25 + 0.25 * f64::from(round % 4);
+            }
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let path = Path::random(&mut rng, &manipulator);
+            let mut at = manipulator.solution();
+            if !manipulator.inverse(&path.pose, manipulator.home_mode(), &mut at).unwrap() {
+                continue;
+            }
+            let mut jacobians = manipulator.jacobians();
+            assert!(manipulator.differentiate(&at, &mut jacobians).unwrap());
+            let length = 0.1 + rng.f64();
+            let found = manipulator.conditioning(&jacobians, length);
+            let n = jacobians.pose.nrows();
+            let actuated = manipulator.actuated();
+            if actuated.len() < n {
+                assert!(found.condition.is_infinite() && found.manipulability.is_infinite());
+                let mut measured = manipulator.singularities();
+                manipulator.measure_singularities(&jacobians, &mut measured);
+                assert_eq!(measured.whole.parallel, None);
+                few += 1;
+                continue;
+            }
+            let by_pose = jacobians.joints_by_pose();
+            let rows = DMatrix::from_fn(actuated.len(), n, |i, j| {
+                let angle = manipulator.coordinates()[actuated[i]].quantity == Quantity::Angle;
+                by_pose[(actuated[i], j)] / if angle { 1.0 } else { length }
+            });
+            let mut twists = &jacobians.platform * &jacobians.pose;
+            twists.rows_mut(3, 3).scale_mut(1.0 / length);
+            // Directions with the metric's root taken by its eigenvectors.
+            let metric = (twists.transpose() * &twists).symmetric_eigen();
+            if metric.eigenvalues.min() < 1e-4 * metric.eigenvalues.max() {
+                continue; // The coordinates are nearly singular: not what is compared here.
+            }
+            let roots = metric.eigenvalues.map(|value| 1.0 / value.sqrt());
+            let unit = &metric.eigenvectors * DMatrix::from_diagonal(&roots);
+            let values = (rows * unit).singular_values();
+            let condition = values.max() / values.min();
+            if condition > 1e6 {
+                continue;
+            }
+            let manipulability = 1.0 / values.iter().product::<f64>();
+            assert!((found.condition / condition - 1.0).abs() < 1e-7, "{found:?} {condition}");
+            let off = found.manipulability / manipulability - 1.0;
+            assert!(off.abs() < 1e-7, "{found:?} {manipulability}");
+            compared += 1;
+        }
+    }
+    println!("{compared} compared, {few} with too few actuators");
+    assert!(compared > 200 && few > 50, "{compared} {few}");
 }

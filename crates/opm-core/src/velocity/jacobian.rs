@@ -25,7 +25,10 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 pub struct Jacobians {
     /// `J_s` (Eqs. 8-9): rates along the cuts from the upper section's twist. A row for every leg that
     /// is cut in its upper section ([`Jacobians::bridged`]), with the sign of its imaginary joint
-    /// where it has one.
+    /// where it has one. They are relative to a lower section that does not move along the intersection
+    /// motion; where the coordinates of the pose make it do so (`mu nu` of a tilt, `w phi` of an upper
+    /// plane), the rate as it is reported, [`Motion::imaginary_rates`](super::Motion), has that in
+    /// it too.
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`])
     /// from those along the cuts, in the order of the rows of [`Jacobians::upper`], and the lower
@@ -129,6 +132,12 @@ struct Moved {
 }
 
 impl Jacobians {
+    /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], for unit rates of
+    /// the task coordinates. Allocates the product.
+    pub fn joints_by_pose(&self) -> DMatrix<f64> {
+        &self.joints * &self.pose
+    }
+
     /// The components of the section twist, in the order of the columns: what each does to the upper
     /// section and to the lower one, twists in the sections' frames.
     pub(crate) fn directions(&self) -> Vec<[Local; 2]> {
