@@ -597,13 +597,17 @@ impl Search<'_> {
         let quick = compiled.cut == Section::Upper && !self.plan.legs[leg].lower.is_empty();
         let [v, b] = pose;
         let cuts = Branch::BOTH.map(|branch| match quick {
-            true => compiled.upper.chain.first(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0)),
+            true => {
+                compiled.upper.chain.first(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0))
+            }
             false => None,
         });
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
             if quick {
-                let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else { continue };
+                let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else {
+                    continue;
+                };
                 match compiled.solve_lower(m.task(), v, tau, branches.lower) {
                     Ok(lower) if self.section_off(&compiled.lower, &lower) <= MATCH => {}
                     _ => continue,

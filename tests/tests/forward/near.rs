@@ -88,7 +88,10 @@ fn a_failure_says_why() {
     // A metre of travel is beyond every rod.
     let error = m.forward_near(&[1.0, 0.0, 0.0, 0.0], &home, m.home_mode()).unwrap_err();
     let NearError::NotFound(not_found) = error else { panic!("{error}") };
-    assert!(matches!(not_found.why, Stop::OutOfReach(_) | Stop::Stalled | Stop::Singular), "{not_found}");
+    assert!(
+        matches!(not_found.why, Stop::OutOfReach(_) | Stop::Stalled | Stop::Singular),
+        "{not_found}"
+    );
     assert!(not_found.off > 0.01 && not_found.off.is_finite(), "{not_found}");
     // A start out of reach.
     let mut far = home.clone();

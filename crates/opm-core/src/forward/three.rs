@@ -278,7 +278,8 @@ fn torus<G: Group>(
 /// The turns that satisfy two equations `a cos φ + b sin φ + c = 0`, of which one is a consequence of the
 /// other at the most.
 fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 2] {
-    let clear = |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
+    let clear =
+        |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
     let better = usize::from(clear(1) > clear(0));
     let [a, b, c] = equations[better];
     let square = a * a + b * b;
