@@ -41,7 +41,9 @@
 //! Each may be left out. `opm decompose` prints the frames as they are.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
-//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Whatever a file does not need to have
+//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. A joint cannot be called like a task
+//! coordinate (`x`, `phi`, ...), like `reachable`, `within_limits`, `mode` or `branch`, or like a leg's
+//! imaginary joint (`tau.leg1`): tables have columns of these names. Whatever a file does not need to have
 //! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
 
 mod hint;

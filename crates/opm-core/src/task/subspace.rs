@@ -23,6 +23,19 @@ pub enum SubspaceKind {
     TranslationalPlane,
 }
 
+impl SubspaceKind {
+    /// The kind of a subspace, if it has closed-form chains.
+    pub fn of(class: &SubspaceClass) -> Option<Self> {
+        match class {
+            SubspaceClass::Planar { .. } => Some(Self::Planar),
+            SubspaceClass::Spherical { .. } => Some(Self::Spherical),
+            SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
+            SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for SubspaceKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -86,7 +99,7 @@ impl Subspace {
             SubspaceClass::TranslationalPlane { normal } => {
                 (SubspaceKind::TranslationalPlane, reference, *normal)
             }
-            other => return Err(TaskError::Subspace(other.name())),
+            other => return Err(TaskError::Subspace { section, name: other.name(), odd: None }),
         };
         let hints = Checked { hints, section, kind, rotation };
         hints.refuse_what_is_not_free()?;
