@@ -7,6 +7,7 @@ mod completions;
 mod decompose;
 mod examples;
 mod failure;
+mod fk;
 mod ik;
 mod inspect;
 mod lines;
@@ -39,6 +40,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
         Command::Velocity(command) => velocity::run(command, output),
+        Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),

@@ -32,7 +32,7 @@ pub use singularity::{Cause, Measures, Singularities};
 
 use crate::chain::Amount;
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
-use local::Local;
+pub(crate) use local::Local;
 use nalgebra::Vector3;
 use section::Differential;
 

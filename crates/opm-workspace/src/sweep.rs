@@ -10,6 +10,7 @@ mod scratch;
 
 pub use runs::Run;
 
+use crate::condition::ConditionLimit;
 use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
@@ -70,6 +71,7 @@ pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
     grid: &'a Grid,
     modes: Modes,
+    limit: Option<ConditionLimit>,
     /// Segments a row.
     segments: u64,
     /// Segments a block.
@@ -88,7 +90,15 @@ impl<'a> Sweep<'a> {
         let lower = &grid.axes()[1..grid.lower()];
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
-        Self { manipulator, grid, modes, segments: row.div_ceil(SEGMENT), stride, side, sheets }
+        let segments = row.div_ceil(SEGMENT);
+        Self { manipulator, grid, modes, limit: None, segments, stride, side, sheets }
+    }
+
+    /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
+    /// enough. That is decided pose by pose, a few microseconds each and mode.
+    #[must_use]
+    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        Self { limit, ..self }
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not

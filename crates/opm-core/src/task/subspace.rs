@@ -2,6 +2,7 @@
 
 use super::displacement::{Cut, Displacement};
 use super::{FrameProblem, TaskError};
+use crate::chain::cylindrical::CylindricalDisplacement;
 use crate::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
 use crate::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
@@ -32,6 +33,17 @@ impl SubspaceKind {
             SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
             SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
             _ => None,
+        }
+    }
+
+    /// The displacement with these two numbers, of a kind whose displacements add up: angle and advance,
+    /// or a translation.
+    pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
+        match self {
+            Self::Cylindrical => {
+                Displacement::Cylindrical(CylindricalDisplacement { angle: first, advance: second })
+            }
+            _ => Displacement::Translational(Complex::new(first, second)),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::runs::{self, Run};
 use super::{Hits, Modes, Sweep, Tally};
+use crate::condition::Conditioned;
 use crate::grid::fill;
 use nalgebra::Complex;
 use opm_core::manipulator::Follow;
@@ -53,6 +54,8 @@ pub struct Scratch<'a> {
     union: Vec<Run>,
     next_runs: Vec<Run>,
     hits: Vec<f64>,
+    limit: Option<Conditioned<'a>>,
+    pose: Vec<f64>,
     arch: Arch,
 }
 
@@ -96,6 +99,8 @@ impl<'a> Scratch<'a> {
             union: Vec::new(),
             next_runs: Vec::new(),
             hits: Vec::new(),
+            limit: sweep.limit.map(|limit| Conditioned::new(manipulator, limit)),
+            pose: vec![0.0; axes.len()],
             arch: Arch::new(),
         }
     }
@@ -175,7 +180,7 @@ impl<'a> Scratch<'a> {
         self.rows.extend(rows.clone().map(height));
         let mut doubts = [0; ROWS];
         let mut counts = Counts::default();
-        let plain = self.plain && hit.is_none();
+        let plain = self.plain && hit.is_none() && self.limit.is_none();
         self.cuts.resize_with(self.legs.iter().map(Vec::len).sum(), Cuts::new);
         let (heights, doubts) = (&self.rows[..], &mut doubts);
         for (cuts, way) in self.cuts.iter_mut().zip(self.legs.iter().flatten()) {
@@ -199,12 +204,16 @@ impl<'a> Scratch<'a> {
                 self.others[0] = axes[1].value(row);
             }
             let doubt = doubts[i] != 0;
-            let count = self.decide_row(i, window, doubt);
+            let mut count = self.decide_row(i, window, doubt);
+            if count > 0 && self.limit.is_some() {
+                count = self.limit_row(hit.is_none(), tally);
+            } else if count > 0 {
+                self.settle(i, window, doubt, tally);
+            }
             if count == 0 {
                 continue;
             }
             reachable += count;
-            self.settle(i, window, doubt, tally);
             if let Some(hit) = hit {
                 self.hits.clear();
                 self.hits.extend(runs::poses(&self.runs).map(|pose| axes[0].value(pose)));
@@ -257,6 +266,30 @@ impl<'a> Scratch<'a> {
                 std::mem::swap(&mut self.runs, &mut self.next_runs);
             }
         }
+        self.runs.iter().map(|run| run.to - run.from).sum()
+    }
+
+    /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
+    /// the imaginary joints of the modes in which they are; returns how many are left.
+    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+        let Some(limit) = &mut self.limit else { return 0 };
+        let axis = &self.sweep.grid.axes()[0];
+        self.pose[1..].copy_from_slice(&self.others);
+        self.next_runs.clear();
+        for number in runs::poses(&self.runs) {
+            self.pose[0] = axis.value(number);
+            let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
+                if ranges {
+                    let values = solution.imaginary.iter().enumerate();
+                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                }
+                ranges
+            });
+            if admitted {
+                runs::push(&mut self.next_runs, number);
+            }
+        }
+        std::mem::swap(&mut self.runs, &mut self.next_runs);
         self.runs.iter().map(|run| run.to - run.from).sum()
     }
 
