@@ -15,6 +15,39 @@
 //!
 //! A rate is the time derivative of the coordinate as it is reported: a spherical joint's are the
 //! derivatives of its rotation vector, an imaginary joint's has its sign.
+//!
+//! With the paper's first manipulator, where `s₁ = u`, `s₂ = v` and `s₃ = w` of a leg's upper section, the
+//! first reciprocal screw is `(v × w) / u · (v × w)`, and
+//!
+//! * `J_s` ([`Jacobians::upper`]) is `J_q,s⁻¹ J_x,s`: `θ̇ = J_s ω` (Eqs. 6-9);
+//! * `J_p` ([`Jacobians::lower`]) is `J_q,p⁻¹ J_x,p`: `q̇ = J_p [θ̇; Ṗ]` (Eqs. 17-23), where the reciprocal
+//!   screw of a slider is the force along link a1, and the arm's two are its Jacobian's inverse;
+//! * together `q̇ = J_p [J_s ω; Ṗ]`.
+//!
+//! With the second one `J_s = [p]` (Eqs. 24-25) and `J_p` has the rows `[sin βᵢ, −sin αᵢ, cos αᵢ]`, the
+//! first column for the leg with the helical joint alone (Eq. 29, without the divisor that the print has).
+//!
+//! ```
+//! use opm_core::manipulator::Manipulator;
+//! use opm_core::mechanism::{examples, file};
+//!
+//! let text = examples::find("plano-spherical-5dof").unwrap().text;
+//! let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+//! let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+//! let pose = [0.01, 0.0, 0.0, 0.26, 0.0]; // x y zeta xi psi
+//! assert!(manipulator.inverse(&pose, manipulator.home_mode(), &mut at)?);
+//! // x at 10 mm/s, zeta at 1 rad/s, everything at constant speed.
+//! let regular = manipulator.velocity(&at, &[0.01, 0.0, 1.0, 0.0, 0.0], &[0.0; 5], &mut motion)?;
+//! assert!(regular && (motion.imaginary_rates[0] - 1.0).abs() < 1e-12); // theta11 follows zeta
+//!
+//! let (mut jacobians, mut measured) = (manipulator.jacobians(), manipulator.singularities());
+//! manipulator.differentiate(&at, &mut jacobians)?;
+//! manipulator.measure_singularities(&jacobians, &mut measured);
+//! assert!(measured.whole.serial.abs() > 0.1 && measured.whole.parallel.unwrap().abs() > 0.1);
+//! let length = manipulator.characteristic_length();
+//! assert!(manipulator.conditioning(&jacobians, length).condition < 20.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod condition;
 mod jacobian;

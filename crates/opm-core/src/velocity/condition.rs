@@ -12,6 +12,10 @@ const MOST: usize = 5;
 /// lead to it.
 const RANK: f64 = 1e-13;
 
+/// Two columns whose cosine is less are square: what is left shows in no more digits of a singular
+/// value.
+const SQUARE: f64 = 1e-12;
+
 /// The most rotations' sweeps; regular matrices need about six.
 const MAX_SWEEPS: usize = 30;
 
@@ -58,21 +62,32 @@ impl Manipulator {
             return Conditioning::SERIAL;
         }
         let n = jacobians.platform.ncols();
-        // Twists that are orthonormal: the platform's columns are Q R.
-        let metric = triangle(n, 6, |row, column| {
-            let value = jacobians.platform[(row, column)];
-            if row < 3 { value } else { value / length }
-        });
+        // With the metric `L Lᵀ` of the platform's twist, components times `Lᵀ` are orthonormal.
+        let scale = length.recip();
+        let mut joints = Square::zeros();
         let actuated = self.actuated();
-        let mut joints = triangle(n, actuated.len(), |row, column| {
-            let coordinate = actuated[row];
-            let value = jacobians.joints[(coordinate, column)];
-            match self.coordinates()[coordinate].quantity {
-                Quantity::Angle => value,
-                Quantity::Length => value / length,
+        let matrix = jacobians.joints.as_slice();
+        let stride = jacobians.joints.nrows();
+        for (row, &coordinate) in actuated.iter().enumerate() {
+            let unit = match self.coordinates()[coordinate].quantity {
+                Quantity::Angle => 1.0,
+                Quantity::Length => scale,
+            };
+            let mut next = [0.0; MOST];
+            for (column, value) in next[..n].iter_mut().enumerate() {
+                *value = unit * matrix[coordinate + column * stride];
             }
-        });
-        divide(&mut joints, &metric, n);
+            if row < MOST {
+                (0..n).for_each(|column| joints[(row, column)] = next[column]);
+            } else {
+                // More rows than fit: their triangle has the same singular values.
+                if row == MOST {
+                    joints = triangle(&joints, n);
+                }
+                push_row(&mut joints, next, n);
+            }
+        }
+        divide(&mut joints, &metric(jacobians, scale), n);
         let values = singular_values(joints, n);
         let (mut largest, mut smallest, mut product) = (0.0_f64, f64::INFINITY, 1.0);
         for &value in &values[..n] {
@@ -91,28 +106,57 @@ impl Manipulator {
     }
 }
 
-/// The triangle `R` of a matrix's `Q R`, by Givens rotations, a row at a time.
-fn triangle(n: usize, rows: usize, entry: impl Fn(usize, usize) -> f64) -> Square {
+/// The triangle `Lᵀ` of the metric of the platform's twist, by Cholesky: its columns are independent by
+/// far, so that the squares do no harm.
+fn metric(jacobians: &Jacobians, scale: f64) -> Square {
+    let n = jacobians.platform.ncols();
+    let square = scale * scale;
     let mut r = Square::zeros();
-    for row in 0..rows {
-        let mut next = [0.0; MOST];
-        for (column, value) in next[..n].iter_mut().enumerate() {
-            *value = entry(row, column);
+    for i in 0..n {
+        for j in i..n {
+            let (a, b) = (jacobians.platform.column(i), jacobians.platform.column(j));
+            let angular = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let linear = a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+            r[(i, j)] = angular + square * linear;
         }
-        for i in 0..n {
-            if next[i] == 0.0 {
-                continue;
-            }
-            let length = r[(i, i)].hypot(next[i]);
-            let (cos, sin) = (r[(i, i)] / length, next[i] / length);
+    }
+    for i in 0..n {
+        for k in 0..i {
             for j in i..n {
-                let (above, below) = (r[(i, j)], next[j]);
-                r[(i, j)] = cos * above + sin * below;
-                next[j] = cos * below - sin * above;
+                r[(i, j)] -= r[(k, i)] * r[(k, j)];
             }
+        }
+        let root = r[(i, i)].sqrt();
+        for j in i..n {
+            r[(i, j)] /= root;
         }
     }
     r
+}
+
+/// The triangle `R` of a matrix's `Q R`.
+fn triangle(matrix: &Square, n: usize) -> Square {
+    let mut r = Square::zeros();
+    for row in matrix.row_iter() {
+        push_row(&mut r, std::array::from_fn(|i| row[i]), n);
+    }
+    r
+}
+
+/// Adds a row to a triangle, by Givens rotations.
+fn push_row(r: &mut Square, mut next: [f64; MOST], n: usize) {
+    for i in 0..n {
+        if next[i] == 0.0 {
+            continue;
+        }
+        let length = r[(i, i)].hypot(next[i]);
+        let (cos, sin) = (r[(i, i)] / length, next[i] / length);
+        for (j, below) in next.iter_mut().enumerate().take(n).skip(i) {
+            let above = r[(i, j)];
+            r[(i, j)] = cos * above + sin * *below;
+            *below = cos * *below - sin * above;
+        }
+    }
 }
 
 /// `matrix R⁻¹`, from its first column on.
@@ -120,12 +164,13 @@ fn divide(matrix: &mut Square, r: &Square, n: usize) {
     for j in 0..n {
         for k in 0..j {
             let factor = r[(k, j)];
-            for i in 0..n {
+            for i in 0..MOST {
                 matrix[(i, j)] -= matrix[(i, k)] * factor;
             }
         }
-        for i in 0..n {
-            matrix[(i, j)] /= r[(j, j)];
+        let inverse = r[(j, j)].recip();
+        for i in 0..MOST {
+            matrix[(i, j)] *= inverse;
         }
     }
 }
@@ -138,15 +183,15 @@ fn singular_values(mut m: Square, n: usize) -> [f64; MOST] {
             for q in p + 1..n {
                 let (pp, qq) = (m.column(p).norm_squared(), m.column(q).norm_squared());
                 let pq = m.column(p).dot(&m.column(q));
-                if pq.abs() <= f64::EPSILON * (pp * qq).sqrt() {
+                if pq * pq <= SQUARE * SQUARE * pp * qq {
                     continue;
                 }
                 rotated = true;
                 let zeta = (qq - pp) / (2.0 * pq);
-                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / tan.hypot(1.0);
+                let tan = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+                let cos = (1.0 + tan * tan).sqrt().recip();
                 let sin = cos * tan;
-                for i in 0..n {
+                for i in 0..MOST {
                     let (x, y) = (m[(i, p)], m[(i, q)]);
                     m[(i, p)] = cos * x - sin * y;
                     m[(i, q)] = sin * x + cos * y;

@@ -61,8 +61,10 @@ pub struct Jacobians {
 /// The directions that the section twist is measured along.
 #[derive(Clone, Debug)]
 struct Basis {
-    upper: Vec<Local>,
-    lower: Vec<Local>,
+    upper: [Local; 3],
+    lower: [Local; 3],
+    /// How many there are of each; the rest are zeros.
+    counts: [usize; 2],
     /// Each as a twist in base coordinates, upper first: angular part, velocity at a point.
     twists: Vec<([Vector3<f64>; 2], Vector3<f64>)>,
     /// The platform's reference point at home in the upper section's frame.
@@ -80,7 +82,16 @@ impl Basis {
         let twists = (upper.iter().map(|twist| in_base(&task.upper, twist)))
             .chain(lower.iter().map(|twist| in_base(&task.lower, twist)))
             .collect();
-        Self { upper, lower, twists, platform: task.upper.point(platform) }
+        let padded = |twists: &[Local]| {
+            std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(Local::zeros))
+        };
+        Self {
+            counts: [upper.len(), lower.len()],
+            upper: padded(&upper),
+            lower: padded(&lower),
+            twists,
+            platform: task.upper.point(platform),
+        }
     }
 }
 
@@ -111,13 +122,20 @@ pub(super) fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
     }
 }
 
+/// What has moved with `v`: the intersection motion, and the directions of the lower section.
+struct Moved {
+    along: Local,
+    lower: [Local; 3],
+}
+
 impl Jacobians {
     /// The components of the section twist, in the order of the columns: what each does to the upper
     /// section and to the lower one, twists in the sections' frames.
     pub(crate) fn directions(&self) -> Vec<[Local; 2]> {
         let zero = Local::zeros();
-        let upper = self.basis.upper.iter().map(|twist| [*twist, zero]);
-        upper.chain(self.basis.lower.iter().map(|twist| [zero, *twist])).collect()
+        let [n_upper, n_lower] = self.basis.counts;
+        let upper = self.basis.upper[..n_upper].iter().map(|twist| [*twist, zero]);
+        upper.chain(self.basis.lower[..n_lower].iter().map(|twist| [zero, *twist])).collect()
     }
 }
 
@@ -143,7 +161,7 @@ impl Manipulator {
         for (row, &coordinate) in lower_rows.iter().enumerate() {
             driven[coordinate] = Some(row);
         }
-        let (n_upper, n_lower) = (basis.upper.len(), basis.lower.len());
+        let [n_upper, n_lower] = basis.counts;
         let n = n_upper + n_lower;
         let home = self.solution();
         Jacobians {
@@ -177,20 +195,17 @@ impl Manipulator {
         out.v = at.place.v;
         let task = self.task();
         let along = at.place.v.carried(&task.lower_cut.twist(task.lower.kind));
-        let mut lower = [Local::zeros(); 3];
-        for (carried, twist) in lower.iter_mut().zip(&out.basis.lower) {
-            *carried = at.place.v.carried(twist);
-        }
-        let lower = &lower[..out.basis.lower.len()];
+        let lower = out.basis.lower.map(|twist| at.place.v.carried(&twist));
+        let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
             let differential = self.leg_differential(at, number);
-            out.legs[number] = differential;
-            out.cuts[number] = at.legs[number].tau;
             if self.note_singular(number, &differential, &mut out.singular) {
-                self.leg_rows(at, number, lower, &along, out);
+                self.leg_rows(number, &differential, at.legs[number].tau, &moved, out);
             } else {
                 self.clear_rows(number, out);
             }
+            out.legs[number] = differential;
+            out.cuts[number] = at.legs[number].tau;
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
@@ -210,71 +225,76 @@ impl Manipulator {
         }
     }
 
-    /// A leg's rows: `along` and `lower` are the cut and the lower basis as they have moved with `v`.
+    /// A leg's rows.
     #[inline]
     fn leg_rows(
         &self,
-        at: &Solution,
         number: usize,
-        lower: &[Local],
-        along: &Local,
+        LegDifferential { lower: low, upper: up }: &LegDifferential,
+        tau: Amount,
+        moved: &Moved,
         out: &mut Jacobians,
     ) {
         let task = self.task();
         let leg = &self.legs[number];
-        let LegDifferential { lower: low, upper: up } = out.legs[number];
         let sign = leg.imaginary.map_or(1.0, |i| self.imaginary()[i].sign);
-        let n_upper = out.basis.upper.len();
+        let [n_upper, n_lower] = out.basis.counts;
         // Rates along the cut from each component of the section twist, and what else follows from
         // it in the section that is solved second.
         let mut cut = [0.0; 6];
-        let (mut upper, mut carried) = ([Local::zeros(); 3], *along);
-        match leg.cut {
+        let (upper, carried) = match leg.cut {
             Section::Upper => {
-                upper[..n_upper].copy_from_slice(&out.basis.upper);
                 let bridge = out.bridges[number].unwrap_or_default();
-                for (i, twist) in upper[..n_upper].iter().enumerate() {
+                for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
                     cut[i] = up.rate(0, twist);
                     out.upper[(bridge, i)] = sign * cut[i];
                 }
+                (out.basis.upper, moved.along)
             }
             Section::Lower => {
                 let last = leg.lower.chain.freedoms() - 1;
-                for (i, twist) in lower.iter().enumerate() {
+                for (i, twist) in moved.lower.iter().enumerate() {
                     cut[n_upper + i] = low.rate(last, twist);
                 }
-                let kind = task.upper.kind;
-                let amount = at.legs[number].tau.inverse();
-                for (carried, twist) in upper.iter_mut().zip(&out.basis.upper) {
-                    *carried = task.upper_cut.carried(kind, amount, twist);
-                }
-                carried = task.upper_cut.twist(kind);
+                let (kind, amount) = (task.upper.kind, tau.inverse());
+                let carried = |twist: Local| task.upper_cut.carried(kind, amount, &twist);
+                (out.basis.upper.map(carried), task.upper_cut.twist(kind))
             }
-        }
-        let sections = [(&leg.upper, &up, Section::Upper), (&leg.lower, &low, Section::Lower)];
-        for (compiled, differential, section) in sections {
+        };
+        let (n, bridges, joints) = (n_upper + n_lower, out.bridged.len(), out.joints.nrows());
+        let rows = out.lower.nrows();
+        for (section, compiled, differential) in
+            [(Section::Upper, &leg.upper, up), (Section::Lower, &leg.lower, low)]
+        {
+            let (own, start) = match section {
+                Section::Upper => (&upper, 0),
+                Section::Lower => (&moved.lower, n_upper),
+            };
             for (slot, joint) in compiled.slots.iter().zip(0..) {
                 let Some(slot) = slot else { continue };
                 let row = slot.coordinate;
-                let own = |i: usize| match section {
-                    Section::Upper if i < n_upper => differential.rate(joint, &upper[i]),
-                    Section::Lower if i >= n_upper => differential.rate(joint, &lower[i - n_upper]),
-                    _ => 0.0,
-                };
                 let by_cut =
                     if section == leg.cut { 0.0 } else { differential.rate(joint, &carried) };
-                for (i, cut) in cut[..n_upper + lower.len()].iter().enumerate() {
-                    out.joints[(row, i)] = own(i) + by_cut * cut;
+                let mut rates = cut.map(|cut| by_cut * cut);
+                for (i, twist) in own.iter().enumerate() {
+                    rates[start + i] += differential.rate(joint, twist);
+                }
+                // Matrices are stored by columns.
+                let entries = out.joints.as_mut_slice();
+                for (i, rate) in rates[..n].iter().enumerate() {
+                    entries[i * joints + row] = *rate;
                 }
                 let Some(row) = out.driven[row].filter(|_| section == Section::Lower) else {
                     continue;
                 };
-                let bridges = out.bridged.len();
                 if let Some(bridge) = out.bridges[number] {
                     out.lower[(row, bridge)] = sign * by_cut;
                 }
-                for i in 0..lower.len() {
-                    out.lower[(row, bridges + i)] = own(n_upper + i);
+                let entries = &mut out.lower.as_mut_slice()[bridges * rows..];
+                for i in 0..n - n_upper {
+                    // Of a leg with its cut above, what comes by the cut has a column of its own; its cut
+                    // does not move with the lower section.
+                    entries[i * rows + row] = rates[n_upper + i];
                 }
             }
         }
@@ -285,12 +305,13 @@ impl Manipulator {
         let task = self.task();
         let pose = &at.place.pose;
         let v = &at.place.v;
-        let n_upper = out.basis.upper.len();
+        let n_upper = out.basis.counts[0];
+        let n = pose.len();
         let rotation = task.cut_point.is_some();
         let lower_along = task.lower_cut.twist(task.lower.kind);
         let upper_along = task.upper_cut.twist(task.upper.kind);
         let (of_v, of_b) = (task.lower_screws(pose), task.upper_screws(pose));
-        for column in 0..pose.len() {
+        for column in 0..n {
             let (mut lower, mut upper) = (Local::zeros(), Local::zeros());
             if column < task.lower_count {
                 lower = v.carried_back(&of_v.moved[column]);
@@ -304,11 +325,12 @@ impl Manipulator {
             } else {
                 lower += lower_along * upper.dot(&upper_along);
             }
-            for (i, twist) in out.basis.upper.iter().enumerate() {
-                out.pose[(i, column)] = upper.dot(twist);
+            let entries = &mut out.pose.as_mut_slice()[column * n..(column + 1) * n];
+            for (entry, twist) in entries.iter_mut().zip(&out.basis.upper[..n_upper]) {
+                *entry = upper.dot(twist);
             }
-            for (i, twist) in out.basis.lower.iter().enumerate() {
-                out.pose[(n_upper + i, column)] = lower.dot(twist);
+            for (entry, twist) in entries[n_upper..].iter_mut().zip(&out.basis.lower) {
+                *entry = lower.dot(twist);
             }
         }
     }
@@ -320,9 +342,9 @@ impl Manipulator {
         let point = upper.restored(&at.place.b.moved(&out.basis.platform)).coords;
         for (i, ([angular, linear], origin)) in out.basis.twists.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
-            let mut column = out.platform.column_mut(i);
-            column.fixed_rows_mut::<3>(0).copy_from(angular);
-            column.fixed_rows_mut::<3>(3).copy_from(&velocity);
+            let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];
+            column[..3].copy_from_slice(angular.as_slice());
+            column[3..].copy_from_slice(velocity.as_slice());
         }
     }
 }

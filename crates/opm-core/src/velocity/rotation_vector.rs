@@ -53,8 +53,21 @@ impl RotationVector {
 
     /// The matrix that gives `ṙ` from `ω`.
     pub fn rates_of_spin(&self) -> Matrix3<f64> {
-        let cross = self.vector.cross_matrix();
-        Matrix3::identity() - cross * 0.5 + cross * cross * self.second
+        let r = &self.vector;
+        // r × (r × ω) = r (r · ω) − θ² ω.
+        let (along, across) = (r * self.second, 1.0 - self.second * r.norm_squared());
+        let h = r * 0.5;
+        Matrix3::new(
+            across + along.x * r.x,
+            along.x * r.y + h.z,
+            along.x * r.z - h.y,
+            along.y * r.x - h.z,
+            across + along.y * r.y,
+            along.y * r.z + h.x,
+            along.z * r.x + h.y,
+            along.z * r.y - h.x,
+            across + along.z * r.z,
+        )
     }
 
     /// `r̈` at constant `ω`, that is the derivative of that matrix times `ω`.

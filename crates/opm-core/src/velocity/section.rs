@@ -56,7 +56,8 @@ impl Differential {
         let reciprocal = if measure.abs() < SINGULAR {
             [Local::zeros(); 3]
         } else {
-            crosses.map(|row| row / determinant)
+            let inverse = determinant.recip();
+            crosses.map(|row| row * inverse)
         };
         Self { screws, crosses, reciprocal, measure, ball: None }
     }
