@@ -378,11 +378,14 @@ impl Search<'_> {
 
     /// With `v` known: every combination of the legs' τ.
     fn with_lower(&mut self, v: &Displacement, known: &[Option<Amount>]) {
+        // As the pose has it: then what is within half a turn here is so there.
+        let (v, turned) = self.manipulator.task().without_turn(v);
+        let v = &v;
         let mut options: Vec<[Option<Amount>; 2]> = Vec::with_capacity(known.len());
         let mut closes = true;
         for (leg, known) in known.iter().enumerate() {
             options.push(match known {
-                Some(_) => [*known, None],
+                Some(tau) => [Some(turned.plus(*tau)), None],
                 None => match self.taus(leg, v) {
                     Taus::These(taus) => taus,
                     Taus::Free => [None; 2],
@@ -672,7 +675,19 @@ impl Search<'_> {
     /// Adds the assembly in the buffer, unless it does not close or is there already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        let assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        let mut assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        if assembly.residual > SETTLED && assembly.residual < MATCH {
+            // What the sections have lost on the way, near singularities of theirs, the whole may give back.
+            let actuated = m.actuated().iter().zip(self.amounts);
+            let given: Vec<f64> = actuated.map(|(&c, a)| m.coordinates()[c].home + a).collect();
+            if let Ok(better) = m.forward_near(&given, pose, mode) {
+                let moved = better.joints.iter().zip(&assembly.joints);
+                let near = moved.into_iter().all(|(a, b)| (a - b).abs() < MATCH);
+                if near && better.residual < assembly.residual {
+                    assembly = better;
+                }
+            }
+        }
         if assembly.residual.is_nan() || assembly.residual > RESIDUAL {
             self.least = self.least.min(assembly.residual);
             return;
