@@ -21,19 +21,6 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = loaded.compile()?;
     let actuated = joints(&args.joints, &manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
-    for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
-        let (c, limits) = (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
-        if let Some(range) = c.limits.filter(|_| !limits.admits(Amount::Value(value - c.home))) {
-            let units = loaded.file.units;
-            output.note(format_args!(
-                "{} = {} is beyond its limits, {} {}",
-                c.name,
-                units.show(value, c.quantity),
-                text::range(range, c.quantity, units),
-                units.symbol(c.quantity)
-            ));
-        }
-    }
     let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
     let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
         (None, Ok(())) => {
@@ -55,27 +42,43 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
                 ));
             }
             let mode = only.unwrap_or_else(|| manipulator.home_mode());
-            let assembly = manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
-                NearError::Joints(error) => wrong(&error),
-                NearError::Start(error) => Failure::flag("--near", error),
-                NearError::NotFound(not_found) => {
-                    Failure::Work(format!("{}: {}", loaded.label, {
-                        match not_found.why {
-                            Stop::OutOfReach(u) if not_found.steps == 0 => format!(
-                                "the start is out of reach in mode {}: {}: {}",
-                                shown(&manipulator, mode),
-                                manipulator.mechanism().legs[u.leg].name,
-                                reason(&u, loaded.file.units)
-                            ),
-                            _ => not_found.to_string(),
-                        }
-                    }))
-                }
-            })?;
+            let assembly =
+                manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
+                    NearError::Joints(error) => wrong(&error),
+                    NearError::Start(error) => Failure::flag("--near", error),
+                    NearError::NotFound(not_found) => {
+                        Failure::Work(format!("{}: {}", loaded.label, {
+                            match not_found.why {
+                                Stop::OutOfReach(u) if not_found.steps == 0 => format!(
+                                    "the start is out of reach in mode {}: {}: {}",
+                                    shown(&manipulator, mode),
+                                    manipulator.mechanism().legs[u.leg].name,
+                                    reason(&u, loaded.file.units)
+                                ),
+                                _ => not_found.to_string(),
+                            }
+                        }))
+                    }
+                })?;
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
         }
     };
-    let answer = Answer { loaded: &loaded, manipulator: &manipulator, actuated, found, only, method };
+    for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
+        let (c, limits) =
+            (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
+        if let Some(range) = c.limits.filter(|_| !limits.admits(Amount::Value(value - c.home))) {
+            let units = loaded.file.units;
+            output.note(format_args!(
+                "{} = {} is beyond its limits, {} {}",
+                c.name,
+                units.show(value, c.quantity),
+                text::range(range, c.quantity, units),
+                units.symbol(c.quantity)
+            ));
+        }
+    }
+    let answer =
+        Answer { loaded: &loaded, manipulator: &manipulator, actuated, found, only, method };
     output.print(&answer.json(), answer.text())
 }
 
@@ -190,14 +193,16 @@ impl Answer<'_> {
             .collect();
         let mut text = format!("{} with {}\n\n", m.mechanism().name, joints.join(", "));
         let list = &self.found.list;
-        let in_mode = self.only.map_or(String::new(), |mode| format!(" in mode {}", shown(m, mode)));
+        let in_mode =
+            self.only.map_or(String::new(), |mode| format!(" in mode {}", shown(m, mode)));
         if list.is_empty() {
             let _ = writeln!(text, "no assembly{in_mode}");
             for unmet in self.unmet(units) {
                 let _ = writeln!(text, "  {unmet}");
             }
         } else {
-            let (count, many) = (list.len(), if list.len() == 1 { "assembly" } else { "assemblies" });
+            let (count, many) =
+                (list.len(), if list.len() == 1 { "assembly" } else { "assemblies" });
             let beyond = list.iter().filter(|a| !a.within_limits).count();
             let limits = match beyond {
                 0 => "within limits".to_owned(),
@@ -232,7 +237,8 @@ impl Answer<'_> {
         if m.choices() > 0 {
             headers.push("mode".to_owned());
         }
-        headers.extend(m.task_coordinates().iter().map(|c| text::header(c.name, c.quantity, units)));
+        headers
+            .extend(m.task_coordinates().iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(m.imaginary().iter().map(|j| text::header(&j.name, j.quantity, units)));
         headers.push(String::new());
         let mut table = Table::new(headers);
@@ -263,10 +269,11 @@ impl Answer<'_> {
             Unmet::Section(section) => {
                 format!("{section} section: no pose closes all of its legs at once")
             }
-            Unmet::Contradiction(residual) => format!(
-                "the actuated joints contradict each other: the legs close to no better than \
-                 {residual:.1e} of the size"
+            Unmet::Contradiction(off) if off.is_finite() => format!(
+                "the actuated joints contradict each other: where they do least, one is off by {off:.1e} \
+                 (radians or shares of the mechanism's size)"
             ),
+            Unmet::Contradiction(_) => "the actuated joints contradict each other".to_owned(),
         };
         self.found.unmet.iter().map(line).collect()
     }

@@ -267,9 +267,7 @@ impl Task {
         match (self.lower.kind, self.lower_cut) {
             (SubspaceKind::Planar, Cut::Turn) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
             (SubspaceKind::Planar, _) => planar(unit(q(2)), q(0), q(1)),
-            (SubspaceKind::Spherical, _) => {
-                Displacement::Spherical(tilt(q(0), q(1)))
-            }
+            (SubspaceKind::Spherical, _) => Displacement::Spherical(tilt(q(0), q(1))),
             (SubspaceKind::Cylindrical, Cut::Turn) => cylindrical(0.0, q(0)),
             (SubspaceKind::Cylindrical, _) => cylindrical(q(0), q(1)),
             (SubspaceKind::TranslationalPlane, _) => {

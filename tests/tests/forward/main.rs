@@ -35,11 +35,10 @@ fn unlimited(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
-/// A pose in reach, a mode in which it is, and every joint there.
+/// A pose in reach, a mode in which it is, and the actuated joints there.
 struct Reached {
     pose: Vec<f64>,
     mode: Mode,
-    joints: Vec<f64>,
     actuated: Vec<f64>,
 }
 
@@ -50,7 +49,7 @@ impl Reached {
             return None;
         }
         let actuated = m.actuated().iter().map(|&i| solution.joints[i]).collect();
-        Some(Self { pose, mode, joints: solution.joints, actuated })
+        Some(Self { pose, mode, actuated })
     }
 
     /// At a random pose within `reach` of home, radians and metres, in a random mode.
@@ -107,7 +106,11 @@ fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
         let end = leg.displacement(own);
         let way = (end * m.mechanism().platform - target * m.mechanism().platform).norm();
         // The angle by a root: it has half of the digits. Lengths here are under ten.
-        assert!(end.rotation.angle_to(&target.rotation) < 1e-7 && way < 1e-11, "{} {way:e}", leg.name);
+        assert!(
+            end.rotation.angle_to(&target.rotation) < 1e-7 && way < 1e-11,
+            "{} {way:e}",
+            leg.name
+        );
     }
     let mut solution = m.solution();
     assert!(m.inverse(&a.pose, a.mode, &mut solution).unwrap());
@@ -152,7 +155,8 @@ fn joints_of_a_pose_lead_back_to_it() {
     };
     run(&mut rng, &printed, 4_000);
     for _ in 0..3_000 {
-        let family = PlanoSpherical::random(&mut rng).family(Home::default(), &Signs::random(&mut rng));
+        let family =
+            PlanoSpherical::random(&mut rng).family(Home::default(), &Signs::random(&mut rng));
         let Ok(mechanism) = family.assemble() else { continue };
         // A few of these homes are singular.
         let Ok(m) = Manipulator::new(unlimited(mechanism)) else { continue };
@@ -198,7 +202,8 @@ fn shipped_mechanisms_are_solved() {
         }
         assert!(singular < 400, "{} {singular}", shipped.name);
     }
-    let open: Vec<_> = examples::EXAMPLES.iter().map(|e| e.name).filter(|n| !closed.contains(n)).collect();
+    let open: Vec<_> =
+        examples::EXAMPLES.iter().map(|e| e.name).filter(|n| !closed.contains(n)).collect();
     assert_eq!(open, ["bennett-double-spherical-6r", "translational-planar-4dof"]);
 }
 
@@ -226,9 +231,8 @@ fn none_is_missing() {
             let closure = Closure::new(m.mechanism(), &reached.actuated);
             let numeric = closure.solutions(&mut rng, starts);
             // Screws that turn whole turns further are the same here.
-            let known = |joints: &Vec<f64>| {
-                found.list.iter().any(|a| closure.same(joints, &a.joints))
-            };
+            let known =
+                |joints: &Vec<f64>| found.list.iter().any(|a| closure.same(joints, &a.joints));
             for joints in &numeric {
                 assert!(known(joints), "{name} {:?}: missing {joints:?}", reached.actuated);
             }

@@ -96,7 +96,10 @@ fn a_failure_says_why() {
     let error = m.forward_near(&[1.0, 0.0, 0.0, 0.0], &home, m.home_mode());
     let error = error.expect_err("an assembly");
     let NearError::NotFound(not_found) = error else { panic!("{error}") };
-    assert!(matches!(not_found.why, Stop::OutOfReach(_) | Stop::Stalled | Stop::Steps), "{not_found}");
+    assert!(
+        matches!(not_found.why, Stop::OutOfReach(_) | Stop::Stalled | Stop::Steps),
+        "{not_found}"
+    );
     assert!(not_found.off > 0.01 && not_found.off.is_finite(), "{not_found}");
     // A start out of reach.
     let mut far = home.clone();
@@ -111,24 +114,4 @@ fn a_failure_says_why() {
     assert!(matches!(error, NearError::Joints(_)), "{error}");
     let error = m.forward_near(&[0.0; 4], &home[1..], m.home_mode()).unwrap_err();
     assert!(matches!(error, NearError::Start(_)), "{error}");
-}
-
-/// The error is squared with each step: from a tenth of a radian, a handful of steps.
-#[test]
-fn it_is_quadratic() {
-    let m = example("translational-planar-4dof");
-    let mut rng = Rng::with_seed(22);
-    let mut worst: f64 = 0.0;
-    for _ in 0..50 {
-        let Some(reached) = Reached::at(
-            &m,
-            m.task().home().iter().map(|q| q + 0.02 * (2.0 * rng.f64() - 1.0)).collect(),
-            m.home_mode(),
-        ) else {
-            continue;
-        };
-        let assembly = m.forward_near(&reached.actuated, &m.task().home(), m.home_mode()).unwrap();
-        worst = worst.max(apart(&m, &assembly.pose, &reached.pose));
-    }
-    assert!(worst < 1e-10, "{worst:e}");
 }

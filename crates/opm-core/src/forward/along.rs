@@ -113,7 +113,11 @@ fn turning(z: Complex<f64>, constant: f64, scale: f64, gap: impl FnOnce() -> Gap
     let square = z.norm_sqr();
     if square <= VERGE * VERGE * scale * scale {
         // The arm has no length, or swings about the circle's centre.
-        return if constant.abs() <= VERGE * scale { Meeting::Anywhere } else { Meeting::Never(gap()) };
+        return if constant.abs() <= VERGE * scale {
+            Meeting::Anywhere
+        } else {
+            Meeting::Never(gap())
+        };
     }
     let root = square - constant * constant;
     if root < -2.0 * VERGE * square.max(scale * square.sqrt()) {

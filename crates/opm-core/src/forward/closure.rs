@@ -21,9 +21,17 @@ pub struct Closure {
 /// One joint, and its values at home.
 #[derive(Clone, Debug)]
 enum Motion {
-    Screw { screw: Screw, home: f64, actuated: bool },
+    Screw {
+        screw: Screw,
+        home: f64,
+        actuated: bool,
+    },
     /// A rotation vector about a point.
-    Ball { point: Vector3<f64>, home: Vector3<f64>, actuated: bool },
+    Ball {
+        point: Vector3<f64>,
+        home: Vector3<f64>,
+        actuated: bool,
+    },
 }
 
 impl Motion {
@@ -59,9 +67,13 @@ impl Closure {
                         let home = Vector3::from_fn(|i, _| c[i].home);
                         motions.push(Motion::Ball { point: joint.point.coords, home, actuated });
                     } else {
-                        motions.extend(joint.screws().into_iter().zip(c).map(|(screw, c)| {
-                            Motion::Screw { screw, home: c.home, actuated }
-                        }));
+                        motions.extend(
+                            joint.screws().into_iter().zip(c).map(|(screw, c)| Motion::Screw {
+                                screw,
+                                home: c.home,
+                                actuated,
+                            }),
+                        );
                     }
                 }
                 motions
@@ -112,7 +124,7 @@ impl Closure {
                 first += values;
             }
             let after = self.residual(&tried, target);
-            if !(after < residual) {
+            if after.is_nan() || after >= residual {
                 break;
             }
             residual = after;
@@ -130,7 +142,8 @@ impl Closure {
         // Lengths over the size, about the platform's point.
         let about = Translation3::from(-(target * self.platform).coords);
         let unit = |screw: Screw| {
-            let moved = screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
+            let moved =
+                screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
             Screw { linear: moved.linear / self.size, ..moved }.to_vector()
         };
         for motion in leg {

@@ -76,12 +76,15 @@ impl Plan {
         let ball = |section: &CompiledSection, held: &[usize]| {
             matches!(section.chain, Chain::Ball(_)) && !held.is_empty()
         };
-        if legs.iter().zip(&held).any(|(leg, held)| {
-            ball(&leg.lower, &held.lower) || ball(&leg.upper, &held.upper)
-        }) {
+        if legs
+            .iter()
+            .zip(&held)
+            .any(|(leg, held)| ball(&leg.lower, &held.lower) || ball(&leg.upper, &held.upper))
+        {
             return Err(NoClosedForm::Ball);
         }
-        if [Section::Lower, Section::Upper].iter().any(|section| loses_turns(*section, legs, &held)) {
+        if [Section::Lower, Section::Upper].iter().any(|section| loses_turns(*section, legs, &held))
+        {
             return Err(NoClosedForm::Turns);
         }
         if adds_up(task.lower.kind) && adds_up(task.upper.kind) {
@@ -169,7 +172,9 @@ const LEVEL: f64 = 1e-12;
 
 fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> {
     let slot = match leg.cut {
-        Section::Upper if held.lower.len() == 2 => (0..3).find(|slot| !held.lower.contains(slot))?,
+        Section::Upper if held.lower.len() == 2 => {
+            (0..3).find(|slot| !held.lower.contains(slot))?
+        }
         Section::Lower if held.lower.len() == 1 => held.lower[0],
         _ => return None,
     };

@@ -76,9 +76,10 @@ impl Group for PlanarDisplacement {
                 let slope = Vector3::new(dot(QUARTER * normal, z), -normal.re, -normal.im);
                 (dot(normal, z) - offset, slope)
             }
-            Condition::Heading { rotation } => {
-                ((rotation.conj() * self.rotation).im, Vector3::new(dot(rotation, self.rotation), 0.0, 0.0))
-            }
+            Condition::Heading { rotation } => (
+                (rotation.conj() * self.rotation).im,
+                Vector3::new(dot(rotation, self.rotation), 0.0, 0.0),
+            ),
             Condition::Cone { .. } | Condition::Flat { .. } => unreachable!("not of the plane"),
         }
     }
@@ -200,8 +201,7 @@ fn on_circle(
             theta(2.0 * radius * c.conj());
             let z = 2.0 * c.conj() * d;
             let mixed = 2.0 * radius * d;
-            bilinear[(0, 0)] =
-                c.norm_sqr() + radius * radius + d.norm_sqr() - reach * reach;
+            bilinear[(0, 0)] = c.norm_sqr() + radius * radius + d.norm_sqr() - reach * reach;
             bilinear[(0, 1)] = z.re;
             bilinear[(0, 2)] = -z.im;
             // Re(d e(φ − θ))
@@ -278,7 +278,8 @@ fn torus<G: Group>(
 /// The turns that satisfy two equations `a cos φ + b sin φ + c = 0`, of which one is a consequence of the
 /// other at the most.
 fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 2] {
-    let clear = |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
+    let clear =
+        |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
     let better = usize::from(clear(1) > clear(0));
     let [a, b, c] = equations[better];
     let square = a * a + b * b;
@@ -309,11 +310,7 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
         Condition::CarriedLine { point, normal, offset } => {
             // (e normal) · (point − t) = offset
             let z = normal * point.conj();
-            [
-                [0.0, -normal.re, normal.im],
-                [0.0, -normal.im, -normal.re],
-                [-offset, z.re, -z.im],
-            ]
+            [[0.0, -normal.re, normal.im], [0.0, -normal.im, -normal.re], [-offset, z.re, -z.im]]
         }
         Condition::Heading { rotation } => [[0.0; 3], [0.0; 3], [0.0, -rotation.im, rotation.re]],
         Condition::Circle { .. } | Condition::Cone { .. } | Condition::Flat { .. } => {
@@ -359,12 +356,14 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     for _ in 0..POLISH {
         let Some(inverse) = derivative.try_inverse() else { break };
         let step = -(inverse * miss);
-        if !(step.amax() < LONGEST_STEP) {
+        let length = step.amax();
+        if length.is_nan() || length > LONGEST_STEP {
             break;
         }
         let next = here.moved(&step);
         let (after, slope) = evaluate(&next);
-        if !(after.norm() < miss.norm()) {
+        let closer = after.norm() < miss.norm();
+        if !closer {
             break;
         }
         (here, miss, derivative) = (next, after, slope);

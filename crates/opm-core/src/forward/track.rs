@@ -26,7 +26,9 @@ impl Track {
             Condition::Circle { centre, radius, .. } => Some(Self::Circle { centre, radius }),
             Condition::Line { normal, offset, .. } => Some(Self::Line { normal, offset }),
             Condition::Cone { fixed, cosine, .. } => Some(Self::Cone { axis: fixed, cosine }),
-            Condition::CarriedLine { .. } | Condition::Heading { .. } | Condition::Flat { .. } => None,
+            Condition::CarriedLine { .. } | Condition::Heading { .. } | Condition::Flat { .. } => {
+                None
+            }
         }
     }
 
@@ -55,7 +57,8 @@ impl Track {
             Chain::Spherical(chain) => {
                 let axes = chain.axes();
                 let held = |range: std::ops::Range<usize>| {
-                    range.fold(Matrix3::identity(), |g, i| g * rotation(&axes[i], amounts[i].turn()))
+                    range
+                        .fold(Matrix3::identity(), |g, i| g * rotation(&axes[i], amounts[i].turn()))
                 };
                 let axis = held(free + 1..3) * Vector3::z();
                 let cosine = axes[free].dot(&axis);
@@ -68,10 +71,7 @@ impl Track {
     /// Displacements that bring the axis to where two tracks meet: at most two.
     pub fn meetings(&self, other: &Self, size: f64) -> Option<Vec<Displacement>> {
         match (self, other) {
-            (
-                Self::Circle { centre: c, radius: a },
-                Self::Circle { centre: d, radius: b },
-            ) => {
+            (Self::Circle { centre: c, radius: a }, Self::Circle { centre: d, radius: b }) => {
                 // On the radical axis, which is square to the line of the centres.
                 let apart = d - c;
                 let square = apart.norm_sqr();

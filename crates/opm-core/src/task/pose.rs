@@ -107,7 +107,10 @@ impl Task {
     /// The way along the shared direction that `b` has beyond its coordinates.
     fn advanced(&self, b: &Displacement) -> Amount {
         Amount::Value(match (b, self.upper_cut) {
-            (Displacement::Planar(PlanarDisplacement { translation: t, .. }), Cut::Slide(along))
+            (
+                Displacement::Planar(PlanarDisplacement { translation: t, .. }),
+                Cut::Slide(along),
+            )
             | (Displacement::Translational(t), Cut::Slide(along)) => {
                 t.re * along.re + t.im * along.im
             }
@@ -138,16 +141,11 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let extra = 0.5 * (sum - home[0] - up * home[2]);
         return [home[0] + extra, xi, home[2] + up * extra];
     }
-    let plain = [
-        r[(1, 2)].atan2(r[(0, 2)]),
-        sine.atan2(r[(2, 2)]),
-        r[(2, 1)].atan2(-r[(2, 0)]),
-    ];
+    let plain = [r[(1, 2)].atan2(r[(0, 2)]), sine.atan2(r[(2, 2)]), r[(2, 1)].atan2(-r[(2, 0)])];
     let half = std::f64::consts::PI;
     let other = [plain[0] + half, -plain[1], plain[2] + half];
-    let placed = |angles: [f64; 3]| -> [f64; 3] {
-        std::array::from_fn(|i| near(angles[i], home[i]))
-    };
+    let placed =
+        |angles: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| near(angles[i], home[i])) };
     let distance = |angles: &[f64; 3]| -> f64 {
         angles.iter().zip(&home).map(|(angle, home)| (angle - home) * (angle - home)).sum()
     };

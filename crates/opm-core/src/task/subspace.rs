@@ -29,10 +29,9 @@ impl SubspaceKind {
     /// or a translation.
     pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
         match self {
-            Self::Cylindrical => Displacement::Cylindrical(CylindricalDisplacement {
-                angle: first,
-                advance: second,
-            }),
+            Self::Cylindrical => {
+                Displacement::Cylindrical(CylindricalDisplacement { angle: first, advance: second })
+            }
             _ => Displacement::Translational(Complex::new(first, second)),
         }
     }
