@@ -1,7 +1,7 @@
 //! Every argument of the command line; the doc comments are the help.
 
 use crate::linkage::InputValue;
-use crate::pose::{GridAxis, Pose};
+use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -31,6 +31,7 @@ Examples:
   opm examples                                         what comes with opm
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
+  opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
@@ -62,6 +63,7 @@ pub enum Format {
 pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
+    Velocity(VelocityArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Workspace(WorkspaceArgs),
@@ -138,6 +140,40 @@ pub struct IkArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
+}
+
+/// Velocities: the rates of every joint for rates of the task coordinates, at a pose
+///
+/// Also the Jacobian of the actuated joints, and how near the pose is to a singularity of each section:
+/// signed measures that are zero at one, with the legs that come nearest. Serial: a leg is stretched,
+/// folded or flat, and its joints have no rates there (null). Parallel: the platform is loose with the
+/// inputs locked; null where the inputs are too few to hold the section at all.
+///
+/// The condition number is that of the actuated joints by the platform's twist, lengths over --length;
+/// null is infinite: a singularity, or fewer actuators than freedoms. Singular Euler angles are none of
+/// it: `coordinates` is zero there. Out of reach is an answer (exit status 0).
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm velocity plano-spherical-5dof --pose x=10mm,xi=15deg --rates zeta=1,x=10mm
+  opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
+  opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
+pub struct VelocityArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The pose, for example x=10mm,xi=15deg; what is not given is at home
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub pose: Pose,
+    /// Rates of the task coordinates a second, for example zeta=1,x=10mm; what is not given is 0
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub rates: Pose,
+    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH")]
+    pub length: Option<Number>,
 }
 
 /// Forward kinematics: every pose that given actuated joints allow
@@ -226,6 +262,9 @@ pub struct LinkageArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
+/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
+/// takes longer, and does not change the grid that is fitted.
+///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
 /// more than one value. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
@@ -235,6 +274,7 @@ Examples:
   opm workspace plano-spherical-5dof -o cloud.mcap --color theta11
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
+  opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
@@ -246,6 +286,12 @@ pub struct WorkspaceArgs {
     /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
+    /// Only poses with a condition number of at most C count, in a mode in which they have it
+    #[arg(long, value_name = "C", value_parser = condition_number)]
+    pub max_condition: Option<f64>,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", requires = "max_condition")]
+    pub length: Option<Number>,
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -261,6 +307,14 @@ pub struct WorkspaceArgs {
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// A condition number to compare with.
+fn condition_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
+        _ => Err(format!("{text:?}, expected a number of at least 1")),
+    }
 }
 
 /// Say what a recording holds

@@ -19,6 +19,7 @@ mod progress;
 mod record;
 mod text;
 mod transform;
+mod velocity;
 mod workspace;
 
 use crate::args::{Args, Command};
@@ -38,6 +39,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
+        Command::Velocity(command) => velocity::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),

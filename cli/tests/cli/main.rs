@@ -9,6 +9,7 @@ mod inspect;
 mod linkage;
 mod run;
 mod small;
+mod velocity;
 mod workspace;
 
 /// The paper's first manipulator, as it is shipped.
