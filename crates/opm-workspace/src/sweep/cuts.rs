@@ -162,10 +162,10 @@ impl WithSimd for Common<'_> {
         }
         for (number, a) in legs.iter().enumerate() {
             for b in legs[..number].iter().filter(|b| a.hole && b.hole) {
-                for i in 0..count {
-                    // What two holes both take was taken twice.
+                // What two holes both take was taken twice.
+                for (i, row) in rows.iter_mut().enumerate().take(count) {
                     let first = larger(a.hole_first[i], b.hole_first[i]);
-                    rows[i] += larger(smaller(a.hole_last[i], b.hole_last[i]) - first + 1.0, 0.0);
+                    *row += larger(smaller(a.hole_last[i], b.hole_last[i]) - first + 1.0, 0.0);
                 }
             }
         }
