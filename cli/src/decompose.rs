@@ -5,7 +5,7 @@ use crate::failure::{Failure, chain};
 use crate::load::{self, Loaded};
 use crate::text::{self, Table, short};
 use nalgebra::{Point3, Vector3};
-use opm_core::decomposition::{Decomposition, Freedom, decompose};
+use opm_core::decomposition::{Decomposition, Freedom, MAX_DECOMPOSITIONS, decompose};
 use opm_core::joint::Quantity;
 use opm_core::leg::Leg;
 use opm_core::manipulator::{CompileError, Manipulator};
@@ -28,8 +28,10 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let mechanism = &loaded.file.mechanism;
     let mobility = mobility(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
-    let decompositions =
-        decompose(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
+    let decompositions = decompose(mechanism).map_err(|error| {
+        let place = loaded.place_of(&CompileError::Decompose(error.clone()));
+        Failure::at(place, &error)
+    })?;
     let ways: Vec<Way<'_>> =
         decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
     let compiled = Manipulator::new(mechanism.clone());
@@ -212,7 +214,8 @@ impl Report<'_> {
             line(&self.inverse_kinematics(manipulator));
         }
         if self.ways.len() > 1 {
-            line(&format_args!("\nalternatives: {}", self.ways.len() - 1));
+            let more = if self.ways.len() == MAX_DECOMPOSITIONS { " or more" } else { "" };
+            line(&format_args!("\nalternatives: {}{more}", self.ways.len() - 1));
             for (number, way) in self.ways.iter().enumerate().skip(1).take(LISTED) {
                 line(&format_args!("  {number}. {}", way.summary()));
             }

@@ -21,20 +21,6 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = loaded.compile()?;
     let actuated = joints(&args.joints, &manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
-    for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
-        let (c, limits) =
-            (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
-        if let Some(range) = c.limits.filter(|_| !limits.admits(Amount::Value(value - c.home))) {
-            let units = loaded.file.units;
-            output.note(format_args!(
-                "{} = {} is beyond its limits, {} {}",
-                c.name,
-                units.show(value, c.quantity),
-                text::range(range, c.quantity, units),
-                units.symbol(c.quantity)
-            ));
-        }
-    }
     let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
     let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
         (None, Ok(())) => {
@@ -77,6 +63,20 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
         }
     };
+    for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
+        let (c, limits) =
+            (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
+        if let Some(range) = c.limits.filter(|_| !limits.admits(Amount::Value(value - c.home))) {
+            let units = loaded.file.units;
+            output.note(format_args!(
+                "{} = {} is beyond its limits, {} {}",
+                c.name,
+                units.show(value, c.quantity),
+                text::range(range, c.quantity, units),
+                units.symbol(c.quantity)
+            ));
+        }
+    }
     let answer =
         Answer { loaded: &loaded, manipulator: &manipulator, actuated, found, only, method };
     output.print(&answer.json(), answer.text())
@@ -269,10 +269,11 @@ impl Answer<'_> {
             Unmet::Section(section) => {
                 format!("{section} section: no pose closes all of its legs at once")
             }
-            Unmet::Contradiction(residual) => format!(
-                "the actuated joints contradict each other: the legs close to no better than \
-                 {residual:.1e} of the size"
+            Unmet::Contradiction(off) if off.is_finite() => format!(
+                "the actuated joints contradict each other: where they do least, one is off by {off:.1e} \
+                 (radians or shares of the mechanism's size)"
             ),
+            Unmet::Contradiction(_) => "the actuated joints contradict each other".to_owned(),
         };
         self.found.unmet.iter().map(line).collect()
     }

@@ -1,10 +1,12 @@
 //! Mechanism files, by path or by the name of a shipped example.
 
 use crate::failure::{Failure, chain};
+use opm_core::decomposition::DecomposeError;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::{self, MechanismFile};
+use opm_core::task::{OddJoint, TaskError};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -79,7 +81,12 @@ impl Loaded {
     pub fn place_of(&self, error: &CompileError) -> String {
         let (file, places) = (&self.file, &self.file.places);
         let place = match error {
-            CompileError::Leg { leg, .. } => {
+            CompileError::Leg { leg, .. }
+            | CompileError::Decompose(DecomposeError::NoPartialSubspaces {
+                odd: Some([leg, _]),
+                ..
+            })
+            | CompileError::Task(TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }) => {
                 let number = file.mechanism.legs.iter().position(|known| known.name == *leg);
                 number.and_then(|number| places.legs.get(number)).copied()
             }

@@ -6,10 +6,13 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod error;
+mod forward;
 mod interrupt;
 mod manipulator;
+mod rows;
 mod solutions;
 mod sweep;
+mod velocity;
 
 use pyo3::prelude::*;
 
@@ -18,11 +21,15 @@ mod _native {
     #[pymodule_export]
     use crate::error::OpmError;
     #[pymodule_export]
+    use crate::forward::Assembly;
+    #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
     use crate::solutions::Solutions;
     #[pymodule_export]
     use crate::sweep::{Sweep, sweep};
+    #[pymodule_export]
+    use crate::velocity::{Motion, Singularity};
     use pyo3::prelude::*;
 
     #[pymodule_init]

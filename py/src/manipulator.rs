@@ -1,23 +1,18 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
 use crate::error::{failed, wrong};
-use crate::interrupt;
+use crate::rows::{Rows, Tables};
 use crate::solutions::Solutions;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use opm_core::joint::Quantity;
-use opm_core::manipulator::{self as core, Mode, PoseError};
+use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::{examples as shipped, file};
 use opm_core::subspace::SubspaceClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Poses that a thread solves between two looks at whether it is to stop.
-const BLOCK: usize = 1024;
 
 /// A mechanism, decomposed and compiled for closed-form inverse kinematics. Immutable.
 #[pyclass(frozen, module = "opm_kinematics")]
@@ -184,34 +179,25 @@ impl Manipulator {
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
         let mode = self.mode(mode)?;
-        let poses = poses.as_array();
-        let width = self.inner.task_coordinates().len();
-        if poses.ncols() != width {
-            let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
-            let (given, names) = (poses.ncols(), names.join(", "));
-            return Err(wrong(format!("{given} columns of poses, expected {width}: {names}")));
-        }
-        // Not contiguous in memory, it is copied.
-        let poses = poses.as_standard_layout();
-        let flat = poses.as_slice().unwrap_or_default();
-        let mut out = Numbers::new(&self.inner, poses.nrows());
-        if poses.nrows() <= BLOCK {
-            let solved = out.blocks().try_for_each(|block| block.solve(&self.inner, flat, mode));
-            solved.map_err(|error| failed(&error))?;
-        } else {
-            let stop = AtomicBool::new(false);
-            let (out, manipulator) = (&mut out, &*self.inner);
-            let work = || {
-                let blocks: Vec<_> = out.blocks().collect();
-                blocks.into_par_iter().try_for_each(|block| match stop.load(Ordering::Relaxed) {
-                    true => Ok(()),
-                    false => block.solve(manipulator, flat, mode),
-                })
-            };
-            let solved = interrupt::run(py, threads, work, || stop.store(true, Ordering::Relaxed))?;
-            solved.map_err(|error| failed(&error))?;
-        }
-        out.into_solutions(py, &self.inner, mode)
+        let poses = self.poses(&poses)?;
+        let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
+        let mut tables = Tables::fill(
+            py,
+            poses.count,
+            widths,
+            threads,
+            || self.inner.solution(),
+            |solution, row, [joints, imaginary]| {
+                let reached = self.inner.inverse(poses.row(row), mode, solution);
+                if !reached.map_err(|error| error.to_string())? {
+                    return Ok([false; 2]);
+                }
+                joints.copy_from_slice(&solution.joints);
+                imaginary.copy_from_slice(&solution.imaginary);
+                Ok([true, solution.within_limits])
+            },
+        )?;
+        Solutions::new(py, &self.inner, mode, &mut tables)
     }
 
     fn __repr__(&self) -> String {
@@ -229,96 +215,17 @@ impl Manipulator {
 }
 
 impl Manipulator {
+    /// An array of poses, checked.
+    pub fn poses(&self, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Rows> {
+        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
+        Rows::new(array, "poses", &names)
+    }
+
     /// The working mode that `mode` names.
     pub fn mode(&self, mode: &str) -> PyResult<Mode> {
         match mode {
             "home" => Ok(self.inner.home_mode()),
             signs => self.inner.parse_mode(signs).map_err(|error| failed(&error)),
         }
-    }
-}
-
-/// Joint values of many poses, row by row; NaN where a pose is out of reach.
-struct Numbers {
-    joints: Vec<f64>,
-    imaginary: Vec<f64>,
-    reachable: Vec<bool>,
-    within_limits: Vec<bool>,
-    widths: [usize; 2],
-}
-
-/// Some rows of them.
-struct Block<'a> {
-    first: usize,
-    joints: &'a mut [f64],
-    imaginary: &'a mut [f64],
-    reachable: &'a mut [bool],
-    within_limits: &'a mut [bool],
-}
-
-impl Numbers {
-    fn new(manipulator: &core::Manipulator, poses: usize) -> Self {
-        let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
-        Self {
-            joints: vec![f64::NAN; poses * widths[0]],
-            imaginary: vec![f64::NAN; poses * widths[1]],
-            reachable: vec![false; poses],
-            within_limits: vec![false; poses],
-            widths,
-        }
-    }
-
-    fn blocks(&mut self) -> impl Iterator<Item = Block<'_>> {
-        let [joints, imaginary] = self.widths;
-        // A width of zero has no rows to give out.
-        let mut imaginary_rows = self.imaginary.chunks_mut(BLOCK * imaginary.max(1));
-        self.joints
-            .chunks_mut(BLOCK * joints)
-            .zip(self.reachable.chunks_mut(BLOCK))
-            .zip(self.within_limits.chunks_mut(BLOCK))
-            .enumerate()
-            .map(move |(number, ((joints, reachable), within_limits))| Block {
-                first: number * BLOCK,
-                joints,
-                imaginary: imaginary_rows.next().unwrap_or_default(),
-                reachable,
-                within_limits,
-            })
-    }
-
-    fn into_solutions(
-        self,
-        py: Python<'_>,
-        manipulator: &core::Manipulator,
-        mode: Mode,
-    ) -> PyResult<Solutions> {
-        let Self { joints, imaginary, reachable, within_limits, widths } = self;
-        let rows = reachable.len();
-        let joints = Solutions::table(py, joints, [rows, widths[0]])?;
-        let imaginary = Solutions::table(py, imaginary, [rows, widths[1]])?;
-        Solutions::new(py, manipulator, mode, (joints, imaginary), (reachable, within_limits))
-    }
-}
-
-impl Block<'_> {
-    fn solve(
-        self,
-        manipulator: &core::Manipulator,
-        poses: &[f64],
-        mode: Mode,
-    ) -> Result<(), PoseError> {
-        let width = manipulator.task_coordinates().len();
-        let mut solution = manipulator.solution();
-        let (joints, imaginary) = (solution.joints.len(), solution.imaginary.len());
-        for row in 0..self.reachable.len() {
-            let pose = &poses[(self.first + row) * width..][..width];
-            if manipulator.inverse(pose, mode, &mut solution)? {
-                self.joints[row * joints..][..joints].copy_from_slice(&solution.joints);
-                self.imaginary[row * imaginary..][..imaginary].copy_from_slice(&solution.imaginary);
-                self.reachable[row] = true;
-                self.within_limits[row] = solution.within_limits;
-            }
-        }
-        Ok(())
     }
 }

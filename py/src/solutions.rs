@@ -1,6 +1,7 @@
 //! What inverse kinematics finds for many poses, as arrays.
 
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use crate::rows::Tables;
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use opm_core::manipulator::{Manipulator, Mode};
 use pyo3::prelude::*;
 
@@ -25,26 +26,18 @@ pub struct Solutions {
 }
 
 impl Solutions {
-    /// Numbers as a table, which takes them over.
-    pub fn table(
-        py: Python<'_>,
-        numbers: Vec<f64>,
-        shape: [usize; 2],
-    ) -> PyResult<Py<PyArray2<f64>>> {
-        Ok(numbers.into_pyarray(py).reshape(shape)?.unbind())
-    }
-
     pub fn new(
         py: Python<'_>,
         manipulator: &Manipulator,
         mode: Mode,
-        (joints, imaginary): (Py<PyArray2<f64>>, Py<PyArray2<f64>>),
-        (reachable, within_limits): (Vec<bool>, Vec<bool>),
+        tables: &mut Tables<2>,
     ) -> PyResult<Self> {
+        let [reachable, within_limits] = std::mem::take(&mut tables.answers);
+        let rows = reachable.len();
         Ok(Self {
-            joints,
-            imaginary,
-            rows: reachable.len(),
+            joints: tables.take(py, 0)?.unbind(),
+            imaginary: tables.take(py, 1)?.unbind(),
+            rows,
             reachable: reachable.into_pyarray(py).unbind(),
             within_limits: within_limits.into_pyarray(py).unbind(),
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),

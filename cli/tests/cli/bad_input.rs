@@ -1,7 +1,7 @@
 //! Every kind of wrong use: the exit status, and a message that names the flag or the place.
 
-use crate::PLANO;
 use crate::run::{Folder, command, opm};
+use crate::{HELICAL, PLANO};
 use std::fs;
 
 #[test]
@@ -122,6 +122,90 @@ fn every_problem_of_a_file_has_its_line() {
     }
     let arm = text.lines().position(|line| line.starts_with("b1")).unwrap() + 1;
     assert!(lines.iter().any(|line| line.starts_with(&format!("{prefix}{arm}:"))));
+}
+
+/// The shipped list of joints with one leg spoilt in turn: which leg, where it is in the file, and why.
+#[test]
+fn legs_that_cannot_be_solved_are_named() {
+    let folder = Folder::new();
+    let shipped = opm(&["examples", "plano-spherical-5dof-joints"]).text().to_owned();
+    let line = |name: &str| {
+        let mark = format!("name = \"{name}\"");
+        shipped.lines().find(|line| line.contains(&mark)).unwrap().to_owned()
+    };
+    let (planar, spherical, slider) = (line("phi21"), line("theta21"), line("S1"));
+    // Without its values at home, which would no longer fit another type.
+    let typed = |line: &str, kind: &str, more: &str| {
+        let (head, _) = line.split_once(", home").unwrap();
+        let from = if line.contains("revolute") { "revolute" } else { "prismatic" };
+        format!("{}{more} }},", head.replace(from, kind).replace(", actuated = true", ""))
+    };
+    let another = |line: &str, from: &str, to: &str| {
+        let copy = line.replace("name = \"", "name = \"extra ").replacen(from, to, 1);
+        format!("{line}\n{}", copy.replacen(" },", ", actuated = true },", 1))
+    };
+    let leg = "leg1: ";
+    for (from, to, parts) in [
+        (
+            &planar,
+            another(&planar, "point = [", "point = [1"),
+            &[leg, "4 freedoms in its lower"][..],
+        ),
+        (&spherical, another(&spherical, "axis = [0", "axis = [1"), &[leg, "3 in its upper"]),
+        (&planar, String::new(), &[leg, "2 freedoms in its lower section and 2 in its upper one"]),
+        (
+            &spherical,
+            typed(&spherical, "revolute", "")
+                .replace("axis = [0.1", "axis = [0, 0, 1], axis2 = [0.1"),
+            &["unknown key `axis2`"],
+        ),
+        (
+            &planar,
+            typed(&planar, "helical", ", pitch = 20"),
+            &["lower section moves in a schoenflies", "without joint phi21 of leg leg1", "planar"],
+        ),
+        (
+            &planar,
+            typed(&planar, "cylindrical", ""),
+            &["no closed-form chains; without joint phi21 of leg leg1 it would be planar"],
+        ),
+        (
+            &spherical,
+            typed(&spherical, "prismatic", ""),
+            &["no closed-form chains; without joint theta21 of leg leg1 it would be planar"],
+        ),
+        (
+            &planar,
+            typed(&planar, "universal", ", axis2 = [0, 1, 0]"),
+            &["no partial subspaces", "without joint phi21 of leg leg1 it would have some"],
+        ),
+        (
+            &slider,
+            typed(&slider, "cylindrical", ", actuated = true"),
+            &["no partial subspaces", "without joint S1 of leg leg1 it would have some"],
+        ),
+        (&planar, planar.replace("phi21", "psi"), &["\"psi\" is the name of a task coordinate"]),
+        (&planar, planar.replace("phi21", "tau.leg2"), &["that leg's imaginary joint"]),
+    ] {
+        assert!(shipped.contains(&**from));
+        let file = folder.write("bad.toml", shipped.replacen(&**from, &to, 1));
+        let run = opm(&["ik", &file, "--pose", ""]);
+        run.fails(1, parts);
+        // In the first leg, which is the file's first.
+        let place = run.stderr.split_once("bad.toml:").unwrap().1;
+        let number: usize = place.split(':').next().unwrap().parse().unwrap();
+        assert!((14..24).contains(&number), "{}", run.stderr);
+    }
+    // More freedoms than motors: what is loose is told.
+    let extra = planar.replace("phi21", "extra").replace("point = [", "point = [1");
+    let loose = shipped.replacen(&*planar, &format!("{planar}\n{extra}"), 1);
+    let file = folder.write("loose.toml", loose);
+    opm(&["ik", &file, "--pose", ""]).fails_with_one_line(1, &["5 of mobility N = 6", "free: rot"]);
+    let run = opm(&["ik", HELICAL, "--pose", "", "--mode", "+"]);
+    run.fails_with_one_line(
+        2,
+        &["--mode", "1 sign for 0 choices", "no choices, and one working mode"],
+    );
 }
 
 #[test]

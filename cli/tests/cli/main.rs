@@ -3,6 +3,7 @@
 mod bad_input;
 mod batch;
 mod decompose;
+mod fk;
 mod ik;
 mod inspect;
 mod linkage;

@@ -56,6 +56,7 @@ fn help_and_version_go_to_standard_output() {
     for command in [
         "decompose",
         "ik",
+        "fk",
         "velocity",
         "linkage",
         "workspace",
@@ -73,7 +74,7 @@ fn help_and_version_go_to_standard_output() {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "velocity", "linkage", "workspace", "examples"] {
+    for command in ["decompose", "ik", "fk", "velocity", "linkage", "workspace", "examples"] {
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());

@@ -177,7 +177,7 @@ fn wrong_usage_names_the_flag() {
         (&["--rates", "phi=nan"], &["--rates", "not a number"]),
         (&["--rates", "phi=1e200"], &["--rates", "phi is 1e200", "1e75"]),
         (&["--pose", "x=1e200"], &["--pose", "x is 1e200"]),
-        (&["--mode", "+"], &["--mode", "1 signs for 0"]),
+        (&["--mode", "+"], &["--mode", "1 sign for 0"]),
         (&["--length", "0"], &["--length", "0.0 m", "positive"]),
         (&["--length=-1mm"], &["--length", "positive"]),
         (&["--length", "1deg"], &["--length", "unit of an angle"]),

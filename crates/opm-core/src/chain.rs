@@ -91,6 +91,16 @@ impl Amount {
         }
     }
 
+    /// One after the other.
+    #[inline]
+    #[must_use]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Value(a), Self::Value(b)) => Self::Value(a + b),
+            _ => Self::Turn(self.turn() * other.turn()),
+        }
+    }
+
     /// The opposite displacement.
     #[inline]
     #[must_use]

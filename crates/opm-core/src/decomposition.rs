@@ -19,7 +19,7 @@ pub(crate) mod samples;
 use crate::leg::Leg;
 use crate::mechanism::Mechanism;
 use crate::mobility::{HomeSingularity, MobilityError, frame, mobility};
-use crate::subspace::{Fit, Frame, SubspaceClass, fit};
+use crate::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use nalgebra::Vector6;
 use search::Cut;
 use std::cmp::Reverse;
@@ -119,13 +119,18 @@ pub enum DecomposeError {
     /// No split of the legs gives two groups that meet in one dimension.
     #[error(
         "no partial subspaces: no split of the legs (lambda = {lambda}, mobility N = {mobility}) \
-         gives two subgroups that are smaller than lambda and meet in one dimension"
+         gives two subgroups that are smaller than lambda and meet in one dimension{}",
+        odd.as_ref().map(|[leg, joint]| format!(
+            "; without joint {joint} of leg {leg} it would have some"
+        )).unwrap_or_default()
     )]
     NoPartialSubspaces {
         /// Rank of all joint screws.
         lambda: usize,
         /// `N`.
         mobility: usize,
+        /// Leg and joint that alone keep it from having some, if one does.
+        odd: Option<[String; 2]>,
     },
 }
 
@@ -160,14 +165,40 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
     }
     let mut found = search(mechanism, lambda, mobility).0;
     if found.is_empty() {
-        return Err(DecomposeError::NoPartialSubspaces { lambda, mobility });
+        let odd = odd_joint(mechanism, mobility);
+        return Err(DecomposeError::NoPartialSubspaces { lambda, mobility, odd });
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));
     Ok(found)
 }
 
+/// The one joint of which it takes no more than to leave it out for there to be partial subspaces.
+fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<[String; 2]> {
+    let frame = frame(mechanism);
+    let mut odd = None;
+    for (number, leg) in mechanism.legs.iter().enumerate().filter(|(_, leg)| leg.joints.len() > 1) {
+        for joint in 0..leg.joints.len() {
+            let mut others = mechanism.clone();
+            let left_out = others.legs[number].joints.remove(joint).name;
+            let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
+            let lambda = MotionSubspace::span(frame, &screws).dimension();
+            if !search(&others, lambda, mobility).0.is_empty() {
+                if odd.is_some() {
+                    return None;
+                }
+                odd = Some([leg.name.clone(), left_out]);
+            }
+        }
+    }
+    odd
+}
+
 /// Decompositions listed at most: a joint along the intersection motion can go to either section,
 /// in every leg, so that their number can grow with a power of the number of legs.
+///
+/// Where there are more, those that were found first are listed, in order of preference among
+/// themselves. The search cuts every leg as near to the platform as it can first, which is what the
+/// preferred ones have in common, but not all that counts.
 pub const MAX_DECOMPOSITIONS: usize = 1024;
 
 /// All decompositions, and how many partial splits were looked at.

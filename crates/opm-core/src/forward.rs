@@ -107,8 +107,8 @@ pub enum Unmet {
     Legs([usize; 2]),
     /// The legs close one by one, but not all at once with one platform.
     Section(Section),
-    /// There are more actuated joints than freedoms, and they contradict each other: the residual of the
-    /// least contradiction.
+    /// There are more actuated joints than freedoms, and they contradict each other: where that is least, one
+    /// is off by so much, radians or shares of the size (infinite where a leg does not even reach).
     Contradiction(f64),
 }
 
@@ -176,7 +176,7 @@ impl Manipulator {
             turns: amounts.iter().map(|&amount| unit(amount)).collect(),
             solution: self.solution(),
             out: Assemblies::default(),
-            least: f64::INFINITY,
+            least: None,
             upper_failed: false,
             gaps: vec![None; self.legs.len()],
         };
@@ -251,8 +251,8 @@ struct Search<'a> {
     /// A buffer.
     solution: Solution,
     out: Assemblies,
-    /// The smallest residual of what was not accepted.
-    least: f64,
+    /// Of the poses that were not accepted, the least by which a joint or a leg is off.
+    least: Option<f64>,
     /// A combination of lower sections that the upper one does not close.
     upper_failed: bool,
     /// Of each leg, by how little it failed.
@@ -379,11 +379,14 @@ impl Search<'_> {
 
     /// With `v` known: every combination of the legs' τ.
     fn with_lower(&mut self, v: &Displacement, known: &[Option<Amount>]) {
+        // As the pose has it: then what is within half a turn here is so there.
+        let (v, turned) = self.manipulator.task().without_turn(v);
+        let v = &v;
         let mut options: Vec<[Option<Amount>; 2]> = Vec::with_capacity(known.len());
         let mut closes = true;
         for (leg, known) in known.iter().enumerate() {
             options.push(match known {
-                Some(_) => [*known, None],
+                Some(tau) => [Some(turned.plus(*tau)), None],
                 None => match self.taus(leg, v) {
                     Taus::These(taus) => taus,
                     Taus::Free => [None; 2],
@@ -567,8 +570,9 @@ impl Search<'_> {
         let target = m.task().isometry(&v, &b);
         let mut ways: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
-            let ways_of_leg = self.ways(leg, [&v, &b]);
+            let (ways_of_leg, off) = self.ways(leg, [&v, &b]);
             if ways_of_leg.is_empty() {
+                self.dismiss(off);
                 return;
             }
             ways.push(ways_of_leg);
@@ -588,9 +592,15 @@ impl Search<'_> {
         }
     }
 
-    /// A leg's solutions at a pose that have the actuated joints where they are.
-    fn ways(&self, leg: usize, pose: [&Displacement; 2]) -> Vec<(Mode, LegSolution)> {
+    fn dismiss(&mut self, off: f64) {
+        self.least = Some(self.least.map_or(off, |least| least.min(off)));
+    }
+
+    /// A leg's solutions at a pose that have the actuated joints where they are; and by how much the one is
+    /// off that comes nearest to that.
+    fn ways(&self, leg: usize, pose: [&Displacement; 2]) -> (Vec<(Mode, LegSolution)>, f64) {
         let m = self.manipulator;
+        let mut least = f64::INFINITY;
         let compiled = &m.legs[leg];
         let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
         // Most ways already have the lower joints elsewhere: they are dismissed before the rest is solved.
@@ -608,13 +618,16 @@ impl Search<'_> {
                 let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else {
                     continue;
                 };
-                match compiled.solve_lower(m.task(), v, tau, branches.lower) {
-                    Ok(lower) if self.section_off(&compiled.lower, &lower) <= MATCH => {}
-                    _ => continue,
+                let lower = compiled.solve_lower(m.task(), v, tau, branches.lower);
+                let off = lower.map_or(f64::INFINITY, |l| self.section_off(&compiled.lower, &l));
+                if off.is_nan() || off > MATCH {
+                    least = least.min(off);
+                    continue;
                 }
             }
             let Ok(solution) = compiled.solve(m.task(), pose, branches, 0.0) else { continue };
             let off = self.off(leg, &solution);
+            least = least.min(off);
             if off <= MATCH {
                 found.push((mode, solution, off));
             }
@@ -627,7 +640,7 @@ impl Search<'_> {
                 kept.push((mode, solution));
             }
         }
-        kept
+        (kept, least)
     }
 
     /// By how much a leg's solution has its actuated joints elsewhere.
@@ -677,9 +690,21 @@ impl Search<'_> {
     /// Adds the assembly in the buffer, unless it does not close or is there already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        let assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        let mut assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        if assembly.residual > SETTLED && assembly.residual < MATCH {
+            // What the sections have lost on the way, near singularities of theirs, the whole may give back.
+            let actuated = m.actuated().iter().zip(self.amounts);
+            let given: Vec<f64> = actuated.map(|(&c, a)| m.coordinates()[c].home + a).collect();
+            if let Ok(better) = m.forward_near(&given, pose, mode) {
+                let moved = better.joints.iter().zip(&assembly.joints);
+                let near = moved.into_iter().all(|(a, b)| (a - b).abs() < MATCH);
+                if near && better.residual < assembly.residual {
+                    assembly = better;
+                }
+            }
+        }
         if assembly.residual.is_nan() || assembly.residual > RESIDUAL {
-            self.least = self.least.min(assembly.residual);
+            self.dismiss(assembly.residual);
             return;
         }
         let known = |other: &Assembly| {
@@ -701,9 +726,7 @@ impl Search<'_> {
         if self.upper_failed {
             self.out.unmet.push(Unmet::Section(Section::Upper));
         }
-        if self.least.is_finite() {
-            self.out.unmet.push(Unmet::Contradiction(self.least));
-        }
+        self.out.unmet.extend(self.least.map(Unmet::Contradiction));
         if !self.out.list.is_empty() {
             self.out.unmet.clear();
         }

@@ -18,6 +18,13 @@
 //! let reached = manipulator.inverse(&pose, manipulator.home_mode(), &mut solution)?;
 //! assert!(reached && solution.within_limits);
 //! assert!((solution.joints[0] - 0.168806).abs() < 1e-6); // S1
+//!
+//! // The other way round: every pose that these actuated joints allow.
+//! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| solution.joints[i]).collect();
+//! let found = manipulator.forward(&actuated)?;
+//! assert!(found.list.iter().any(|assembly| {
+//!     assembly.pose.iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-9)
+//! }));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

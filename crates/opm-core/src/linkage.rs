@@ -162,7 +162,7 @@ impl Linkage {
             upper: decomposition.upper.name(),
         };
         let task = match Task::new(&mechanism, &decomposition) {
-            Err(TaskError::Subspace(_) | TaskError::Screw) => {
+            Err(TaskError::Subspace { .. } | TaskError::Screw) => {
                 return Err(LinkageError::NotCovered(subspaces));
             }
             task => task?,

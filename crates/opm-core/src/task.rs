@@ -49,11 +49,12 @@ pub use displacement::{Cut, Displacement};
 pub use subspace::{Subspace, SubspaceKind};
 
 use crate::chain::unit;
-use crate::decomposition::Decomposition;
+use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::joint::Quantity;
-use crate::leg::Section;
+use crate::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
-use crate::subspace::{SubspaceClass, TOLERANCE};
+use crate::screw::Screw;
+use crate::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use displacement::{cylindrical, planar};
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::fmt;
@@ -74,8 +75,18 @@ pub struct TaskCoordinate {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TaskError {
     /// A subspace without closed-form chains.
-    #[error("no closed-form chains inside a {0} subspace")]
-    Subspace(&'static str),
+    #[error(
+        "the {section} section moves in a {name} subspace, which has no closed-form chains{}",
+        odd.as_ref().map(OddJoint::to_string).unwrap_or_default()
+    )]
+    Subspace {
+        /// Whose it is.
+        section: Section,
+        /// What it is.
+        name: &'static str,
+        /// The joint that makes it so, if one alone does.
+        odd: Option<OddJoint>,
+    },
     /// The two subspaces meet in a screw motion.
     #[error(
         "the partial subspaces meet in a screw motion, for which there are no closed-form chains"
@@ -118,8 +129,56 @@ impl TaskError {
         match self {
             Self::Axis { .. } => Some(TaskKey::Axis),
             Self::Frame { key, .. } => Some(*key),
-            Self::Subspace(_) | Self::Screw | Self::Unknown { .. } => None,
+            Self::Subspace { .. } | Self::Screw | Self::Unknown { .. } => None,
         }
+    }
+}
+
+/// The joint without which a section would have a subspace with closed-form chains.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("; without joint {joint} of leg {leg} it would be {without}")]
+pub struct OddJoint {
+    /// The leg's name.
+    pub leg: String,
+    /// The joint's.
+    pub joint: String,
+    /// The subspace of the others.
+    pub without: &'static str,
+}
+
+impl OddJoint {
+    /// Looks for it among the joints of a section.
+    fn find(
+        mechanism: &Mechanism,
+        decomposition: &Decomposition,
+        section: Section,
+    ) -> Option<Self> {
+        let frame = crate::mobility::frame(mechanism);
+        let part = |split: &LegSplit| match section {
+            Section::Lower => split.lower.clone(),
+            Section::Upper => split.upper.clone(),
+        };
+        let freedoms: Vec<(&Leg, Freedom)> = mechanism
+            .legs
+            .iter()
+            .zip(&decomposition.legs)
+            .flat_map(|(leg, split)| part(split).into_iter().map(move |freedom| (leg, freedom)))
+            .collect();
+        let joint = |(leg, freedom): &(&Leg, Freedom)| leg.joints[freedom.joint].name.clone();
+        let mut odd = freedoms.iter().filter_map(|one| {
+            let others: Vec<Screw> = freedoms
+                .iter()
+                .filter(|other| joint(other) != joint(one))
+                .map(|(leg, freedom)| leg.joints[freedom.joint].screws()[freedom.index])
+                .collect();
+            let class = MotionSubspace::span(frame, &others).class()?;
+            SubspaceKind::of(&class)?;
+            let (leg, joint) = (one.0.name.clone(), joint(one));
+            Some(Self { leg, joint, without: class.name() })
+        });
+        // Several joints can be to blame as well as one: then none is.
+        let first = odd.next()?;
+        odd.all(|other| other.joint == first.joint).then_some(first)
     }
 }
 
@@ -220,7 +279,15 @@ impl Task {
         }
         let meeting = Meeting { axis, point, platform: mechanism.platform };
         let frame = |class: &SubspaceClass, section: Section| {
-            Subspace::new(class, section, &meeting, mechanism.task.frame(section))
+            Subspace::new(class, section, &meeting, mechanism.task.frame(section)).map_err(
+                |error| match error {
+                    TaskError::Subspace { section, name, .. } => {
+                        let odd = OddJoint::find(mechanism, decomposition, section);
+                        TaskError::Subspace { section, name, odd }
+                    }
+                    other => other,
+                },
+            )
         };
         let lower = frame(&decomposition.lower, Section::Lower)?;
         let upper = frame(&decomposition.upper, Section::Upper)?;

@@ -11,8 +11,11 @@ array([ True])
 
 from . import examples
 from ._native import (
+    Assembly,
     Manipulator,
+    Motion,
     OpmError,
+    Singularity,
     Solutions,
     Sweep,
     TaskCoordinate,
@@ -21,8 +24,11 @@ from ._native import (
 )
 
 __all__ = [
+    "Assembly",
     "Manipulator",
+    "Motion",
     "OpmError",
+    "Singularity",
     "Solutions",
     "Sweep",
     "TaskCoordinate",

@@ -5,8 +5,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "Assembly",
     "Manipulator",
+    "Motion",
     "OpmError",
+    "Singularity",
     "Solutions",
     "Sweep",
     "TaskCoordinate",
@@ -125,6 +128,136 @@ class Manipulator:
         OpmError
             Columns that are not the task coordinates, a number that is not finite, an unknown mode.
         """
+
+    def jacobian(
+        self, poses: ArrayLike, *, mode: str = "home", joints: str = "actuated", threads: int | None = None
+    ) -> NDArray[np.float64]:
+        """Rates of joints for unit rates of the task coordinates, ``(n, a, d)``.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+        joints : str
+            ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+
+        Returns
+        -------
+        (n, a, d) ndarray
+            NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
+        """
+    def velocity(
+        self,
+        poses: ArrayLike,
+        rates: ArrayLike,
+        accelerations: ArrayLike | None = None,
+        *,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> Motion:
+        """Rates and accelerations of every joint.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+        rates, accelerations : (n, d) or (1, d) array_like
+            First and second derivatives of the task coordinates by time; one row is for all poses.
+        """
+    def singularity(
+        self, poses: ArrayLike, *, mode: str = "home", length: float | None = None, threads: int | None = None
+    ) -> Singularity:
+        """How near each pose is to a singularity, by section.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+        length : float, optional
+            Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
+        """
+    def forward(self, joints: ArrayLike) -> list[list[Assembly]]:
+        """Every assembly for each row of actuated joint values, (n, a).
+
+        Raises
+        ------
+        OpmError
+            The mechanism's forward kinematics have no closed form.
+        """
+
+@final
+class Assembly:
+    """One way in which a mechanism can be assembled for given actuated joints."""
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """(d,): task coordinates."""
+    @property
+    def mode(self) -> str:
+        """The working mode that it is in."""
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """(k,): every joint coordinate."""
+    @property
+    def imaginary(self) -> NDArray[np.float64]:
+        """(j,): every imaginary joint."""
+    @property
+    def within_limits(self) -> bool: ...
+    @property
+    def residual(self) -> float:
+        """How far the legs fail to close: radians, and lengths over the mechanism's size."""
+
+@final
+class Motion:
+    """Rates and accelerations of every joint at many poses; NaN where there is none."""
+
+    @property
+    def joint_rates(self) -> NDArray[np.float64]:
+        """(n, k), rad/s and m/s."""
+    @property
+    def joint_accelerations(self) -> NDArray[np.float64]:
+        """(n, k), rad/s² and m/s²."""
+    @property
+    def imaginary_rates(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def imaginary_accelerations(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): in reach, limits apart."""
+    @property
+    def regular(self) -> NDArray[np.bool_]:
+        """(n,): in reach, and every joint has its rate."""
+
+@final
+class Singularity:
+    """How near many poses are to singular, (n,) each: signed measures without dimension that vanish at a singularity.
+
+    NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
+    """
+
+    @property
+    def upper_serial(self) -> NDArray[np.float64]: ...
+    @property
+    def upper_parallel(self) -> NDArray[np.float64]: ...
+    @property
+    def lower_serial(self) -> NDArray[np.float64]: ...
+    @property
+    def lower_parallel(self) -> NDArray[np.float64]: ...
+    @property
+    def serial(self) -> NDArray[np.float64]:
+        """Of the whole mechanism."""
+    @property
+    def parallel(self) -> NDArray[np.float64]:
+        """Of the whole mechanism."""
+    @property
+    def condition(self) -> NDArray[np.float64]:
+        """Condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity."""
+    @property
+    def manipulability(self) -> NDArray[np.float64]: ...
+    @property
+    def coordinates(self) -> NDArray[np.float64]:
+        """Zero where the coordinates of the pose are singular, which is nothing to the mechanism."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]: ...
 
 @final
 class Solutions:

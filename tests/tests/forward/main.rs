@@ -35,11 +35,10 @@ fn unlimited(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
-/// A pose in reach, a mode in which it is, and every joint there.
+/// A pose in reach, a mode in which it is, and the actuated joints there.
 struct Reached {
     pose: Vec<f64>,
     mode: Mode,
-    joints: Vec<f64>,
     actuated: Vec<f64>,
 }
 
@@ -50,7 +49,7 @@ impl Reached {
             return None;
         }
         let actuated = m.actuated().iter().map(|&i| solution.joints[i]).collect();
-        Some(Self { pose, mode, joints: solution.joints, actuated })
+        Some(Self { pose, mode, actuated })
     }
 
     /// At a random pose within `reach` of home, radians and metres, in a random mode.

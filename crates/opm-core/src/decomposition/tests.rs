@@ -138,7 +138,7 @@ fn planar_and_cylindrical_subspaces() {
 #[test]
 fn a_gough_platform_has_no_partial_subspaces() {
     let error = decompose(&gough(&mut Numbers::new(1))).unwrap_err();
-    assert_eq!(error, DecomposeError::NoPartialSubspaces { lambda: 6, mobility: 6 });
+    assert_eq!(error, DecomposeError::NoPartialSubspaces { lambda: 6, mobility: 6, odd: None });
 }
 
 /// A joint along the intersection motion may be counted to either section.

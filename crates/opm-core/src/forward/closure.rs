@@ -124,7 +124,7 @@ impl Closure {
                 first += values;
             }
             let after = self.residual(&tried, target);
-            if !(after < residual) {
+            if after.is_nan() || after >= residual {
                 break;
             }
             residual = after;

@@ -299,3 +299,48 @@ fn product(a: &Displacement, b: &Displacement) -> Displacement {
         _ => unreachable!("displacements of two kinds of subspace"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{examples, file};
+
+    /// What is left after each step is the square of what was, times a constant of the mechanism's.
+    #[test]
+    fn convergence_is_quadratic() {
+        let mut squared = 0;
+        for name in ["plano-spherical-5dof", "translational-planar-4dof", "planar-planar-5dof"] {
+            let text = examples::find(name).unwrap().text;
+            let m = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+            let home = m.task().home();
+            for sign in [-1.0, 1.0] {
+                let aim: Vec<f64> = home.iter().map(|q| q + 0.02 * sign).collect();
+                let mut solution = m.solution();
+                assert!(m.inverse(&aim, m.home_mode(), &mut solution).unwrap());
+                let wanted: Vec<f64> = m.actuated().iter().map(|&i| solution.joints[i]).collect();
+                assert!(m.inverse(&home, m.home_mode(), &mut solution).unwrap());
+                let mut newton = Newton {
+                    manipulator: &m,
+                    wanted: &wanted,
+                    wrapped: m.wrapped(),
+                    mode: m.home_mode(),
+                    pose: home.clone(),
+                    solution,
+                };
+                let (mut jacobians, mut off) = (m.jacobians(), newton.off());
+                let mut before = off.amax();
+                while before > 1e-12 {
+                    newton.step(&mut jacobians, &mut off).unwrap();
+                    let after = off.amax();
+                    assert!(
+                        after < 20.0 * before * before + 1e-14,
+                        "{name}: {before:e}, {after:e}"
+                    );
+                    squared += usize::from(after > 1e-13);
+                    before = after;
+                }
+            }
+        }
+        assert!(squared > 6, "{squared} steps above rounding");
+    }
+}

@@ -5,6 +5,7 @@ use super::along::direction;
 use super::condition::{Condition, flat_joints};
 use super::flat::Flat;
 use super::track::Track;
+use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::{Amount, Chain};
 use crate::manipulator::{CompiledLeg, CompiledSection, Section};
 use crate::task::{SubspaceKind, Task};
@@ -18,6 +19,9 @@ pub enum NoClosedForm {
     /// Too few legs act on the upper section once the lower one is known.
     #[error("its legs do not fix the upper section once the lower one is known")]
     Upper,
+    /// A revolute with a motor, which does not tell its turns, on the axis of a screw, which counts them.
+    #[error("it drives a revolute on the axis of a screw: each turn is another assembly")]
+    Turns,
     /// A spherical joint with a motor.
     #[error("it drives a spherical joint")]
     Ball,
@@ -79,6 +83,10 @@ impl Plan {
         {
             return Err(NoClosedForm::Ball);
         }
+        if [Section::Lower, Section::Upper].iter().any(|section| loses_turns(*section, legs, &held))
+        {
+            return Err(NoClosedForm::Turns);
+        }
         if adds_up(task.lower.kind) && adds_up(task.upper.kind) {
             let flat = Flat::new(task, legs, &held, size).ok_or(NoClosedForm::Lower)?;
             return Ok(Self { legs: held, anchor: Anchor::Flat(flat) });
@@ -92,6 +100,24 @@ impl Plan {
             None => Err(NoClosedForm::Lower),
         }
     }
+}
+
+/// Whether a section on one axis has screws, and actuated revolutes.
+fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool {
+    let joints = legs.iter().map(|leg| match &leg.section(section).chain {
+        Chain::Cylindrical(chain) => *chain.joints(),
+        _ => [CoaxialJoint { turn: 0.0, advance: 1.0 }; 2],
+    });
+    let screw = |joint: &CoaxialJoint| joint.turn != 0.0 && joint.advance != 0.0;
+    let screws = joints.clone().flatten().any(|joint| screw(&joint));
+    let driven = joints.zip(held).any(|(joints, held)| {
+        let held = match section {
+            Section::Lower => &held.lower,
+            Section::Upper => &held.upper,
+        };
+        held.iter().any(|&slot| slot < 2 && joints[slot].advance == 0.0)
+    });
+    screws && driven
 }
 
 pub fn adds_up(kind: SubspaceKind) -> bool {

@@ -356,12 +356,14 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     for _ in 0..POLISH {
         let Some(inverse) = derivative.try_inverse() else { break };
         let step = -(inverse * miss);
-        if !(step.amax() < LONGEST_STEP) {
+        let length = step.amax();
+        if length.is_nan() || length > LONGEST_STEP {
             break;
         }
         let next = here.moved(&step);
         let (after, slope) = evaluate(&next);
-        if !(after.norm() < miss.norm()) {
+        let closer = after.norm() < miss.norm();
+        if !closer {
             break;
         }
         (here, miss, derivative) = (next, after, slope);

@@ -113,10 +113,11 @@ impl Trigonometric {
     /// `|t| ≤ 1`, and the other half, turned, too. In Bernstein's basis its coefficients bound it, and
     /// their differences tell where it is monotonic; what they leave open is halved (de Casteljau).
     pub fn roots(&self, scale: f64) -> Roots {
-        let noise = NOISE * scale;
-        if self.size() <= noise || !self.size().is_finite() {
+        if self.size() <= NOISE * scale || !self.size().is_finite() {
             return Roots::Everywhere;
         }
+        // (1 + t²)⁴ is 16 at the ends.
+        let noise = 16.0 * NOISE * scale;
         let mut found = Vec::with_capacity(HALF);
         // Each halving leaves one interval to come back to, down to the shortest.
         let mut open = Vec::with_capacity(32);

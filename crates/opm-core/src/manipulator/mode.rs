@@ -9,16 +9,21 @@ pub struct Mode(pub(super) u64);
 
 /// A mode string that does not fit the manipulator.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "working mode `{given}`: {problem}, expected one sign (+ or -) for every choice, a group a leg: `{example}`"
-)]
+#[error("working mode `{given}`: {problem}, expected {}", expected(example))]
 pub struct ModeError {
     /// What was given.
     pub given: String,
     /// What is wrong with it.
     pub problem: String,
-    /// A mode that fits.
+    /// A mode that fits, empty where there is nothing to choose.
     pub example: String,
+}
+
+fn expected(example: &str) -> String {
+    match example {
+        "" => "none: the mechanism has no choices, and one working mode".to_owned(),
+        _ => format!("one sign (+ or -) for every choice, a group a leg: `{example}`"),
+    }
 }
 
 impl Mode {
@@ -142,7 +147,10 @@ impl ModeLayout {
             }
         }
         if signs.len() != self.count as usize {
-            return Err(error(format!("{} signs for {} choices", signs.len(), self.count)));
+            return Err(error({
+                let plural = if signs.len() == 1 { "" } else { "s" };
+                format!("{} sign{plural} for {} choices", signs.len(), self.count)
+            }));
         }
         let bits = self.legs.iter().flat_map(LegChoices::written);
         Ok(Mode(bits.zip(signs).fold(0, |mode, (bit, minus)| mode | u64::from(minus) << bit)))

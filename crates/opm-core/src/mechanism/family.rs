@@ -8,6 +8,7 @@
 mod assembly;
 pub mod planar_planar;
 pub mod plano_spherical;
+mod slider;
 pub mod translational_helical;
 
 pub use assembly::{AssemblyError, AssemblyProblem, AssemblyReason};

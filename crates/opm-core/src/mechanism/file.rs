@@ -41,7 +41,9 @@
 //! Each may be left out. `opm decompose` prints the frames as they are.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
-//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Whatever a file does not need to have
+//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. A joint cannot be called like a task
+//! coordinate (`x`, `phi`, ...), like `reachable`, `within_limits`, `mode` or `branch`, or like a leg's
+//! imaginary joint (`tau.leg1`): tables have columns of these names. Whatever a file does not need to have
 //! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
 
 mod hint;
@@ -167,6 +169,32 @@ pub(super) fn leg_name(leg: &Table<'_>, index: usize) -> String {
 /// A family's parameter that must be there, SI; NaN where it is not, which has been reported then.
 pub(super) fn quantity(leg: &Table<'_>, key: &str, of: Quantity, expected: &str) -> f64 {
     leg.require(key, expected).and_then(|value| value.quantity(of)).unwrap_or(f64::NAN)
+}
+
+/// The point of a family's leg in its plane, likewise.
+pub(super) fn point(leg: &Table<'_>, key: &str, expected: &str) -> [f64; 2] {
+    leg.require(key, expected).and_then(|value| value.point()).unwrap_or([f64::NAN; 2])
+}
+
+/// Reads a family's `home`: zero where a coordinate is not given, NaN where it is not understood.
+pub(super) fn home<'a>(
+    root: &Table<'a>,
+    keys: &[&str],
+) -> impl Fn(&str, Quantity) -> f64 + use<'a> {
+    let table = root.get("home").and_then(|value| value.table(keys));
+    move |key, of| {
+        let value = table.and_then(|table| table.get(key));
+        value.map_or(0.0, |value| value.quantity(of).unwrap_or(f64::NAN))
+    }
+}
+
+/// Reads the `limits` of a family's leg.
+pub(super) fn limits<'a>(
+    leg: Option<&Table<'a>>,
+    keys: &[&str],
+) -> impl Fn(&str, Quantity) -> Option<[f64; 2]> + use<'a> {
+    let table = leg.and_then(|leg| leg.get("limits")).and_then(|value| value.table(keys));
+    move |key, of| table?.get(key)?.limits(of)
 }
 
 /// The branches of `mode`: a group of signs for each leg with choices, in one row. All plus where

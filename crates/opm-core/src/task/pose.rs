@@ -22,8 +22,12 @@ impl Task {
         let home = |i: usize| self.coordinates[i].home;
         // b takes, or gives, all of the intersection motion that is to be in it.
         let rotation = self.cut_point.is_some();
-        let handed = if rotation { self.turned(v) } else { self.advanced(b).inverse() };
-        let v = self.lower_cut.after(v, handed.inverse());
+        let (v, handed) = if rotation {
+            self.without_turn(v)
+        } else {
+            let advanced = self.advanced(b);
+            (self.lower_cut.after(v, advanced), advanced.inverse())
+        };
         let b = self.upper_cut.before(b, handed);
         match v {
             Displacement::Planar(g) => {
@@ -73,6 +77,16 @@ impl Task {
             }
         }
         pose
+    }
+
+    /// `v` without the turn about the shared axis that its coordinates do not have, and that turn: it was
+    /// applied first. Where the intersection motion is a translation, `v` itself.
+    pub(crate) fn without_turn(&self, v: &Displacement) -> (Displacement, Amount) {
+        if self.cut_point.is_none() {
+            return (*v, Amount::Value(0.0));
+        }
+        let turned = self.turned(v);
+        (self.lower_cut.after(v, turned.inverse()), turned)
     }
 
     /// The turn about the shared axis that `v` has beyond its coordinates.

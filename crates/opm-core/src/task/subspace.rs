@@ -25,6 +25,17 @@ pub enum SubspaceKind {
 }
 
 impl SubspaceKind {
+    /// The kind of a subspace, if it has closed-form chains.
+    pub fn of(class: &SubspaceClass) -> Option<Self> {
+        match class {
+            SubspaceClass::Planar { .. } => Some(Self::Planar),
+            SubspaceClass::Spherical { .. } => Some(Self::Spherical),
+            SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
+            SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
+            _ => None,
+        }
+    }
+
     /// The displacement with these two numbers, of a kind whose displacements add up: angle and advance,
     /// or a translation.
     pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
@@ -100,7 +111,7 @@ impl Subspace {
             SubspaceClass::TranslationalPlane { normal } => {
                 (SubspaceKind::TranslationalPlane, reference, *normal)
             }
-            other => return Err(TaskError::Subspace(other.name())),
+            other => return Err(TaskError::Subspace { section, name: other.name(), odd: None }),
         };
         let hints = Checked { hints, section, kind, rotation };
         hints.refuse_what_is_not_free()?;

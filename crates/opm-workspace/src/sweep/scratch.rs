@@ -189,7 +189,7 @@ impl<'a> Scratch<'a> {
             }
         }
         if plain {
-            let (legs, rows) = (&self.cuts[..], heights.len());
+            let (legs, rows) = (&mut self.cuts[..], heights.len());
             self.arch.dispatch(Common { legs, rows, doubts, counts: &mut counts });
         }
         let mut reachable = counts.total;

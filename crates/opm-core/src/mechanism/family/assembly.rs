@@ -172,6 +172,13 @@ impl Problems {
         self.0.push((parameter, reason));
     }
 
+    /// So many legs of a kind were found, where the family has another number.
+    pub(super) fn leg_count(&mut self, kind: &'static str, found: usize, expected: usize) {
+        if found != expected {
+            self.add(Some(kind), AssemblyReason::LegCount { found, expected });
+        }
+    }
+
     pub(super) fn finite(&mut self, parameters: &[(&'static str, f64)]) {
         self.check(parameters, |_| None);
     }

@@ -31,7 +31,8 @@ mod file;
 
 pub(in crate::mechanism) use file::read;
 
-use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried, out_of_reach};
+use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};
+use super::slider::{SliderChain, onto, pivot};
 use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
 use crate::chain::{Branch, unit};
 use crate::joint::{Joint, JointKind};
@@ -165,11 +166,7 @@ impl PlanarPlanar {
         let Home { x, y, w, phi } = self.home;
         let mut wrong = Problems::default();
         wrong.finite(&[("x", x), ("y", y), ("w", w), ("phi", phi)]);
-        let found = self.slider_legs.len();
-        if found != SLIDER_LEGS {
-            let count = AssemblyReason::LegCount { found, expected: SLIDER_LEGS };
-            wrong.add(Some("slider_leg"), count);
-        }
+        wrong.leg_count("slider_leg", self.slider_legs.len(), SLIDER_LEGS);
         let sliders = self.slider_legs.iter().enumerate();
         let legs = sliders
             .map(|(i, leg)| (leg.name.as_str(), leg.assemble(&self.home, i + 1)))
@@ -228,32 +225,29 @@ impl SliderLeg {
             .inverse(&home.platform_from(k, self.platform), self.upper)
             .map_err(out_of_reach("rods"))?;
 
-        // Lower section, laid out with a1 and e(θ) along the slider.
-        let slider = unit(self.alpha + FRAC_PI_2);
-        let a = unit(self.alpha) * self.h;
-        let c = a + slider * self.a1;
+        // Lower section, laid out with e(θ) along the slider.
+        let chain = SliderChain::new(self.alpha, self.h, self.a1);
         let place = home.origin() + Complex::new(self.c, sigma.value());
-        let [s, phi1, phi2] = PlanarChain::new([along(slider), pivot(a), pivot(c)])?
-            .inverse(&onto(c, place, slider.conj()), self.slider)
-            .map_err(out_of_reach("links"))?;
+        let lower = chain.reach(place, 1.0.into(), self.slider)?;
 
         let name = |symbol: &str| format!("{symbol}{number}");
         let limits = &self.limits;
-        let up = Vector3::z_axis();
         // e(θ) and n(θ) as laid out.
-        let (level, upright) = (direction(slider), slider * unit(FRAC_PI_2));
-        let joints = carried([
+        let (level, upright) = (direction(chain.along), chain.along * unit(FRAC_PI_2));
+        let above = [
+            (revolute(name("rod"), level, at(chain.c, self.g), limits.rod), rod),
             (
-                Joint::new(name("S"), JointKind::Prismatic, level, at(a, 0.0))
-                    .actuated()
-                    .within(limits.s),
-                s,
+                revolute(
+                    name("hinge"),
+                    level,
+                    at(chain.c + upright * self.l, self.g),
+                    limits.hinge,
+                ),
+                hinge,
             ),
-            (revolute(name("phi1"), up, at(a, 0.0), limits.phi1), phi1),
-            (revolute(name("phi2"), up, at(c, 0.0), limits.phi2), phi2),
-            (revolute(name("rod"), level, at(c, self.g), limits.rod), rod),
-            (revolute(name("hinge"), level, at(c + upright * self.l, self.g), limits.hinge), hinge),
-        ])?;
+        ];
+        let below = chain.joints(number, [limits.s, limits.phi1, limits.phi2]);
+        let joints = carried(below.into_iter().zip(lower).chain(above))?;
         let imaginary =
             ImaginaryLabel { name: name("sigma"), home: sigma.value(), positive: Vector3::y() };
         Ok(Leg { name: self.name.clone(), joints, imaginary: Some(imaginary) })
@@ -317,17 +311,8 @@ impl ArmLeg {
     }
 }
 
-/// The displacement that turns by `rotation` and takes one point to the other.
-fn onto(from: Complex<f64>, to: Complex<f64>, rotation: Complex<f64>) -> PlanarDisplacement {
-    PlanarDisplacement { rotation, translation: to - rotation * from }
-}
-
 fn along(direction: Complex<f64>) -> PlanarJoint {
     PlanarJoint::Prismatic { along: direction }
-}
-
-fn pivot(at: Complex<f64>) -> PlanarJoint {
-    PlanarJoint::Revolute { at, reversed: false }
 }
 
 fn revolute(

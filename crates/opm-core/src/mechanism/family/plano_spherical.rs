@@ -21,14 +21,15 @@ mod file;
 
 pub(in crate::mechanism) use file::read;
 
-use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried, out_of_reach};
-use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
+use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};
+use super::slider::{SliderChain, onto, pivot};
+use crate::chain::planar::PlanarChain;
 use crate::chain::spherical::SphericalChain;
-use crate::chain::{Amount, Branch, unit};
+use crate::chain::{Amount, Branch};
 use crate::joint::{Joint, JointKind};
 use crate::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
-use nalgebra::{Complex, Point3, Rotation3, Unit, Vector3};
+use nalgebra::{Complex, Point3, Rotation3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// How many slider legs there are.
@@ -135,11 +136,7 @@ impl PlanoSpherical {
         let Home { x, y, zeta, xi, psi } = self.home;
         let mut wrong = Problems::default();
         wrong.finite(&[("x", x), ("y", y), ("zeta", zeta), ("xi", xi), ("psi", psi)]);
-        let found = self.slider_legs.len();
-        if found != SLIDER_LEGS {
-            let count = AssemblyReason::LegCount { found, expected: SLIDER_LEGS };
-            wrong.add(Some("slider_leg"), count);
-        }
+        wrong.leg_count("slider_leg", self.slider_legs.len(), SLIDER_LEGS);
         let sliders = self.slider_legs.iter().enumerate();
         let legs = sliders
             .map(|(i, leg)| (leg.name.as_str(), leg.assemble(&self.home, i + 1)))
@@ -191,13 +188,11 @@ impl SliderLeg {
             return Err(Problems::default());
         }
         let z = Vector3::z_axis();
-        let slider = unit(self.alpha + FRAC_PI_2);
 
         // Laid out with every joint at zero: the links a1 and a2 lie along the slider, θ1 points
         // there too, and the arcs α1 and α2 add up.
-        let a = unit(self.alpha) * self.h;
-        let c = a + slider * self.a1;
-        let p = c - slider * self.a2;
+        let chain = SliderChain::new(self.alpha, self.h, self.a1);
+        let p = chain.c - chain.along * self.a2;
         let theta1_zero = rz(self.alpha + FRAC_PI_2);
         let v = rx(self.alpha1) * z;
         let w = rx(self.alpha1 + self.alpha2) * z;
@@ -210,37 +205,20 @@ impl SliderLeg {
             .map_err(out_of_reach("arcs"))?;
 
         // Lower section: the slider and both revolutes bring P and the direction θ1 there.
-        let rotation = theta1.turn() * slider.conj();
-        let lower = PlanarDisplacement {
-            rotation,
-            translation: Complex::new(home.x, home.y) - rotation * p,
-        };
-        let [s, phi1, phi2] = PlanarChain::new([
-            PlanarJoint::Prismatic { along: slider },
-            PlanarJoint::Revolute { at: a, reversed: false },
-            PlanarJoint::Revolute { at: c, reversed: false },
-        ])?
-        .inverse(&lower, self.slider)
-        .map_err(out_of_reach("links"))?;
+        let place = Complex::new(home.x, home.y) + theta1.turn() * self.a2;
+        let lower = chain.reach(place, theta1.turn(), self.slider)?;
 
         let name = |symbol: &str| format!("{symbol}{number}");
-        let prismatic = Unit::new_unchecked(in_plane(slider).coords);
         let limits = &self.limits;
-        let revolute = |symbol, axis, point, limits| {
-            Joint::new(name(symbol), JointKind::Revolute, axis, in_plane(point)).within(limits)
+        let revolute = |symbol, axis, limits| {
+            Joint::new(name(symbol), JointKind::Revolute, axis, in_plane(p)).within(limits)
         };
-        let joints = carried([
-            (
-                Joint::new(name("S"), JointKind::Prismatic, prismatic, in_plane(a))
-                    .actuated()
-                    .within(limits.s),
-                s,
-            ),
-            (revolute("phi1", z, a, limits.phi1), phi1),
-            (revolute("phi2", z, c, limits.phi2), phi2),
-            (revolute("theta2", theta1_zero * v, p, limits.theta2), theta2),
-            (revolute("theta3", theta1_zero * w, p, limits.theta3), theta3),
-        ])?;
+        let above = [
+            (revolute("theta2", theta1_zero * v, limits.theta2), theta2),
+            (revolute("theta3", theta1_zero * w, limits.theta3), theta3),
+        ];
+        let below = chain.joints(number, [limits.s, limits.phi1, limits.phi2]);
+        let joints = carried(below.into_iter().zip(lower).chain(above))?;
         let imaginary = ImaginaryLabel {
             name: name("theta1"),
             home: positive_turn(theta1),
@@ -272,17 +250,9 @@ impl ArmLeg {
         let d = Complex::new(self.base[0], self.base[1]);
         let elbow = d + self.b1;
         let p = elbow + self.b2;
-        let [phi1, phi2, _] = PlanarChain::new(
-            [d, elbow, p].map(|at| PlanarJoint::Revolute { at, reversed: false }),
-        )?
-        .inverse(
-            &PlanarDisplacement {
-                rotation: Complex::new(1.0, 0.0),
-                translation: Complex::new(home.x, home.y) - p,
-            },
-            self.elbow,
-        )
-        .map_err(out_of_reach("links"))?;
+        let [phi1, phi2, _] = PlanarChain::new([d, elbow, p].map(pivot))?
+            .inverse(&onto(p, Complex::new(home.x, home.y), 1.0.into()), self.elbow)
+            .map_err(out_of_reach("links"))?;
 
         let revolute = |name: &str, at, limits| {
             Joint::new(name, JointKind::Revolute, Vector3::z_axis(), in_plane(at))

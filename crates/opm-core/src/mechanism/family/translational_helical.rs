@@ -97,10 +97,7 @@ impl TranslationalHelical {
         let Home { x, y, phi } = self.home;
         let mut wrong = Problems::default();
         wrong.finite(&[("x", x), ("y", y), ("phi", phi)]);
-        let found = self.legs.len();
-        if found != LEGS {
-            wrong.add(Some("leg"), AssemblyReason::LegCount { found, expected: LEGS });
-        }
+        wrong.leg_count("leg", self.legs.len(), LEGS);
         let helical = self.legs.iter().filter(|leg| leg.pitch.is_some()).count();
         if helical == 0 {
             wrong.add(Some("leg"), AssemblyReason::NoHelicalLeg);

@@ -19,6 +19,26 @@ const TYPES: [(&str, Type); 6] = [
     ("spherical", Type::Spherical),
 ];
 
+/// What tables and recordings have beside joints: the task coordinates of all pairs of subspaces, and
+/// columns. Imaginary joints are `tau.` and the leg's name.
+const RESERVED: [&str; 15] = [
+    "x",
+    "y",
+    "z",
+    "w",
+    "theta",
+    "phi",
+    "zeta",
+    "xi",
+    "psi",
+    "mu",
+    "nu",
+    "reachable",
+    "within_limits",
+    "mode",
+    "branch",
+];
+
 /// Sine of the angle below which the axes of a universal joint are one: its two freedoms would be.
 const PARALLEL: f64 = 1e-6;
 
@@ -65,6 +85,13 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Places<usize>) {
 
     let tables = root.tables("leg", LEG_KEYS);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
+    for name in RESERVED {
+        joint_names.reserve(name, "a task coordinate or a column of tables");
+    }
+    for (index, table) in tables.iter().enumerate() {
+        let imaginary = Leg::new(leg_name(table, index), Vec::new()).imaginary_name();
+        joint_names.reserve(&imaginary, "that leg's imaginary joint");
+    }
     let mut legs = Vec::new();
     let mut complete = !tables.is_empty();
     for (index, table) in tables.iter().enumerate() {

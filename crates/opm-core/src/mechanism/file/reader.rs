@@ -7,7 +7,7 @@ use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
 use crate::joint::Quantity;
 use std::cell::{Cell, RefCell};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -343,17 +343,27 @@ impl<'a> Table<'a> {
 pub(super) struct UniqueNames {
     what: &'static str,
     seen: HashSet<String>,
+    /// Names that other things have, and what these are.
+    reserved: HashMap<String, &'static str>,
 }
 
 impl UniqueNames {
     pub(super) fn new(what: &'static str) -> Self {
-        Self { what, seen: HashSet::new() }
+        Self { what, seen: HashSet::new(), reserved: HashMap::new() }
     }
 
-    /// Reports a name that was there before.
+    /// Keeps a name for something else.
+    pub(super) fn reserve(&mut self, name: &str, other: &'static str) {
+        self.reserved.insert(name.to_owned(), other);
+    }
+
+    /// Reports a name that was there before, or that is reserved.
     pub(super) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
-        if !self.seen.insert(name.to_owned()) {
-            let what = self.what;
+        let what = self.what;
+        if let Some(other) = self.reserved.get(name) {
+            let problem = format!("{name:?} is the name of {other}, expected another for {what}");
+            reader.report(at, problem);
+        } else if !self.seen.insert(name.to_owned()) {
             reader.report(at, format!("two {what} are called {name:?}, expected different names"));
         }
     }

@@ -5,7 +5,9 @@ use crate::chain::Branch;
 use crate::joint::Quantity::{Angle, Length};
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::Family;
-use crate::mechanism::file::{Table, branches, leg_name, quantity, report_problems};
+use crate::mechanism::file::{
+    Table, branches, home, leg_name, limits, point, quantity, report_problems,
+};
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
@@ -21,11 +23,7 @@ const CHOICES: &[usize] = &[2, 2, 2, 2];
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let home = root.get("home").and_then(|value| value.table(HOME_KEYS));
-    let coordinate = |key, of| {
-        home.and_then(|home| home.get(key))
-            .map_or(0.0, |value| value.quantity(of).unwrap_or(f64::NAN))
-    };
+    let coordinate = home(root, HOME_KEYS);
     let mode = branches(root, CHOICES);
     let slider_legs = root.tables("slider_leg", SLIDER_KEYS);
     let arm_leg = root
@@ -58,8 +56,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
 }
 
 fn slider_leg(leg: &Table<'_>, index: usize, [upper, slider]: [Branch; 2]) -> SliderLeg {
-    let limits = leg.get("limits").and_then(|value| value.table(SLIDER_LIMIT_KEYS));
-    let limit = |key, of| limits?.get(key)?.limits(of);
+    let limit = limits(Some(leg), SLIDER_LIMIT_KEYS);
     SliderLeg {
         name: leg_name(leg, index),
         alpha: quantity(leg, "alpha", Angle, "the direction of the leg, an angle"),
@@ -82,9 +79,7 @@ fn slider_leg(leg: &Table<'_>, index: usize, [upper, slider]: [Branch; 2]) -> Sl
 }
 
 fn arm(leg: Option<&Table<'_>>, [lower, fold]: [Branch; 2]) -> ArmLeg {
-    let limits =
-        leg.and_then(|leg| leg.get("limits")).and_then(|value| value.table(ARM_LIMIT_KEYS));
-    let limit = |key| limits?.get(key)?.limits(Angle);
+    let limit = limits(leg, ARM_LIMIT_KEYS);
     let length = |key, expected| leg.map_or(f64::NAN, |leg| quantity(leg, key, Length, expected));
     let point = |key, expected| leg.map_or([f64::NAN; 2], |leg| point(leg, key, expected));
     ArmLeg {
@@ -100,15 +95,11 @@ fn arm(leg: Option<&Table<'_>>, [lower, fold]: [Branch; 2]) -> ArmLeg {
         lower,
         fold,
         limits: ArmLimits {
-            phi1: limit("phi1"),
-            phi2: limit("phi2"),
-            fold1: limit("fold1"),
-            fold2: limit("fold2"),
-            hinge: limit("hinge"),
+            phi1: limit("phi1", Angle),
+            phi2: limit("phi2", Angle),
+            fold1: limit("fold1", Angle),
+            fold2: limit("fold2", Angle),
+            hinge: limit("hinge", Angle),
         },
     }
-}
-
-fn point(leg: &Table<'_>, key: &str, expected: &str) -> [f64; 2] {
-    leg.require(key, expected).and_then(|value| value.point()).unwrap_or([f64::NAN; 2])
 }

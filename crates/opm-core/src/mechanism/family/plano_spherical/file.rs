@@ -5,7 +5,9 @@ use crate::chain::Branch;
 use crate::joint::Quantity::{Angle, Length};
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::Family;
-use crate::mechanism::file::{Table, branches, leg_name, quantity, report_problems};
+use crate::mechanism::file::{
+    Table, branches, home, leg_name, limits, point, quantity, report_problems,
+};
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
@@ -22,11 +24,7 @@ const CHOICES: &[usize] = &[2, 2, 2, 1];
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let home = root.get("home").and_then(|value| value.table(HOME_KEYS));
-    let coordinate = |key, of| {
-        home.and_then(|home| home.get(key))
-            .map_or(0.0, |value| value.quantity(of).unwrap_or(f64::NAN))
-    };
+    let coordinate = home(root, HOME_KEYS);
     let mode = branches(root, CHOICES);
     let slider_legs = root.tables("slider_leg", SLIDER_KEYS);
     let arm_leg = root
@@ -63,8 +61,7 @@ fn slider_leg(leg: &Table<'_>, index: usize, mode: Option<&[Branch]>) -> SliderL
         Some(&[upper, slider]) => [upper, slider],
         _ => [Branch::Plus; 2],
     };
-    let limits = leg.get("limits").and_then(|value| value.table(SLIDER_LIMIT_KEYS));
-    let limit = |key, of| limits?.get(key)?.limits(of);
+    let limit = limits(Some(leg), SLIDER_LIMIT_KEYS);
     SliderLeg {
         name: leg_name(leg, index),
         alpha: quantity(leg, "alpha", Angle, "the direction of the planar leg, an angle"),
@@ -88,20 +85,17 @@ fn slider_leg(leg: &Table<'_>, index: usize, mode: Option<&[Branch]>) -> SliderL
 }
 
 fn arm(leg: Option<&Table<'_>>, elbow: Option<Branch>) -> ArmLeg {
-    let limits =
-        leg.and_then(|leg| leg.get("limits")).and_then(|value| value.table(ARM_LIMIT_KEYS));
-    let limit = |key| limits?.get(key)?.limits(Angle);
+    let limit = limits(leg, ARM_LIMIT_KEYS);
     let length = |key, expected| leg.map_or(f64::NAN, |leg| quantity(leg, key, Length, expected));
     ArmLeg {
         name: leg.map_or_else(String::new, |leg| leg_name(leg, SLIDER_LEGS)),
-        base: leg
-            .and_then(|leg| leg.require("base", "a point [x, y]: where the arm stands"))
-            .and_then(|value| value.point())
-            .unwrap_or([f64::NAN; 2]),
+        base: leg.map_or([f64::NAN; 2], |leg| {
+            point(leg, "base", "a point [x, y]: where the arm stands")
+        }),
         b1: length("b1", "the length of the arm's first link"),
         b2: length("b2", "the length of the arm's second link"),
         elbow: elbow.unwrap_or(Branch::Plus),
-        phi1: limit("phi1"),
-        phi2: limit("phi2"),
+        phi1: limit("phi1", Angle),
+        phi2: limit("phi2", Angle),
     }
 }

@@ -4,7 +4,7 @@ use super::{Home, LegLimits, TranslationalHelical, TranslationalLeg};
 use crate::joint::Quantity::{Angle, Length};
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::Family;
-use crate::mechanism::file::{Table, branches, leg_name, quantity, report_problems};
+use crate::mechanism::file::{Table, branches, home, leg_name, limits, quantity, report_problems};
 
 const KEYS: &[&str] = &["format", "name", "units", "family", "home", "mode", "leg"];
 const HOME_KEYS: &[&str] = &["x", "y", "phi"];
@@ -15,11 +15,7 @@ const LIMIT_KEYS: &[&str] = &["S", "r", "phi"];
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let home = root.get("home").and_then(|value| value.table(HOME_KEYS));
-    let coordinate = |key, of| {
-        home.and_then(|home| home.get(key))
-            .map_or(0.0, |value| value.quantity(of).unwrap_or(f64::NAN))
-    };
+    let coordinate = home(root, HOME_KEYS);
     branches(root, &[]);
     let legs = root.tables("leg", LEG_KEYS);
     let family = TranslationalHelical {
@@ -41,8 +37,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
 }
 
 fn read_leg(leg: &Table<'_>, index: usize) -> TranslationalLeg {
-    let limits = leg.get("limits").and_then(|value| value.table(LIMIT_KEYS));
-    let limit = |key, of| limits?.get(key)?.limits(of);
+    let limit = limits(Some(leg), LIMIT_KEYS);
     TranslationalLeg {
         name: leg_name(leg, index),
         alpha: quantity(leg, "alpha", Angle, "the direction of the planar leg, an angle"),

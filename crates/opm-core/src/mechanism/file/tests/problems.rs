@@ -220,6 +220,14 @@ fn joints() {
         ),
         (", actuated = true", "", "[[leg]]\nname", "no joint is actuated"),
         ("point = [10, 20, 30]\n", "", "[platform]", "`point` is missing"),
+        ("name = \"r1\"", "name = \"x\"", "name = \"x\"", "\"x\" is the name of a task coordinate"),
+        ("name = \"r1\"", "name = \"mode\"", "name = \"mode\"", "or a column of tables, expected"),
+        (
+            "name = \"r1\"",
+            "name = \"tau.left\"",
+            "name = \"tau.left\"",
+            "\"tau.left\" is the name of that leg's imaginary joint, expected another for joints",
+        ),
     ] {
         let text = JOINTS.replacen(from, to, 1);
         let errors = problems(&text);

@@ -1,0 +1,77 @@
+//! The PRR part of a slider leg, which families of several kinds stand on:
+//!
+//! ```text
+//! A = h e(α) + S n(α)      S{i}    prismatic along n(α), actuated
+//! C = A + a1 e(α+π/2+φ1)   phi1{i} revolute at A, along +z
+//!                          phi2{i} revolute at C, along +z
+//! ```
+//!
+//! laid out where `S = φ1 = φ2 = 0`: the link a1, and what it carries, lie along the slider.
+
+use super::assembly::{Problems, out_of_reach};
+use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
+use crate::chain::{Amount, Branch, unit};
+use crate::joint::{Joint, JointKind};
+use nalgebra::{Complex, Point3, Unit, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// The chain as it is laid out.
+pub(super) struct SliderChain {
+    /// `n(α)`.
+    pub along: Complex<f64>,
+    /// A.
+    pub a: Complex<f64>,
+    /// C.
+    pub c: Complex<f64>,
+}
+
+impl SliderChain {
+    pub fn new(alpha: f64, h: f64, a1: f64) -> Self {
+        let along = unit(alpha + FRAC_PI_2);
+        let a = unit(alpha) * h;
+        Self { along, a, c: a + along * a1 }
+    }
+
+    /// S, φ1 and φ2 that bring C to a place, and to a direction what lies along the slider beyond it.
+    pub fn reach(
+        &self,
+        place: Complex<f64>,
+        direction: Complex<f64>,
+        branch: Branch,
+    ) -> Result<[Amount; 3], Problems> {
+        let joints = [PlanarJoint::Prismatic { along: self.along }, pivot(self.a), pivot(self.c)];
+        PlanarChain::new(joints)?
+            .inverse(&onto(self.c, place, direction * self.along.conj()), branch)
+            .map_err(out_of_reach("links"))
+    }
+
+    /// The three joints of leg `number` with their limits, as laid out.
+    pub fn joints(&self, number: usize, limits: [Option<[f64; 2]>; 3]) -> [Joint; 3] {
+        let at = |z: Complex<f64>| Point3::new(z.re, z.im, 0.0);
+        let axis = Unit::new_unchecked(at(self.along).coords);
+        let revolute = |name, point| {
+            let name = format!("{name}{number}");
+            Joint::new(name, JointKind::Revolute, Vector3::z_axis(), at(point))
+        };
+        let slider = Joint::new(format!("S{number}"), JointKind::Prismatic, axis, at(self.a));
+        [
+            slider.actuated().within(limits[0]),
+            revolute("phi1", self.a).within(limits[1]),
+            revolute("phi2", self.c).within(limits[2]),
+        ]
+    }
+}
+
+/// The displacement that turns by `rotation` and takes one point to the other.
+pub(super) fn onto(
+    from: Complex<f64>,
+    to: Complex<f64>,
+    rotation: Complex<f64>,
+) -> PlanarDisplacement {
+    PlanarDisplacement { rotation, translation: to - rotation * from }
+}
+
+/// A revolute along +z.
+pub(super) fn pivot(at: Complex<f64>) -> PlanarJoint {
+    PlanarJoint::Revolute { at, reversed: false }
+}

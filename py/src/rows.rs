@@ -1,0 +1,133 @@
+//! Work on every row of an array, on many threads, into tables of numbers.
+
+use crate::error::wrong;
+use crate::interrupt;
+use numpy::{
+    AllowTypeChange, IntoPyArray, PyArray2, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Rows that a thread works on between two looks at whether it is to stop.
+const BLOCK: usize = 1024;
+
+/// An array from Python: rows of `names`.
+pub struct Rows {
+    values: Vec<f64>,
+    pub count: usize,
+    width: usize,
+}
+
+impl Rows {
+    /// Checks the number of columns. The interpreter's lock is let go while the rows are worked on, and
+    /// nobody may write to them meanwhile: so they are copied.
+    pub fn new(
+        array: &PyArrayLike2<'_, f64, AllowTypeChange>,
+        what: &str,
+        names: &[&str],
+    ) -> PyResult<Self> {
+        let [count, width] = [array.shape()[0], array.shape()[1]];
+        if width != names.len() {
+            let (expected, names) = (names.len(), names.join(", "));
+            return Err(wrong(format!("{width} columns of {what}, expected {expected}: {names}")));
+        }
+        Ok(Self { values: array.as_array().iter().copied().collect(), count, width })
+    }
+
+    pub fn row(&self, number: usize) -> &[f64] {
+        &self.values[number * self.width..][..self.width]
+    }
+}
+
+/// Tables with a row of each for every row of the input, NaN where nothing was written, and two answers
+/// a row.
+pub struct Tables<const N: usize> {
+    numbers: [Vec<f64>; N],
+    widths: [usize; N],
+    count: usize,
+    pub answers: [Vec<bool>; 2],
+}
+
+/// A part of them.
+struct Block<'a, const N: usize> {
+    first: usize,
+    numbers: [&'a mut [f64]; N],
+    answers: [&'a mut [bool]; 2],
+}
+
+impl<const N: usize> Tables<N> {
+    /// Fills tables of `count` rows: `fill` writes a row of each and gives its answers, with working
+    /// memory that `scratch` makes. The result does not depend on the number of threads.
+    pub fn fill<S>(
+        py: Python<'_>,
+        count: usize,
+        widths: [usize; N],
+        threads: Option<NonZeroUsize>,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
+    ) -> PyResult<Self> {
+        let mut tables = Self {
+            numbers: widths.map(|width| vec![f64::NAN; count * width]),
+            widths,
+            count,
+            answers: [vec![false; count], vec![false; count]],
+        };
+        let stop = AtomicBool::new(false);
+        let work = |block: Block<'_, N>| -> Result<(), String> {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            let Block { first, mut numbers, answers: [yes, also] } = block;
+            let mut scratch = scratch();
+            for row in 0..yes.len() {
+                let mut number = 0;
+                let of_row = numbers.each_mut().map(|table| {
+                    let width = widths[number];
+                    number += 1;
+                    &mut table[row * width..][..width]
+                });
+                [yes[row], also[row]] = fill(&mut scratch, first + row, of_row)?;
+            }
+            Ok(())
+        };
+        let blocks = tables.blocks();
+        let done = if count <= BLOCK {
+            blocks.into_iter().try_for_each(work)
+        } else {
+            let all = || blocks.into_par_iter().try_for_each(work);
+            interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
+        };
+        done.map_err(wrong)?;
+        Ok(tables)
+    }
+
+    fn blocks(&mut self) -> Vec<Block<'_, N>> {
+        let [yes, also] = &mut self.answers;
+        let mut rest = self.numbers.each_mut().map(|table| &mut table[..]);
+        let answers = yes.chunks_mut(BLOCK).zip(also.chunks_mut(BLOCK)).enumerate();
+        answers
+            .map(|(block, (yes, also))| {
+                let mut number = 0;
+                let numbers = rest.each_mut().map(|table| {
+                    let taken = std::mem::take(table);
+                    let (part, left) = taken.split_at_mut(yes.len() * self.widths[number]);
+                    (*table, number) = (left, number + 1);
+                    part
+                });
+                Block { first: block * BLOCK, numbers, answers: [yes, also] }
+            })
+            .collect()
+    }
+
+    /// Table `number` as an array.
+    pub fn take<'py>(
+        &mut self,
+        py: Python<'py>,
+        number: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let numbers = std::mem::take(&mut self.numbers[number]);
+        numbers.into_pyarray(py).reshape([self.count, self.widths[number]])
+    }
+}

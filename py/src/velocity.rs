@@ -1,0 +1,243 @@
+//! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
+
+use crate::error::wrong;
+use crate::manipulator::Manipulator;
+use crate::rows::{Rows, Tables};
+use numpy::{
+    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayLike2, PyArrayMethods,
+};
+use opm_core::manipulator::{Mode, Solution};
+use pyo3::prelude::*;
+use std::num::NonZeroUsize;
+
+type Array2<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
+
+/// Rates and accelerations of every joint at many poses.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Motion {
+    joint_rates: Py<PyArray2<f64>>,
+    joint_accelerations: Py<PyArray2<f64>>,
+    imaginary_rates: Py<PyArray2<f64>>,
+    imaginary_accelerations: Py<PyArray2<f64>>,
+    reachable: Py<PyArray1<bool>>,
+    regular: Py<PyArray1<bool>>,
+}
+
+/// How near many poses are to singular.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Singularity {
+    upper_serial: Py<PyArray1<f64>>,
+    upper_parallel: Py<PyArray1<f64>>,
+    lower_serial: Py<PyArray1<f64>>,
+    lower_parallel: Py<PyArray1<f64>>,
+    serial: Py<PyArray1<f64>>,
+    parallel: Py<PyArray1<f64>>,
+    condition: Py<PyArray1<f64>>,
+    manipulability: Py<PyArray1<f64>>,
+    coordinates: Py<PyArray1<f64>>,
+    reachable: Py<PyArray1<bool>>,
+}
+
+#[pymethods]
+impl Manipulator {
+    /// Rates of the actuated joints for unit rates of the task coordinates.
+    #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        poses: Array2<'py>,
+        mode: &str,
+        joints: &str,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let rows: Vec<usize> = match joints {
+            "actuated" => self.inner.actuated().to_vec(),
+            "all" => (0..self.inner.coordinates().len()).collect(),
+            other => {
+                return Err(wrong(format!(
+                    "joints is {other:?}, expected \"actuated\" or \"all\""
+                )));
+            }
+        };
+        let columns = self.inner.task_coordinates().len();
+        let mut tables = Tables::fill(
+            py,
+            poses.count,
+            [rows.len() * columns],
+            threads,
+            || (self.inner.solution(), self.inner.jacobians()),
+            |(at, jacobians), row, [out]| {
+                if !self.solve(poses.row(row), mode, at)? {
+                    return Ok([false; 2]);
+                }
+                let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
+                let whole = &jacobians.joints * &jacobians.pose;
+                for (out, &joint) in out.chunks_exact_mut(columns).zip(&rows) {
+                    out.copy_from_slice(whole.row(joint).transpose().as_slice());
+                }
+                for singular in &jacobians.singular {
+                    for rateless in self.inner.rateless(singular) {
+                        let Some(row) = rows.iter().position(|&joint| joint == rateless) else {
+                            continue;
+                        };
+                        out[row * columns..][..columns].fill(f64::NAN);
+                    }
+                }
+                Ok([true, regular])
+            },
+        )?;
+        tables.take(py, 0)?.reshape([poses.count, rows.len(), columns])
+    }
+
+    /// Rates and accelerations of every joint, for those of the task coordinates.
+    #[pyo3(signature = (poses, rates, accelerations = None, *, mode = "home", threads = None))]
+    fn velocity<'py>(
+        &self,
+        py: Python<'py>,
+        poses: Array2<'py>,
+        rates: Array2<'py>,
+        accelerations: Option<Array2<'py>>,
+        mode: &str,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Motion> {
+        let mode = self.mode(mode)?;
+        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
+        let poses = self.poses(&poses)?;
+        let per_pose = |array: &Array2<'py>, what: &str| {
+            let rows = Rows::new(array, what, &names)?;
+            // One row is for all poses.
+            if rows.count != poses.count && rows.count != 1 {
+                let (given, expected) = (rows.count, poses.count);
+                return Err(wrong(format!("{given} rows of {what}, expected {expected}, or one")));
+            }
+            Ok(rows)
+        };
+        let rates = per_pose(&rates, "rates")?;
+        let accelerations =
+            accelerations.map(|array| per_pose(&array, "accelerations")).transpose()?;
+        let none = vec![0.0; names.len()];
+        let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
+        let mut tables = Tables::fill(
+            py,
+            poses.count,
+            [joints, joints, imaginary, imaginary],
+            threads,
+            || (self.inner.solution(), self.inner.motion()),
+            |(at, motion), row, out| {
+                if !self.solve(poses.row(row), mode, at)? {
+                    return Ok([false; 2]);
+                }
+                let of = |rows: &Rows| row.min(rows.count - 1);
+                let rates = rates.row(of(&rates));
+                let accelerations = accelerations.as_ref().map_or(&none[..], |a| a.row(of(a)));
+                let regular = self.inner.velocity(at, rates, accelerations, motion);
+                let regular = regular.map_err(|error| error.to_string())?;
+                let found = [
+                    &motion.joint_rates,
+                    &motion.joint_accelerations,
+                    &motion.imaginary_rates,
+                    &motion.imaginary_accelerations,
+                ];
+                let [joint_rates, joint_accelerations, imaginary_rates, imaginary_accelerations] =
+                    out;
+                let mut out =
+                    [joint_rates, joint_accelerations, imaginary_rates, imaginary_accelerations];
+                for (out, found) in out.iter_mut().zip(found) {
+                    out.copy_from_slice(found);
+                }
+                for singular in &motion.singular {
+                    for joint in self.inner.rateless(singular) {
+                        (out[0][joint], out[1][joint]) = (f64::NAN, f64::NAN);
+                    }
+                    if let Some(joint) = self.inner.rateless_imaginary(singular) {
+                        (out[2][joint], out[3][joint]) = (f64::NAN, f64::NAN);
+                    }
+                }
+                Ok([true, regular])
+            },
+        )?;
+        let [reachable, regular] = std::mem::take(&mut tables.answers);
+        Ok(Motion {
+            joint_rates: tables.take(py, 0)?.unbind(),
+            joint_accelerations: tables.take(py, 1)?.unbind(),
+            imaginary_rates: tables.take(py, 2)?.unbind(),
+            imaginary_accelerations: tables.take(py, 3)?.unbind(),
+            reachable: reachable.into_pyarray(py).unbind(),
+            regular: regular.into_pyarray(py).unbind(),
+        })
+    }
+
+    /// How near each pose is to a singularity, by section.
+    #[pyo3(signature = (poses, *, mode = "home", length = None, threads = None))]
+    fn singularity<'py>(
+        &self,
+        py: Python<'py>,
+        poses: Array2<'py>,
+        mode: &str,
+        length: Option<f64>,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Singularity> {
+        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let length = length.unwrap_or_else(|| self.inner.characteristic_length());
+        // Its square must be a number.
+        if !(1e-75..=1e75).contains(&length) {
+            return Err(wrong(format!(
+                "length is {length:?}, expected a positive one, 1e-75 to 1e75"
+            )));
+        }
+        let mut tables = Tables::fill(
+            py,
+            poses.count,
+            [1; 9],
+            threads,
+            || (self.inner.solution(), self.inner.jacobians(), self.inner.singularities()),
+            |(at, jacobians, measured), row, out| {
+                if !self.solve(poses.row(row), mode, at)? {
+                    return Ok([false; 2]);
+                }
+                let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
+                self.inner.measure_singularities(jacobians, measured);
+                let conditioning = self.inner.conditioning(jacobians, length);
+                let parallel = |measure: Option<f64>| measure.unwrap_or(f64::NAN);
+                let found = [
+                    measured.upper.serial,
+                    parallel(measured.upper.parallel),
+                    measured.lower.serial,
+                    parallel(measured.lower.parallel),
+                    measured.whole.serial,
+                    parallel(measured.whole.parallel),
+                    conditioning.condition,
+                    conditioning.manipulability,
+                    measured.coordinates,
+                ];
+                for (out, found) in out.into_iter().zip(found) {
+                    out[0] = found;
+                }
+                Ok([true, regular])
+            },
+        )?;
+        let [reachable, _] = std::mem::take(&mut tables.answers);
+        let mut take = |number: usize| -> PyResult<Py<PyArray1<f64>>> {
+            Ok(tables.take(py, number)?.reshape([poses.count])?.unbind())
+        };
+        Ok(Singularity {
+            upper_serial: take(0)?,
+            upper_parallel: take(1)?,
+            lower_serial: take(2)?,
+            lower_parallel: take(3)?,
+            serial: take(4)?,
+            parallel: take(5)?,
+            condition: take(6)?,
+            manipulability: take(7)?,
+            coordinates: take(8)?,
+            reachable: reachable.into_pyarray(py).unbind(),
+        })
+    }
+}
+
+impl Manipulator {
+    fn solve(&self, pose: &[f64], mode: Mode, at: &mut Solution) -> Result<bool, String> {
+        self.inner.inverse(pose, mode, at).map_err(|error| error.to_string())
+    }
+}
