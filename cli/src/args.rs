@@ -76,7 +76,8 @@ pub enum Command {
 ///
 /// Splits every leg into a lower part, which moves in one subspace, and an upper part, which moves in
 /// another; the two subspaces share one motion. A leg whose upper part cannot make that motion gets
-/// an imaginary joint. Of several decompositions the preferred one comes first.
+/// an imaginary joint. Of several decompositions the preferred one comes first. The task coordinates are
+/// measured in the frames that are printed; [task] in the file can set them.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
