@@ -42,6 +42,7 @@ pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
 pub mod mobility;
+pub mod motion;
 pub mod screw;
 pub mod subspace;
 mod svd;
