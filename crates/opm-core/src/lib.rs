@@ -44,6 +44,7 @@ pub mod mechanism;
 pub mod mobility;
 pub mod motion;
 pub mod screw;
+pub mod skeleton;
 pub mod subspace;
 mod svd;
 pub mod task;

@@ -36,7 +36,6 @@ pub(super) mod writer;
 pub use problem::{FileErrors, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 
-pub(crate) use problem::Lines;
 pub(crate) use reader::{LARGEST, Reader, Table, Value};
 
 use super::Mechanism;
