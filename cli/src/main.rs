@@ -16,6 +16,7 @@ mod output;
 mod pose;
 mod progress;
 mod record;
+mod scene;
 mod text;
 mod workspace;
 
