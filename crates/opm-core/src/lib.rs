@@ -48,3 +48,4 @@ pub mod skeleton;
 pub mod subspace;
 mod svd;
 pub mod task;
+pub mod velocity;
