@@ -209,7 +209,7 @@ Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000 -o fine.mcap
-  opm trajectory plano-spherical-5dof --motion poses.csv --strict --format json")]
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -221,7 +221,7 @@ pub struct TrajectoryArgs {
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Samples a second, instead of those of the motion file; of a CSV file 100
-    #[arg(long, value_name = "HZ", value_parser = crate::trajectory::rate)]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = crate::trajectory::rate)]
     pub rate: Option<f64>,
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]

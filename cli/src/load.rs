@@ -6,7 +6,7 @@ use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::{self, MechanismFile};
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Longest mechanism file: beyond, it is something else, an endless device for instance.
@@ -43,7 +43,7 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
                     example_names()
                 )));
             }
-            None => return Err(Failure::at(&label, &io::Error::from(ErrorKind::NotFound))),
+            None => return Err(Failure::Work(format!("{label}: No such file or directory"))),
         },
     };
     let file = file::read(&text).map_err(|errors| Failure::Work(errors.in_file(&label)))?;

@@ -86,9 +86,12 @@ impl<W: Sink> Player<W> {
         });
         let (joints, imaginary) = (&solution.joints, &solution.imaginary);
         let posture = if sample.reached {
-            let platform = run.manipulator.task().displacement(&instant.pose);
-            let posture = skeleton::Posture { joints, imaginary, platform };
-            let frames = self.scene.frames(&posture);
+            let frames = if self.recorder.shows(now) {
+                let platform = run.manipulator.task().displacement(&instant.pose);
+                self.scene.frames(&skeleton::Posture { joints, imaginary, platform })
+            } else {
+                &[]
+            };
             Some(Posture { joints, imaginary, rates, frames })
         } else {
             None

@@ -8,6 +8,7 @@ mod inspect;
 mod linkage;
 mod run;
 mod small;
+mod trajectory;
 mod workspace;
 
 /// The paper's first manipulator, as it is shipped.

@@ -118,6 +118,26 @@ impl Sample {
         }
     }
 
+    /// Takes over what another sample of the same manipulator holds, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Instant { pose, velocity, acceleration } = &other.instant;
+        self.time = other.time;
+        self.instant.pose.clone_from(pose);
+        self.instant.velocity.clone_from(velocity);
+        self.instant.acceleration.clone_from(acceleration);
+        (self.reached, self.regular) = (other.reached, other.regular);
+        self.solution.copy_from(&other.solution);
+        self.motion.joint_rates.clone_from(&other.motion.joint_rates);
+        self.motion.joint_accelerations.clone_from(&other.motion.joint_accelerations);
+        self.motion.imaginary_rates.clone_from(&other.motion.imaginary_rates);
+        self.motion.imaginary_accelerations.clone_from(&other.motion.imaginary_accelerations);
+        self.motion.singular.clone_from(&other.motion.singular);
+        self.condition = other.condition;
+        (self.upper, self.lower) = (other.upper, other.lower);
+        self.levels.clone_from(&other.levels);
+        self.slopes.clone_from(&other.slopes);
+    }
+
     /// The pose is in reach and within all limits.
     pub fn valid(&self) -> bool {
         self.reached && self.solution.within_limits

@@ -92,6 +92,7 @@ impl Trajectory<'_> {
                 self.stretch(from, &before)?;
             }
             for number in 0..self.solver.gauges.len() {
+                self.worse(number, &before);
                 self.switch(number, &before, &after);
             }
             return if after.time < to.time { self.watch(&after, to) } else { Ok(()) };
@@ -107,6 +108,7 @@ impl Trajectory<'_> {
                 let lowest = self.extreme(&stretch, |level| level)?;
                 if lowest.levels[number].is_some_and(|level| level < 0.0) {
                     self.watch(from, &lowest)?;
+                    self.worse(number, &lowest);
                     return self.watch(&lowest, to);
                 }
                 if self.is_zero(number, &lowest) {
@@ -123,12 +125,16 @@ impl Trajectory<'_> {
             let stretch = Stretch { number, from, to };
             let Some(levels) = stretch.levels() else { continue };
             match self.solver.gauges[number] {
-                Gauge::Reach { .. } => {}
+                Gauge::Reach { .. } => {
+                    if levels.iter().all(|&level| level < 0.0) && stretch.turns(1.0) {
+                        let worst = self.extreme(&stretch, |level| level)?;
+                        self.worse(number, &worst);
+                    }
+                }
                 Gauge::Limit { .. } => {
                     let out = levels.map(|level| level < 0.0);
                     if out[0] != out[1] {
-                        let [before, after] = self.crossing(&stretch, |level| level < 0.0)?;
-                        self.switch(number, &before, &after);
+                        self.switch_once(&stretch, out[0])?;
                         continue;
                     }
                     // Past the limit and back, or, from past it, within it for a while.
@@ -167,6 +173,25 @@ impl Trajectory<'_> {
         Ok(())
     }
 
+    /// A limit is passed between two samples, outwards or, from `out`, inwards; on the way the joint may
+    /// be farther out than at either.
+    fn switch_once(&mut self, stretch: &Stretch<'_>, out: bool) -> Result<(), TrajectoryError> {
+        let number = stretch.number;
+        let deeper = stretch.turns(1.0);
+        let worst = if deeper { Some(self.extreme(stretch, |level| level)?) } else { None };
+        let [before, after] = self.crossing(stretch, |level| level < 0.0)?;
+        if !out {
+            self.switch(number, &before, &after);
+        }
+        if let Some(worst) = worst {
+            self.worse(number, &worst);
+        }
+        if out {
+            self.switch(number, &before, &after);
+        }
+        Ok(())
+    }
+
     /// A limit is passed at a turning point between two samples, if it is.
     fn switch_twice(&mut self, stretch: &Stretch<'_>, at: &Sample) -> Result<(), TrajectoryError> {
         let number = stretch.number;
@@ -175,10 +200,10 @@ impl Trajectory<'_> {
             return Ok(());
         }
         for (from, to) in [(stretch.from, at), (at, stretch.to)] {
+            self.worse(number, at);
             let part = Stretch { number, from, to };
             let [before, after] = self.crossing(&part, |level| level < 0.0)?;
             self.switch(number, &before, &after);
-            self.worse(number, at);
         }
         Ok(())
     }
@@ -202,7 +227,7 @@ impl Trajectory<'_> {
         Ok([before, after])
     }
 
-    /// Where `value` of a gauge's level is lowest; as soon as it is below zero, there.
+    /// Where `value` of a gauge's level is lowest.
     fn extreme(
         &mut self,
         stretch: &Stretch<'_>,
@@ -210,15 +235,10 @@ impl Trajectory<'_> {
     ) -> Result<Sample, TrajectoryError> {
         let Stretch { number, from, to } = *stretch;
         let height = |sample: &Sample| sample.levels[number].map_or(f64::INFINITY, &value);
-        let was_below = height(from) < 0.0;
         let [mut low, mut high] = [0.0, 1.0];
         let mut left = self.between(from, to, 1.0 - GOLDEN)?;
         let mut right = self.between(from, to, GOLDEN)?;
         for _ in 0..SEARCH {
-            let lower = if height(&left) < height(&right) { &left } else { &right };
-            if !was_below && height(lower) < 0.0 {
-                break;
-            }
             if height(&left) < height(&right) {
                 high = low + GOLDEN * (high - low);
                 right = left;
@@ -299,6 +319,9 @@ impl Trajectory<'_> {
 
     /// Open violations get to know the last sample.
     pub(super) fn worsen(&mut self) {
+        if self.open.iter().all(Option::is_none) {
+            return;
+        }
         let sample = self.current.clone();
         for number in 0..self.solver.gauges.len() {
             if let Some(violation) = &mut self.open[number] {
