@@ -208,7 +208,7 @@ pub struct LinkageArgs {
 Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
-  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000 -o fine.mcap
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// Mechanism file, or the name of a shipped example

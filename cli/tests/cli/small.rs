@@ -95,7 +95,7 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap" | "play.mcap" | "fine.mcap") {
+                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap" | "play.mcap") {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

@@ -209,6 +209,6 @@ fn wrong_usage_names_the_flag() {
     let nowhere = folder.arg("no/such/folder.mcap");
     trajectory(PLANO, SINUSOIDS, &["-o", &nowhere]).fails_with_one_line(1, &["folder.mcap"]);
     // The helical manipulator has no such coordinates.
-    trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "x, y, phi"]);
+    trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "`x`, `y`, `phi`"]);
     assert_eq!(folder.names(), ["m.toml"]);
 }

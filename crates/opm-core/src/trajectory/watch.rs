@@ -180,9 +180,12 @@ impl Trajectory<'_> {
         let deeper = stretch.turns(1.0);
         let worst = if deeper { Some(self.extreme(stretch, |level| level)?) } else { None };
         let [before, after] = self.crossing(stretch, |level| level < 0.0)?;
+        // Where a slider would have to be infinitely long, it comes from there and not from its limit.
+        let edge = if out { &before } else { &after };
         if !out {
             self.switch(number, &before, &after);
         }
+        self.worse(number, edge);
         if let Some(worst) = worst {
             self.worse(number, &worst);
         }
@@ -222,7 +225,12 @@ impl Trajectory<'_> {
             if middle.time <= before.time || middle.time >= after.time {
                 break;
             }
-            if middle.levels[number].map(&side) == first { before = middle } else { after = middle }
+            let here = middle.levels[number].map(&side);
+            // As near as can be to a pole, in the few roundings' width where there is no answer.
+            if here.is_none() {
+                break;
+            }
+            if here == first { before = middle } else { after = middle }
         }
         Ok([before, after])
     }
