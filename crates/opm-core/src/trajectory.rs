@@ -281,7 +281,7 @@ impl<'a> Trajectory<'a> {
             self.begin();
         } else if self.eventful() {
             let (from, to) = (self.previous.clone(), self.current.clone());
-            self.watch(&from, &to)?;
+            self.current = self.watch(&from, to)?;
         }
         self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
         self.worsen();
