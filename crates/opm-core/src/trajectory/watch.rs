@@ -276,7 +276,12 @@ impl Trajectory<'_> {
     }
 
     /// The joints and the gauges, not the rates, at a share of the way from one sample to another.
-    fn between(&mut self, from: &Sample, to: &Sample, share: f64) -> Result<Sample, TrajectoryError> {
+    fn between(
+        &mut self,
+        from: &Sample,
+        to: &Sample,
+        share: f64,
+    ) -> Result<Sample, TrajectoryError> {
         let mut sample = from.clone();
         let time = from.time + share * (to.time - from.time);
         self.solver.solve(time, Turns::Held, &mut sample)?;
@@ -287,7 +292,8 @@ impl Trajectory<'_> {
     fn same_legs(&self, a: &Sample, b: &Sample) -> bool {
         let out = |sample: &Sample, leg| sample.solution.unreachable.iter().any(|u| u.leg == leg);
         a.reached && b.reached
-            || (0..self.solver.manipulator.mechanism().legs.len()).all(|leg| out(a, leg) == out(b, leg))
+            || (0..self.solver.manipulator.mechanism().legs.len())
+                .all(|leg| out(a, leg) == out(b, leg))
     }
 
     /// Whether a stretch of violation is under way.
