@@ -70,6 +70,7 @@ fn help_and_version_go_to_standard_output() {
     for command in [
         "decompose",
         "ik",
+        "velocity",
         "linkage",
         "trajectory",
         "workspace",
@@ -87,7 +88,8 @@ fn help_and_version_go_to_standard_output() {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "linkage", "trajectory", "workspace", "examples"] {
+    for command in ["decompose", "ik", "velocity", "linkage", "trajectory", "workspace", "examples"]
+    {
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());

@@ -160,6 +160,7 @@ fn read_header(
 }
 
 /// A line to be read.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     number: usize,
     line: &'a str,
