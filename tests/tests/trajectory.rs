@@ -150,7 +150,7 @@ fn what_is_violated_is_reported_and_nothing_else() {
                     if of.clone().any(|v| near(&v)) {
                         continue;
                     }
-                    let within = of.clone().find(|v| (v.start..=v.end).contains(&time));
+                    let within = of.clone().find(|v| (v.start..=v.end).contains(time));
                     let told = violated.iter().find(|(g, _)| g == gauge).map(|(_, amount)| *amount);
                     assert_eq!(
                         within.is_some(),
