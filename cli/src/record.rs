@@ -133,7 +133,7 @@ fn together(grid: &Grid) -> u64 {
 }
 
 /// The name of an unfinished file.
-fn partial(path: &Path) -> PathBuf {
+pub fn partial(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".partial");
     name.into()

@@ -9,6 +9,7 @@ mod inspect;
 mod linkage;
 mod run;
 mod small;
+mod trajectory;
 mod velocity;
 mod workspace;
 

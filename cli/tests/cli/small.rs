@@ -22,6 +22,20 @@ fn examples_are_listed_and_printed() {
 }
 
 #[test]
+fn motions_are_listed_and_printed() {
+    let list = opm(&["examples", "--format", "json"]).json();
+    let motions = list["motions"].as_array().unwrap();
+    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/motions");
+    assert_eq!(motions.len(), std::fs::read_dir(files).unwrap().count());
+    for motion in motions {
+        assert_eq!(keys(motion), ["name", "mechanism", "description"]);
+        let name = motion["name"].as_str().unwrap();
+        assert!(opm(&["examples"]).text().contains(name));
+        assert!(opm(&["examples", name]).text().contains(&format!("name = \"{name}\"")));
+    }
+}
+
+#[test]
 fn a_printed_example_is_a_mechanism_file() {
     let folder = Folder::new();
     let file = folder.write("mine.toml", opm(&["examples", PLANO]).text());
@@ -59,6 +73,7 @@ fn help_and_version_go_to_standard_output() {
         "fk",
         "velocity",
         "linkage",
+        "trajectory",
         "workspace",
         "inspect",
         "examples",
@@ -74,7 +89,9 @@ fn help_and_version_go_to_standard_output() {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "fk", "velocity", "linkage", "workspace", "examples"] {
+    for command in
+        ["decompose", "ik", "fk", "velocity", "linkage", "trajectory", "workspace", "examples"]
+    {
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
@@ -90,7 +107,7 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap") {
+                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap" | "play.mcap") {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

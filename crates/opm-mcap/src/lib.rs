@@ -18,6 +18,7 @@ mod file;
 pub mod joints;
 mod log;
 mod reader;
+pub mod scene;
 pub mod trajectory;
 pub mod workspace;
 
