@@ -1,0 +1,457 @@
+//! Small pictures of points in a plane, side by side in sections.
+
+mod cells;
+mod cloud;
+mod histogram;
+
+pub use cells::{Cells, Paint, Spacing};
+pub use cloud::Cloud;
+pub use histogram::Histogram;
+
+use crate::axis::{self, Axis, Steps, Unit};
+use crate::color::{FAINT, INK, Map, WHITE};
+use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
+use crate::font::{CAPITALS, Face};
+use crate::frame::{BELOW, Frame, NAME, NUMBERS_BELOW, TICK, fits, left_of, ticks_in};
+use crate::heading::{Heading, MARGIN};
+use crate::time::Scale;
+use crate::{MOST, TooSmall};
+
+/// Sections of tiles, from top to bottom.
+#[derive(Clone, Debug)]
+pub struct TileFigure {
+    /// What stands above and below.
+    pub heading: Heading,
+    /// The sections.
+    pub sections: Vec<Section>,
+}
+
+/// Tiles that show the same kind of thing.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// What stands above it.
+    pub title: String,
+    /// Tiles in a row.
+    pub columns: usize,
+    /// All tiles have the same axes, which are numbered at the outer sides only.
+    pub shared: bool,
+    /// Row by row.
+    pub tiles: Vec<Tile>,
+    /// What the colours mean.
+    pub bar: Option<Bar>,
+}
+
+/// A box of points.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// What stands above it; may be empty.
+    pub title: String,
+    /// From left to right.
+    pub x: Measure,
+    /// From bottom to top.
+    pub y: Measure,
+    /// What is in it.
+    pub content: Content,
+    /// A place that is marked.
+    pub mark: Option<[f64; 2]>,
+}
+
+/// What values along an axis are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Their name.
+    pub name: String,
+    /// Their unit.
+    pub unit: Unit,
+}
+
+/// What is in a tile.
+#[derive(Clone, Debug)]
+pub enum Content {
+    /// Cells of a grid.
+    Cells(Cells, Paint),
+    /// Points anywhere.
+    Cloud(Cloud),
+    /// Numbers of values.
+    Histogram(Histogram),
+}
+
+/// The colours of a section, from the lowest value to the highest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    /// What the colours show.
+    pub measure: Measure,
+    /// Values at the two ends.
+    pub range: [f64; 2],
+    /// The colours.
+    pub map: Map,
+    /// How values are laid out along it.
+    pub scale: Scale,
+}
+
+/// Width of a figure that nobody chose one for, at most; and the least one.
+const WIDTH: f64 = 1000.0;
+const NARROW: f64 = 420.0;
+/// Widest tile; widest histogram.
+const WIDEST: f64 = 420.0;
+const WIDEST_HISTOGRAM: f64 = 620.0;
+/// Height of a tile over its width, where lengths do not decide it, and at most.
+const FLAT: f64 = 0.72;
+const FLAT_HISTOGRAM: f64 = 0.36;
+const TALLEST: f64 = 1.05;
+/// Least width and height of a tile.
+const LEAST: f64 = 60.0;
+/// Between columns.
+const BETWEEN: f64 = 22.0;
+/// Above a tile: with a title, and without.
+const ABOVE: f64 = 20.0;
+const ABOVE_BARE: f64 = 8.0;
+/// Above a section, for its title; between sections.
+const TITLE_ROOM: f64 = 20.0;
+const SECTIONS_APART: f64 = 20.0;
+/// Width of the colours.
+const BAR: f64 = 14.0;
+
+const SECTION: Style = Style { size: 13.5, face: Face::Bold, color: INK };
+const EMPTY: Style = Style { size: 12.0, face: Face::Regular, color: FAINT };
+
+/// A section with all sizes known.
+struct Laid<'a> {
+    section: &'a Section,
+    ranges: Vec<[[f64; 2]; 2]>,
+    /// Room left of the first column, and of each further one.
+    left: [f64; 2],
+    /// Room for the colours.
+    bar: f64,
+    /// Of a tile.
+    width: f64,
+    height: f64,
+}
+
+impl TileFigure {
+    /// Draws it, in a size that suits it or in the one given.
+    ///
+    /// # Errors
+    /// A size that the tiles do not fit in.
+    pub fn draw(&self, size: Option<Size>) -> Result<Drawing, TooSmall> {
+        let room = size.map_or(WIDTH, |size| size.width);
+        let mut laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, room)).collect();
+        let used = laid.iter().map(Laid::right).fold(NARROW, f64::max);
+        let width = size.map_or(used, |size| size.width);
+        let between = SECTIONS_APART * laid.len().saturating_sub(1) as f64;
+        let fixed = self.heading.top(width) + between + self.heading.bottom(width);
+        let around: f64 = laid.iter().map(Laid::around).sum();
+        let tiles: f64 = laid.iter().map(Laid::tiles).sum();
+        let height = size.map_or(fixed + around + tiles, |size| size.height);
+        // Tiles of the same shapes, smaller.
+        let shrink = ((height - fixed - around) / tiles).min(1.0);
+        for section in &mut laid {
+            section.width *= shrink;
+            section.height *= shrink;
+        }
+        let smallest = laid.iter().map(|s| s.width.min(s.height)).fold(f64::MAX, f64::min);
+        if !(smallest >= LEAST - 1e-6) || width < used - 1.0 || height > MOST || width > MOST {
+            return Err(TooSmall { needed: self.least(), panels: self.panels() });
+        }
+
+        let mut shapes = self.heading.draw(width, height - self.heading.bottom(width));
+        let mut y = self.heading.top(width);
+        for section in &laid {
+            shapes.push(section.draw(y));
+            y += section.around() + section.tiles() + SECTIONS_APART;
+        }
+        Ok(Drawing { size: Size { width, height }, title: self.heading.title.clone(), shapes })
+    }
+
+    fn panels(&self) -> usize {
+        self.sections.iter().map(|section| section.tiles.len()).sum()
+    }
+
+    /// The least size, a little on the large side.
+    fn least(&self) -> Size {
+        let laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, WIDTH)).collect();
+        let grow = laid.iter().map(|s| LEAST / s.width.min(s.height)).fold(0.0, f64::max);
+        let width = |s: &Laid<'_>| {
+            s.right() - s.section.columns as f64 * s.width * (1.0 - grow.min(1.0))
+        };
+        let width = laid.iter().map(width).fold(NARROW, f64::max).ceil();
+        let between = SECTIONS_APART * laid.len().saturating_sub(1) as f64;
+        let fixed = self.heading.top(width) + between + self.heading.bottom(width);
+        let height: f64 = laid.iter().map(|s| s.around() + s.tiles() * grow.min(1.0)).sum();
+        Size { width, height: (fixed + height).ceil() }
+    }
+}
+
+impl<'a> Laid<'a> {
+    fn new(section: &'a Section, room: f64) -> Self {
+        let ranges = section.ranges();
+        let tile = section.tiles.first();
+        let histogram = tile.is_some_and(|t| matches!(t.content, Content::Histogram(_)));
+        let columns = section.columns.max(1) as f64;
+        let axis = |number: usize, named| {
+            let y = Axis::linear(
+                ranges[number][1],
+                section.tiles[number].y.unit.steps,
+                ticks_in(0.25 * room),
+                |_, _| true,
+            );
+            left_of(&y, named) + 4.0
+        };
+        let widest = (0..ranges.len()).map(|i| axis(i, true)).fold(0.0, f64::max);
+        let left = [widest, if section.shared { BETWEEN } else { widest + BETWEEN }];
+        let bar = section.bar.as_ref().map_or(0.0, Bar::room);
+        let free = room - 2.0 * MARGIN - left[0] - left[1] * (columns - 1.0) - bar;
+        let most = if histogram { WIDEST_HISTOGRAM } else { WIDEST };
+        let width = (free / columns).clamp(1.0, most);
+        // Lengths, and angles, are as long one way as the other.
+        let slope = |number: usize| {
+            let ([x, y], tile) = (ranges[number], &section.tiles[number]);
+            let same = !tile.x.unit.symbol.is_empty() && tile.x.unit.symbol == tile.y.unit.symbol;
+            if histogram {
+                FLAT_HISTOGRAM
+            } else if same {
+                (y[1] - y[0]) / (x[1] - x[0])
+            } else {
+                FLAT
+            }
+        };
+        let slopes: Vec<f64> = (0..ranges.len()).map(slope).collect();
+        let steepest = slopes.iter().copied().fold(0.0, f64::max).max(0.15);
+        let height = width * steepest.min(TALLEST);
+        let width = if section.shared { height / steepest } else { width };
+        Self { section, ranges, left, bar, width, height }
+    }
+
+    fn rows(&self) -> usize {
+        self.section.tiles.len().div_ceil(self.section.columns.max(1))
+    }
+
+    /// Tiles in the first row.
+    fn columns(&self) -> f64 {
+        self.section.tiles.len().min(self.section.columns.max(1)) as f64
+    }
+
+    /// Width of the tiles with their numbers.
+    fn across(&self) -> f64 {
+        let columns = self.columns();
+        self.left[0] + self.left[1] * (columns - 1.0) + columns * self.width
+    }
+
+    fn right(&self) -> f64 {
+        let title = SECTION.width(&self.section.title);
+        MARGIN + title.max(self.across() + self.bar) + MARGIN
+    }
+
+    /// Height of the tiles alone.
+    fn tiles(&self) -> f64 {
+        self.rows() as f64 * self.height
+    }
+
+    fn above(&self) -> f64 {
+        let titled = self.section.tiles.iter().any(|tile| !tile.title.is_empty());
+        if titled { ABOVE } else { ABOVE_BARE }
+    }
+
+    /// Below a row that is not the last.
+    fn below(&self) -> f64 {
+        if self.section.shared { 8.0 } else { BELOW }
+    }
+
+    /// Height of all but the tiles.
+    fn around(&self) -> f64 {
+        let rows = self.rows() as f64;
+        TITLE_ROOM + rows * self.above() + (rows - 1.0).max(0.0) * self.below() + BELOW
+    }
+
+    fn draw(&self, top: f64) -> Shape {
+        let section = self.section;
+        let title = SECTION.text(&*section.title, [MARGIN, top + 11.0], Anchor::Start);
+        let mut shapes = vec![title];
+        let start = top + TITLE_ROOM;
+        for (number, tile) in section.tiles.iter().enumerate() {
+            let (row, column) = (number / section.columns, number % section.columns);
+            let x = MARGIN + self.left[0] + column as f64 * (self.width + self.left[1]);
+            let step = self.above() + self.height + self.below();
+            let y = start + row as f64 * step + self.above();
+            let lowest = number + section.columns >= section.tiles.len();
+            let sides = Sides {
+                left: column == 0 || !section.shared,
+                below: lowest || !section.shared,
+            };
+            let place = Rect { x, y, width: self.width, height: self.height };
+            shapes.push(self.tile(tile, self.ranges[number], place, sides));
+        }
+        if let Some(bar) = &section.bar {
+            let x = MARGIN + self.across() + BETWEEN;
+            let height = (self.tiles() + (self.rows() as f64 - 1.0) * (self.above() + self.below()))
+                .min(320.0);
+            shapes.push(bar.draw(Rect { x, y: start + self.above(), width: BAR, height }));
+        }
+        Shape::Group { kind: "section", label: section.title.clone(), shapes }
+    }
+
+    fn tile(&self, tile: &Tile, range: [[f64; 2]; 2], place: Rect, sides: Sides) -> Shape {
+        let [x, y] = range;
+        let most = (place.width / 44.0).max(2.0) as usize;
+        let x = Axis::linear(x, tile.x.unit.steps, most, fits(place.width));
+        let y = Axis::linear(y, tile.y.unit.steps, ticks_in(place.height), |_, _| true);
+        // Tiles of the other shapes in the section keep theirs inside the common box.
+        let frame = Frame { place, x: &x, y: &y };
+        let mut shapes = vec![frame.grid()];
+        let content = match &tile.content {
+            Content::Cells(cells, paint) => cells.draw(&frame, *paint),
+            Content::Cloud(cloud) => cloud.draw(&frame, self.section.densest()),
+            Content::Histogram(histogram) => histogram.draw(&frame),
+        };
+        if tile.content.extent().is_none() {
+            let middle = [place.x + 0.5 * place.width, place.y + 0.5 * place.height];
+            shapes.push(EMPTY.text("no poses", middle, Anchor::Middle));
+        }
+        shapes.push(Shape::Group { kind: "points", label: tile.title.clone(), shapes: content });
+        if let Some([a, b]) = tile.mark
+            && (0.0..=1.0).contains(&x.share(a))
+            && (0.0..=1.0).contains(&y.share(b))
+        {
+            shapes.push(cross(frame.at(a, b)));
+        }
+        shapes.extend(frame.border());
+        let name = y.title(&tile.y.name, &tile.y.unit);
+        if sides.left {
+            shapes.push(frame.beside(Some(&name)));
+        }
+        let name = x.title(&tile.x.name, &tile.x.unit);
+        if sides.below {
+            shapes.push(frame.below(Some(&name)));
+        }
+        if !tile.title.is_empty() {
+            let middle = [place.x + 0.5 * place.width, place.y - 6.0];
+            let text = NAME.face.fit(&tile.title, NAME.size, place.width + BETWEEN);
+            shapes.push(NAME.text(text, middle, Anchor::Middle));
+        }
+        let label = match &*tile.title {
+            "" => format!("{} over {}", tile.y.name, tile.x.name),
+            title => title.to_owned(),
+        };
+        Shape::Group { kind: "panel", label, shapes }
+    }
+}
+
+/// At which sides a tile has numbers.
+#[derive(Clone, Copy)]
+struct Sides {
+    left: bool,
+    below: bool,
+}
+
+impl Section {
+    /// Most points in one place of any cloud.
+    pub fn densest(&self) -> u64 {
+        let clouds = self.tiles.iter().filter_map(|tile| match &tile.content {
+            Content::Cloud(cloud) if !cloud.has_dots() => Some(cloud.densest()),
+            _ => None,
+        });
+        clouds.max().unwrap_or(1)
+    }
+
+    /// What the axes of every tile show.
+    fn ranges(&self) -> Vec<[[f64; 2]; 2]> {
+        let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let extents: Vec<_> = self.tiles.iter().map(|tile| tile.content.extent()).collect();
+        let all = extents.iter().copied().flatten();
+        let all = all.reduce(|a, b| [union(a[0], b[0]), union(a[1], b[1])]);
+        let of = |(tile, extent): (&Tile, Option<[[f64; 2]; 2]>)| {
+            let extent = if self.shared { all } else { extent };
+            let [x, y] = [(&tile.x, 0), (&tile.y, 1)]
+                .map(|(measure, i)| axis::around(extent.map(|e| e[i]), &measure.unit));
+            match tile.content {
+                // Bars stand on the axis.
+                Content::Histogram(_) => [x, [0.0, y[1]]],
+                _ => [x, y],
+            }
+        };
+        self.tiles.iter().zip(extents).map(of).collect()
+    }
+}
+
+impl Content {
+    /// Ranges of what is drawn; `None` of nothing.
+    pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        match self {
+            Self::Cells(cells, _) => cells.extent(),
+            Self::Cloud(cloud) => cloud.extent(),
+            Self::Histogram(histogram) => histogram.extent(),
+        }
+    }
+}
+
+impl Bar {
+    fn axis(&self, height: f64) -> Axis {
+        match self.scale {
+            Scale::Linear => {
+                let range = if self.range[0] < self.range[1] {
+                    self.range
+                } else {
+                    axis::around(Some(self.range), &self.measure.unit)
+                };
+                Axis::linear(range, self.measure.unit.steps, ticks_in(height), |_, _| true)
+            }
+            Scale::Logarithmic => Axis::logarithmic(self.range, ticks_in(height)),
+        }
+    }
+
+    fn room(&self) -> f64 {
+        BETWEEN + BAR + 10.0 + self.axis(200.0).label_width(TICK.face, TICK.size) + 10.0 + NAME.size
+    }
+
+    fn draw(&self, place: Rect) -> Shape {
+        const SHADES: usize = 64;
+        let axis = self.axis(place.height);
+        let mut shapes = Vec::new();
+        let piece = place.height / SHADES as f64;
+        for i in 0..SHADES {
+            let color = self.map.color((i as f64 + 0.5) / SHADES as f64);
+            let y = place.bottom() - piece * (i + 1) as f64;
+            // Pieces lie over each other a little, so that no ground shows between them.
+            let height = (piece + 0.5).min(place.bottom() - y);
+            shapes.push(Shape::Area(Path::rect(Rect { y, height, ..place }), color));
+        }
+        let pen = Pen::new(INK, 0.8);
+        shapes.push(Shape::Line(Path::rect(place), pen));
+        let mut ticks = Path::default();
+        for tick in &axis.ticks {
+            let share = axis.share(tick.value);
+            if !(0.0..=1.0).contains(&share) {
+                continue;
+            }
+            let y = place.bottom() - share * place.height;
+            ticks.0.extend(Path::through([[place.right(), y], [place.right() + 4.0, y]]).0);
+            let half = 0.5 * CAPITALS * TICK.size;
+            let at = [place.right() + 7.0, y + half];
+            shapes.push(TICK.text(&*tick.label, at, Anchor::Start));
+        }
+        shapes.push(Shape::Line(ticks, pen));
+        let name = axis.title(&self.measure.name, &self.measure.unit);
+        let x = place.right() + 10.0 + axis.label_width(TICK.face, TICK.size) + 6.0 + NAME.size * 0.8;
+        let middle = place.y + 0.5 * place.height;
+        let room = place.height + NUMBERS_BELOW;
+        let name = NAME.face.fit(&name, NAME.size, room);
+        shapes.push(NAME.turned(name, [x, middle], Anchor::Middle));
+        Shape::Group { kind: "bar", label: self.measure.name.clone(), shapes }
+    }
+}
+
+/// A cross that is seen on any ground.
+fn cross([x, y]: [f64; 2]) -> Shape {
+    const ARM: f64 = 5.0;
+    let mut path = Path::through([[x - ARM, y], [x + ARM, y]]);
+    path.0.extend(Path::through([[x, y - ARM], [x, y + ARM]]).0);
+    let shapes =
+        vec![Shape::Line(path.clone(), Pen::new(WHITE, 3.4)), Shape::Line(path, Pen::new(INK, 1.3))];
+    Shape::Group { kind: "mark", label: String::new(), shapes }
+}
+
+/// A pure number of things.
+pub fn numbers(name: &str) -> Measure {
+    let unit = Unit { symbol: String::new(), steps: Steps::Decimal, resolution: 0.5 };
+    Measure { name: name.to_owned(), unit }
+}
