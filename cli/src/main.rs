@@ -13,6 +13,7 @@ mod lines;
 mod linkage;
 mod load;
 mod output;
+mod plot;
 mod pose;
 mod progress;
 mod record;
@@ -38,6 +39,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Ik(command) => ik::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Completions(command) => completions::run(command),

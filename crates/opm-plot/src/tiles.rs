@@ -65,6 +65,14 @@ pub struct Measure {
     pub unit: Unit,
 }
 
+impl Measure {
+    /// A number of things, which are called `name`.
+    pub fn count(name: &str) -> Self {
+        let unit = Unit { symbol: String::new(), steps: Steps::Decimal, resolution: 0.5 };
+        Self { name: name.to_owned(), unit }
+    }
+}
+
 /// What is in a tile.
 #[derive(Clone, Debug)]
 pub enum Content {
@@ -448,10 +456,4 @@ fn cross([x, y]: [f64; 2]) -> Shape {
     let shapes =
         vec![Shape::Line(path.clone(), Pen::new(WHITE, 3.4)), Shape::Line(path, Pen::new(INK, 1.3))];
     Shape::Group { kind: "mark", label: String::new(), shapes }
-}
-
-/// A pure number of things.
-pub fn numbers(name: &str) -> Measure {
-    let unit = Unit { symbol: String::new(), steps: Steps::Decimal, resolution: 0.5 };
-    Measure { name: name.to_owned(), unit }
 }

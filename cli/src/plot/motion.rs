@@ -1,0 +1,469 @@
+//! The picture of a motion: everything over time.
+
+use super::source::{Kind, Rate, Source, Stop};
+use super::{PanelName, drawn};
+use crate::args::PlotArgs;
+use crate::failure::Failure;
+use crate::text::{count, short};
+use opm_core::joint::Quantity;
+use opm_mcap::Flat;
+use opm_plot::{Curve, Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
+use std::collections::BTreeMap;
+
+/// Nanoseconds in a second.
+const SECOND: f64 = 1e9;
+/// Field of `/condition` that is 1 where the mechanism can be as recorded.
+const VALID: &str = "valid";
+/// Field of `/condition` whose size spans powers of ten.
+const CONDITION: &str = "condition";
+/// Violations that the notes list.
+const LISTED: usize = 8;
+
+/// What a curve belongs to: the rows of the picture, from top to bottom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    Pose,
+    Imaginary,
+    Actuated,
+    Passive,
+    Joints,
+    Condition,
+    Singularity,
+}
+
+/// The topics that are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Topic {
+    name: &'static str,
+    kind: TopicKind,
+    rate: Rate,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TopicKind {
+    Pose,
+    Joints,
+    Imaginary,
+    Condition,
+}
+
+const TOPICS: [Topic; 8] = {
+    const fn topic(name: &'static str, kind: TopicKind, rate: Rate) -> Topic {
+        Topic { name, kind, rate }
+    }
+    [
+        topic("/pose", TopicKind::Pose, Rate::Position),
+        topic("/pose_velocities", TopicKind::Pose, Rate::Velocity),
+        topic("/joints", TopicKind::Joints, Rate::Position),
+        topic("/velocities", TopicKind::Joints, Rate::Velocity),
+        topic("/accelerations", TopicKind::Joints, Rate::Acceleration),
+        topic("/imaginary_joints", TopicKind::Imaginary, Rate::Position),
+        topic("/imaginary_velocities", TopicKind::Imaginary, Rate::Velocity),
+        topic("/condition", TopicKind::Condition, Rate::Position),
+    ]
+};
+
+pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
+    if let Some(slices) = args.slice.first() {
+        let problem = format!("{}: {} is no workspace", slices.name, source.label);
+        return Err(Failure::flag("--slice", problem));
+    }
+    let topics = || source.recording.topics.iter();
+    if !topics().any(|topic| TOPICS.iter().any(|known| known.name == topic.name)) {
+        let mut names: Vec<&str> = topics().map(|topic| &*topic.name).collect();
+        names.truncate(8);
+        let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+        return Err(Failure::Work(format!(
+            "{}: nothing to draw: it holds {found}, expected /workspace/slices or /joints, as opm \
+             records them",
+            source.label
+        )));
+    }
+    let wanted = Wanted::new(args)?;
+    let mut motion = Motion::new(source);
+    source.messages(|message| {
+        let known = TOPICS.iter().position(|topic| topic.name == message.topic);
+        if let (Some(topic), Some(flat)) = (known, message.flat) {
+            let mut values = std::mem::take(&mut motion.values);
+            message.values(&mut values)?;
+            motion.add(topic, flat, message.time, &values);
+            motion.values = values;
+        }
+        Ok::<(), Stop>(())
+    })?;
+    motion.finish();
+    if motion.instants == 0 {
+        return Err(Failure::Work(format!("{}: no sample to draw", source.label)));
+    }
+    let figure = motion.figure(&wanted, args)?;
+    drawn(args, |size| figure.draw(size))
+}
+
+/// What `--panels` asks for.
+struct Wanted {
+    groups: Option<Vec<Group>>,
+    rates: Vec<Rate>,
+}
+
+impl Wanted {
+    fn new(args: &PlotArgs) -> Result<Self, Failure> {
+        let (mut groups, mut rates) = (vec![], vec![]);
+        for panel in &args.panels {
+            match panel {
+                PanelName::Pose => groups.push(Group::Pose),
+                PanelName::Imaginary => groups.push(Group::Imaginary),
+                PanelName::Actuated => groups.extend([Group::Actuated, Group::Joints]),
+                PanelName::Passive => groups.push(Group::Passive),
+                PanelName::Condition => groups.extend([Group::Condition, Group::Singularity]),
+                PanelName::Positions => rates.push(Rate::Position),
+                PanelName::Velocities => rates.push(Rate::Velocity),
+                PanelName::Accelerations => rates.push(Rate::Acceleration),
+                PanelName::Slices => {
+                    let problem = format!("{} are of a workspace, not of a motion", panel.name());
+                    return Err(Failure::flag("--panels", problem));
+                }
+            }
+        }
+        if rates.is_empty() {
+            rates = vec![Rate::Position, Rate::Velocity];
+        }
+        Ok(Self { groups: (!groups.is_empty()).then_some(groups), rates })
+    }
+
+    /// Without --panels, passive joints are drawn where --values names them.
+    fn has(&self, group: Group, args: &PlotArgs) -> bool {
+        match &self.groups {
+            Some(groups) => groups.contains(&group),
+            None => group != Group::Passive || !args.values.is_empty(),
+        }
+    }
+}
+
+/// A value over time.
+struct Trace {
+    name: String,
+    group: Group,
+    quantity: Option<Quantity>,
+    rate: Rate,
+    /// By what SI values are divided.
+    factor: f64,
+    curve: Curve,
+}
+
+/// Everything over time.
+struct Motion<'a> {
+    source: &'a Source<'a>,
+    /// Time of the first message, in nanoseconds.
+    start: u64,
+    /// The traces of every topic, once it has been seen.
+    traces: Vec<Option<Vec<Trace>>>,
+    /// Time of the messages that are being read.
+    now: Option<u64>,
+    /// Topics with a message at that time.
+    heard: [bool; TOPICS.len()],
+    instants: u64,
+    end: u64,
+    invalid: Vec<[f64; 2]>,
+    valid: bool,
+    values: Vec<f64>,
+}
+
+impl<'a> Motion<'a> {
+    fn new(source: &'a Source<'a>) -> Self {
+        Self {
+            source,
+            start: source.recording.time_range.map_or(0, |range| range[0]),
+            traces: TOPICS.iter().map(|_| None).collect(),
+            now: None,
+            heard: [false; TOPICS.len()],
+            instants: 0,
+            end: 0,
+            invalid: vec![],
+            valid: true,
+            values: vec![],
+        }
+    }
+
+    fn seconds(&self, time: u64) -> f64 {
+        time.saturating_sub(self.start) as f64 / SECOND
+    }
+
+    fn add(&mut self, topic: usize, flat: &Flat, time: u64, values: &[f64]) {
+        if self.now != Some(time) {
+            self.finish();
+            self.now = Some(time);
+            self.instants += 1;
+            self.end = time;
+        }
+        self.heard[topic] = true;
+        let seconds = self.seconds(time);
+        if TOPICS[topic].kind == TopicKind::Condition {
+            let valid = flat.names.iter().position(|name| name == VALID);
+            self.judge(seconds, valid.is_none_or(|valid| values[valid] != 0.0));
+        }
+        let source = self.source;
+        let traces = self.traces[topic].get_or_insert_with(|| traces(source, TOPICS[topic], flat));
+        let values = flat.names.iter().zip(values).filter(|(name, _)| !skipped(topic, name));
+        for (trace, (_, value)) in traces.iter_mut().zip(values) {
+            trace.curve.push(seconds, value / trace.factor);
+        }
+    }
+
+    /// Ends an instant. What had values before and has none now has a gap.
+    fn finish(&mut self) {
+        let Some(time) = self.now.take() else { return };
+        let seconds = self.seconds(time);
+        for (traces, heard) in self.traces.iter_mut().zip(&mut self.heard) {
+            if !std::mem::take(heard) {
+                for trace in traces.iter_mut().flatten() {
+                    trace.curve.push(seconds, f64::NAN);
+                }
+            }
+        }
+    }
+
+    fn judge(&mut self, seconds: f64, valid: bool) {
+        match (valid, self.valid, self.invalid.last_mut()) {
+            (false, false, Some(span)) => span[1] = seconds,
+            (false, ..) => self.invalid.push([seconds; 2]),
+            (true, ..) => {}
+        }
+        self.valid = valid;
+    }
+
+    fn figure(self, wanted: &Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
+        let seconds = self.seconds(self.end);
+        let heading = self.heading(seconds);
+        let Self { source, traces, invalid, .. } = self;
+        let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
+        check_names(args, &all)?;
+        let (marks, mut notes) = violations(source);
+        if let Some(thinned) = all.iter().find(|trace| trace.curve.is_thinned()) {
+            notes.push(format!(
+                "Each curve is drawn by the extremes of its {} samples in thousands of spans of time.",
+                count(thinned.curve.samples())
+            ));
+        }
+        // Rows in order; in each, positions and what follows from them.
+        let mut rows: BTreeMap<(Group, u8), Vec<Trace>> = BTreeMap::new();
+        for trace in all {
+            let named = args.values.is_empty() || args.values.contains(&trace.name);
+            if named && wanted.has(trace.group, args) && wanted.rates.contains(&trace.rate) {
+                let order = match trace.quantity {
+                    Some(Quantity::Length) => 0,
+                    Some(Quantity::Angle) => 1,
+                    None => 2,
+                };
+                rows.entry((trace.group, order)).or_default().push(trace);
+            }
+        }
+        if rows.is_empty() {
+            let label = &source.label;
+            return Err(Failure::Work(format!(
+                "{label}: it holds none of what --panels and --values ask for"
+            )));
+        }
+        // Columns that nothing is in are left out.
+        let rates: Vec<Rate> = [Rate::Position, Rate::Velocity, Rate::Acceleration]
+            .into_iter()
+            .filter(|rate| rows.values().flatten().any(|trace| trace.rate == *rate))
+            .collect();
+        let rows = rows.into_iter().map(|((group, _), traces)| row(source, group, traces, &rates));
+        let notes = [notes, source.notes()].concat();
+        Ok(TimeFigure {
+            heading: Heading { notes, ..heading },
+            time: [0.0, seconds],
+            rows: rows.collect(),
+            invalid,
+            marks,
+        })
+    }
+
+    fn heading(&self, seconds: f64) -> Heading {
+        let run = self.source.metadata("run");
+        let mut parts = vec![];
+        for (key, label) in
+            [("motion", "motion "), ("mode", "mode "), ("input", "input "), ("branch", "branch ")]
+        {
+            if let Some(value) = run.get(key).filter(|value| !value.is_empty()) {
+                parts.push(format!("{label}{value}"));
+            }
+        }
+        parts.push(format!("{} samples in {} s", count(self.instants), short(seconds)));
+        let lines = vec![format!("{}; {}", parts.join(", "), self.source.units_line())];
+        Heading { title: self.source.title(), lines, notes: vec![] }
+    }
+}
+
+/// `valid` is not a curve, but what is shaded.
+fn skipped(topic: usize, name: &str) -> bool {
+    TOPICS[topic].kind == TopicKind::Condition && name == VALID
+}
+
+/// The traces of a topic's fields.
+fn traces(source: &Source<'_>, topic: Topic, flat: &Flat) -> Vec<Trace> {
+    let number = TOPICS.iter().position(|known| *known == topic).unwrap_or(0);
+    let fields = flat.names.iter().filter(|field| !skipped(number, field));
+    fields.map(|field| trace(source, topic, field)).collect()
+}
+
+fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
+    let find = |record: &str| source.metadata(record).get(field).cloned();
+    let (name, quantity, group) = match topic.kind {
+        TopicKind::Condition => {
+            let group =
+                if field == CONDITION { Group::Condition } else { Group::Singularity };
+            (field.to_owned(), None, group)
+        }
+        TopicKind::Pose => {
+            let mut task =
+                source.manipulator().into_iter().flat_map(|m| m.task_coordinates().iter());
+            let known = task.find(|c| c.name == field).map(|c| c.quantity);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            (field.to_owned(), quantity, Group::Pose)
+        }
+        TopicKind::Imaginary => {
+            let name = find("joints").unwrap_or_else(|| field.to_owned());
+            let known = imaginary_quantity(source, &name);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            (name, quantity, Group::Imaginary)
+        }
+        TopicKind::Joints => {
+            let name = find("joints").unwrap_or_else(|| field.to_owned());
+            let (known, group) = joint(source, &name);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            let group = group.or_else(|| match find("roles").as_deref() {
+                Some("actuated") => Some(Group::Actuated),
+                Some("passive") => Some(Group::Passive),
+                _ => None,
+            });
+            (name, quantity, group.unwrap_or(Group::Joints))
+        }
+    };
+    let (_, factor) = source.measure("", quantity, topic.rate);
+    Trace { name, group, quantity, rate: topic.rate, factor, curve: Curve::default() }
+}
+
+/// The quantity that an SI unit measures.
+fn quantity(unit: Option<&str>) -> Option<Quantity> {
+    [Quantity::Angle, Quantity::Length].into_iter().find(|q| Some(q.unit()) == unit)
+}
+
+fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
+    match &source.mechanism.as_ref()?.kind {
+        Kind::Manipulator(m) => m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity),
+        Kind::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
+        Kind::Other => None,
+    }
+}
+
+/// What the mechanism says of a joint coordinate. In a linkage, all joints belong together.
+fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
+    let Some(mechanism) = &source.mechanism else { return (None, None) };
+    let legs = mechanism.file.mechanism.legs.iter();
+    let mut joints = legs.flat_map(|leg| &leg.joints);
+    let found = joints.find_map(|joint| {
+        let coordinate = joint.coordinates.iter().find(|c| c.name == name)?;
+        let group = if joint.actuated { Group::Actuated } else { Group::Passive };
+        Some((coordinate.quantity, group))
+    });
+    let Some((quantity, group)) = found else { return (None, None) };
+    match mechanism.kind {
+        Kind::Linkage(_) => (Some(quantity), Some(Group::Joints)),
+        Kind::Manipulator(_) | Kind::Other => (Some(quantity), Some(group)),
+    }
+}
+
+fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
+    let mut known: Vec<&str> = all.iter().map(|trace| &*trace.name).collect();
+    for name in &args.values {
+        if !known.contains(&&**name) {
+            let mut seen = Vec::new();
+            known.retain(|name| !seen.contains(name) && { seen.push(*name); true });
+            let problem = format!("{name:?} is none of {}", known.join(", "));
+            return Err(Failure::flag("--values", problem));
+        }
+    }
+    Ok(())
+}
+
+fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) -> Row {
+    let mut names: Vec<String> = Vec::new();
+    let mut columns: Vec<Vec<Trace>> = rates.iter().map(|_| vec![]).collect();
+    for trace in traces {
+        if !names.contains(&trace.name) {
+            names.push(trace.name.clone());
+        }
+        if let Some(column) = rates.iter().position(|rate| *rate == trace.rate) {
+            columns[column].push(trace);
+        }
+    }
+    let number = |name: &str| names.iter().position(|known| known == name).unwrap_or(0);
+    let panel = |traces: Vec<Trace>| {
+        let (quantity, rate) = traces.first().map(|trace| (trace.quantity, trace.rate))?;
+        let (Measure { name, unit }, _) = source.measure(axis(quantity, rate), quantity, rate);
+        let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
+        let scale = match group {
+            Group::Condition => Scale::Logarithmic,
+            _ => Scale::Linear,
+        };
+        Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves })
+    };
+    let panels = columns.into_iter().map(panel).collect();
+    Row { names, panels }
+}
+
+/// What an axis is called.
+fn axis(quantity: Option<Quantity>, rate: Rate) -> &'static str {
+    match (rate, quantity) {
+        (Rate::Position, Some(Quantity::Angle)) => "angle",
+        (Rate::Position, Some(Quantity::Length)) => "length",
+        (Rate::Position, None) => "value",
+        (Rate::Velocity, _) => "velocity",
+        (Rate::Acceleration, _) => "acceleration",
+    }
+}
+
+fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
+    let what = match (group, quantity) {
+        (Group::Pose, Some(Quantity::Length)) => "Platform: position",
+        (Group::Pose, _) => "Platform: orientation",
+        (Group::Imaginary, _) => "Imaginary joints",
+        (Group::Actuated, _) => "Actuated joints",
+        (Group::Passive, _) => "Passive joints",
+        (Group::Joints, _) => "Joints",
+        (Group::Condition, _) => "Condition number",
+        (Group::Singularity, _) => "Singularity measures",
+    };
+    match rate {
+        Rate::Position => what.to_owned(),
+        Rate::Velocity => format!("{what}, velocity"),
+        Rate::Acceleration => format!("{what}, acceleration"),
+    }
+}
+
+/// Times of violations, and notes that say what they are.
+fn violations(source: &Source<'_>) -> (Vec<f64>, Vec<String>) {
+    let records = source.recording.metadata.iter();
+    let found = records.filter(|(name, _)| name.starts_with("violation."));
+    let mut times: Vec<(f64, String)> = found
+        .filter_map(|(_, record)| {
+            let time = record.get("time")?.parse().ok()?;
+            let text = record.get("text").cloned().unwrap_or_else(|| {
+                let parts = record.iter().filter(|(key, _)| *key != "time");
+                parts.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
+            });
+            Some((time, text))
+        })
+        .collect();
+    times.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut notes: Vec<String> = (1..)
+        .zip(&times)
+        .take(LISTED)
+        .map(|(number, (time, text))| format!("{number}: at {} s, {text}", short(*time)))
+        .collect();
+    if times.len() > LISTED {
+        notes.push(format!("and {} more", times.len() - LISTED));
+    }
+    (times.into_iter().map(|(time, _)| time).collect(), notes)
+}

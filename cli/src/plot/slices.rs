@@ -1,0 +1,456 @@
+//! Slices of a workspace: what is reachable while all but two coordinates are held.
+
+use super::source::{Rate, Source, Stop};
+use super::workspace::{Coordinate, Layout, Place, value_label};
+use crate::args::PlotArgs;
+use crate::failure::Failure;
+use opm_mcap::Cloud as Points;
+use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
+use opm_plot::color::Map;
+use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
+use opm_workspace::Axis;
+
+/// Most slices that are chosen without --slice.
+const CHOSEN: u64 = 9;
+/// Most slices that --slice may ask for.
+const MOST: usize = 36;
+/// Share of the colours that the slices take: the brightest is left to no one.
+const COLORS: f64 = 0.95;
+
+/// Slices in the making.
+pub struct Slices<'a> {
+    layout: &'a Layout,
+    view: [Seen; 2],
+    /// Coordinates that are held, each at a value of its grid.
+    held: Vec<(usize, u64)>,
+    /// The coordinate that has another value in each tile.
+    varied: Option<usize>,
+    /// The tiles, by the value of the varied coordinate.
+    tiles: Vec<(u64, Content)>,
+    /// What colours the cells: the field, its ends, by what it is divided.
+    color: Option<Colored>,
+    /// The place of home, if it is in the picture.
+    home: Option<[f64; 2]>,
+}
+
+struct Colored {
+    field: String,
+    measure: Measure,
+    factor: f64,
+    range: [f64; 2],
+}
+
+/// A coordinate that is an axis of the picture.
+struct Seen {
+    number: usize,
+    measure: Measure,
+    factor: f64,
+}
+
+impl<'a> Slices<'a> {
+    /// Decides what to show, which may take reading the recording.
+    pub fn new(
+        layout: &'a Layout,
+        source: &Source<'_>,
+        args: &PlotArgs,
+        view: Option<[usize; 2]>,
+    ) -> Result<Self, Failure> {
+        let view = view.unwrap_or_else(|| fast(layout));
+        let asked = asked(layout, args, view)?;
+        let free: Vec<usize> = (0..layout.coordinates.len())
+            .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
+            .collect();
+        let varied = varied(layout, &free, &asked)?;
+        let held: Vec<(usize, u64)> = free
+            .iter()
+            .filter(|number| Some(**number) != varied)
+            .map(|&number| {
+                let given = asked.iter().find(|(asked, _)| *asked == number);
+                let value = given.map_or_else(|| home(&layout.coordinates[number]), |g| g.1[0]);
+                (number, value)
+            })
+            .collect();
+        let seen = |number: usize| {
+            let c = &layout.coordinates[number];
+            let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
+            Seen { number, measure, factor }
+        };
+        let color = layout.color.as_ref().map(|(field, range)| {
+            let imaginary = source.manipulator().map(|m| m.imaginary()).unwrap_or_default();
+            let quantity = imaginary.iter().find(|joint| joint.name == *field);
+            let quantity = quantity.map(|joint| joint.quantity);
+            let quantity = quantity.or_else(|| {
+                let coordinates = source.manipulator()?.coordinates();
+                coordinates.iter().find(|c| c.name == *field).map(|c| c.quantity)
+            });
+            let (measure, factor) = source.measure(field, quantity, Rate::Position);
+            let range = range.map(|value| value / factor);
+            Colored { field: field.clone(), measure, factor, range }
+        });
+        let mut slices = Self {
+            layout,
+            view: view.map(seen),
+            held,
+            varied,
+            tiles: vec![],
+            color,
+            home: None,
+        };
+        let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
+            (None, _) => vec![0],
+            (_, Some((_, values))) => values,
+            (Some(number), None) => slices.spread(source, number)?,
+        };
+        let extents = &source.recording.extents;
+        let content = |slices: &Self| slices.content(extents);
+        slices.tiles = values.into_iter().map(|value| (value, content(&slices))).collect();
+        let [a, b] = view.map(|number| &layout.coordinates[number]);
+        slices.home = a.home.zip(b.home).map(|(a, b)| {
+            [a / slices.view[0].factor, b / slices.view[1].factor]
+        });
+        Ok(slices)
+    }
+
+    /// Values of a coordinate, evenly spread over those at which anything is reachable.
+    fn spread(&self, source: &Source<'_>, varied: usize) -> Result<Vec<u64>, Failure> {
+        let mut ends: Option<[u64; 2]> = None;
+        let mut extend = |value: u64| {
+            let [first, last] = ends.unwrap_or([value; 2]);
+            ends = Some([first.min(value), last.max(value)]);
+        };
+        source.messages(|message| {
+            if message.topic != SLICES_TOPIC {
+                return Ok::<(), Stop>(());
+            }
+            if let (Some(cloud), Some(slice)) = (message.cloud()?, slice_at(message.time)) {
+                self.each(&cloud, slice, Some(varied), |_, value| extend(value));
+            }
+            Ok(())
+        })?;
+        let Some([first, last]) = ends else { return Ok(vec![]) };
+        let step = (last - first).div_ceil(CHOSEN - 1).max(1);
+        Ok((first..=last).step_by(step as usize).collect())
+    }
+
+    /// An empty tile.
+    fn content(&self, extents: &[opm_mcap::Extent]) -> Content {
+        let [a, b] = &self.view;
+        let spacing = |seen: &Seen| {
+            let axis = self.layout.coordinates[seen.number].axis.as_ref()?;
+            let ends = [axis.min, axis.max].map(|value| value / seen.factor);
+            Some(Spacing::between(ends, usize::try_from(axis.count).ok()?))
+        };
+        if let (Some(x), Some(y)) = (spacing(a), spacing(b)) {
+            let paint = match &self.color {
+                Some(color) => Paint::Values(Map::Viridis, color.range),
+                None => Paint::Plain([0; 3]),
+            };
+            return Content::Cells(Cells::new(x, y, self.color.as_ref().map(|_| ())), paint);
+        }
+        let range = |seen: &Seen| {
+            let field = match &self.layout.coordinates[seen.number].place {
+                Place::Field(field) => extents.iter().find(|extent| extent.field == *field),
+                Place::Slice(_) => None,
+            };
+            field.map_or([0.0, 1.0], |e| [e.min / seen.factor, e.max / seen.factor])
+        };
+        Content::Cloud(Cloud::new(range(a), range(b)))
+    }
+
+    /// Adds the points of a message of slice `slice`.
+    pub fn add(&mut self, cloud: &Points<'_>, slice: u64) {
+        let mut tiles = std::mem::take(&mut self.tiles);
+        let [a, b] = &self.view;
+        let value = |seen: &Seen| self.values(cloud, slice, seen.number);
+        let (Some(x), Some(y)) = (value(a), value(b)) else {
+            self.tiles = tiles;
+            return;
+        };
+        let color = self.color.as_ref().and_then(|color| {
+            let column: Vec<f64> = cloud.column(&color.field)?.map(|v| v / color.factor).collect();
+            Some(column)
+        });
+        self.each(cloud, slice, self.varied, |point, value| {
+            let Some((_, content)) = tiles.iter_mut().find(|tile| tile.0 == value) else { return };
+            let (x, y) = (x.get(point) / a.factor, y.get(point) / b.factor);
+            match content {
+                Content::Cells(cells, _) => {
+                    let value = color.as_ref().map_or(0.0, |color| color[point]);
+                    cells.push(x, y, value);
+                }
+                Content::Cloud(cloud) => cloud.push(x, y),
+                Content::Histogram(_) => {}
+            }
+        });
+        self.tiles = tiles;
+    }
+
+    /// Visits the points at which the held coordinates have their values, with the number of the
+    /// value that the varied one has.
+    fn each(
+        &self,
+        cloud: &Points<'_>,
+        slice: u64,
+        varied: Option<usize>,
+        mut visit: impl FnMut(usize, u64),
+    ) {
+        let mut held = vec![];
+        for &(number, wanted) in &self.held {
+            match self.numbers(cloud, slice, number) {
+                Some(Numbers::All(found)) if found == wanted => {}
+                Some(Numbers::Each(found)) => held.push((found, wanted)),
+                _ => return,
+            }
+        }
+        let varied = match varied {
+            None => Numbers::All(0),
+            Some(number) => match self.numbers(cloud, slice, number) {
+                Some(numbers) => numbers,
+                None => return,
+            },
+        };
+        for point in 0..cloud.len() {
+            if held.iter().all(|(found, wanted)| found[point] == *wanted) {
+                match &varied {
+                    Numbers::All(value) => visit(point, *value),
+                    Numbers::Each(values) => visit(point, values[point]),
+                }
+            }
+        }
+    }
+
+    /// Which value of its grid a coordinate has at every point.
+    fn numbers(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Numbers> {
+        let coordinate = &self.layout.coordinates[number];
+        let axis = coordinate.axis.as_ref()?;
+        match &coordinate.place {
+            Place::Slice(divisor) => Some(Numbers::All(slice / divisor % axis.count)),
+            Place::Field(field) => {
+                let column = cloud.column(field)?;
+                Some(Numbers::Each(column.map(|value| nearest(axis, value)).collect()))
+            }
+        }
+    }
+
+    fn values(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Values> {
+        let coordinate = &self.layout.coordinates[number];
+        match &coordinate.place {
+            Place::Slice(divisor) => {
+                let axis = coordinate.axis.as_ref()?;
+                Some(Values::All(axis.value(slice / divisor % axis.count)))
+            }
+            Place::Field(field) => Some(Values::Each(cloud.column(field)?.collect())),
+        }
+    }
+
+    /// The finished tiles.
+    pub fn section(self, source: &Source<'_>) -> Section {
+        let coordinates = &self.layout.coordinates;
+        let name = |number: usize, value: u64| {
+            let c = &coordinates[number];
+            let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
+            let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
+            format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
+        };
+        let at_home = |number: usize, value: u64| home(&coordinates[number]) == value;
+        let mut title = "Reachable positions".to_owned();
+        if !self.held.is_empty() {
+            let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
+            title = format!("Reachable at {}", held.join(", "));
+        }
+        if let Some((first, rest)) = self.layout.lost.split_first() {
+            let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
+            title.push_str(&format!(", at any {names}"));
+        }
+        let held_home = self.held.iter().all(|&(number, value)| at_home(number, value));
+        let [a, b] = &self.view;
+        let columns = columns(self.tiles.len());
+        let shared_mark = self.home.filter(|_| held_home);
+        let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
+        let tile = |(value, content): (u64, Content)| {
+            let share = COLORS * value as f64 / (total - 1).max(1) as f64;
+            let content = match content {
+                Content::Cells(cells, Paint::Plain(_)) => {
+                    Content::Cells(cells, Paint::Plain(Map::Viridis.color(share)))
+                }
+                other => other,
+            };
+            let mark = shared_mark.filter(|_| self.varied.is_none_or(|v| at_home(v, value)));
+            Tile {
+                title: self.varied.map_or_else(String::new, |number| name(number, value)),
+                x: a.measure.clone(),
+                y: b.measure.clone(),
+                content,
+                mark,
+            }
+        };
+        let bar = self.color.as_ref().map(|color| Bar {
+            measure: color.measure.clone(),
+            range: color.range,
+            map: Map::Viridis,
+            scale: Scale::Linear,
+        });
+        let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let tiles = self.tiles.into_iter().map(tile).collect();
+        Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+    }
+
+    /// What has to be said of the picture.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = vec![];
+        let coordinates = &self.layout.coordinates;
+        if let Some(varied) = self.varied
+            && let Some(axis) = &coordinates[varied].axis
+            && (self.tiles.len() as u64) < axis.count
+        {
+            notes.push(format!(
+                "Slices: {} of the {} values of {} on the grid.",
+                self.tiles.len(),
+                axis.count,
+                axis.name
+            ));
+        }
+        let coarse = |tile: &(u64, Content)| match &tile.1 {
+            Content::Cells(cells, _) => cells.is_coarse(),
+            _ => false,
+        };
+        if self.tiles.iter().any(coarse) {
+            notes.push("Cells hold several values of the grid, one of them reachable.".to_owned());
+        }
+        if self.home.is_some() && self.tiles.iter().any(|(value, _)| {
+            let home = |&(number, value): &(usize, u64)| home(&coordinates[number]) == value;
+            self.held.iter().all(home) && self.varied.is_none_or(|v| home(&(v, *value)))
+        }) {
+            notes.push("The cross is home.".to_owned());
+        }
+        notes
+    }
+}
+
+enum Numbers {
+    All(u64),
+    Each(Vec<u64>),
+}
+
+enum Values {
+    All(f64),
+    Each(Vec<f64>),
+}
+
+impl Values {
+    fn get(&self, point: usize) -> f64 {
+        match self {
+            Self::All(value) => *value,
+            Self::Each(values) => values[point],
+        }
+    }
+}
+
+fn several(coordinate: &Coordinate) -> bool {
+    coordinate.axis.as_ref().is_some_and(|axis| axis.count > 1)
+}
+
+/// The first two of the recording's axes that vary.
+fn fast(layout: &Layout) -> [usize; 2] {
+    let varies = |number: &&usize| {
+        layout.coordinates[**number].axis.as_ref().is_none_or(|axis| axis.count > 1)
+    };
+    let mut order: Vec<usize> = layout.axes.iter().filter(varies).copied().collect();
+    order.extend(layout.axes.iter().filter(|number| !varies(number)));
+    [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
+}
+
+/// The number of the grid value that is nearest to an SI value.
+fn nearest(axis: &Axis, value: f64) -> u64 {
+    let share = (value - axis.min) / (axis.max - axis.min).max(f64::MIN_POSITIVE);
+    // A cast saturates.
+    ((share * (axis.count - 1) as f64).round() as u64).min(axis.count - 1)
+}
+
+/// The value nearest to home; of what has none, the middle.
+fn home(coordinate: &Coordinate) -> u64 {
+    match (&coordinate.axis, coordinate.home) {
+        (Some(axis), Some(home)) => nearest(axis, home),
+        (Some(axis), None) => axis.count / 2,
+        (None, _) => 0,
+    }
+}
+
+/// What `--slice` asks for: coordinates with numbers of their grids' values.
+fn asked(
+    layout: &Layout,
+    args: &PlotArgs,
+    view: [usize; 2],
+) -> Result<Vec<(usize, Vec<u64>)>, Failure> {
+    let wrong = |problem: String| Err(Failure::flag("--slice", problem));
+    let mut asked: Vec<(usize, Vec<u64>)> = vec![];
+    for given in &args.slice {
+        let name = &given.name;
+        let Some(number) = layout.find(name) else {
+            if layout.lost.contains(name) {
+                return wrong(format!("{name} is not stored with the points of this recording"));
+            }
+            return wrong(format!("{name:?} is none of {}", layout.names()));
+        };
+        if view.contains(&number) {
+            return wrong(format!("{name} is an axis of the slices; --values chooses others"));
+        }
+        let c = &layout.coordinates[number];
+        let Some(axis) = &c.axis else {
+            return wrong(format!("{name} is on no grid"));
+        };
+        let value = match c.quantity {
+            Some(quantity) => given.value.value_of(name, quantity),
+            None => given.value.value_of(name, opm_core::joint::Quantity::Length),
+        };
+        let value = value.map_err(|error| Failure::flag("--slice", error))?;
+        let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
+        if value < axis.min - 0.5 * step || value > axis.max + 0.5 * step {
+            let (min, max) = (axis.min, axis.max);
+            return wrong(format!("{name} = {value}: the grid goes from {min} to {max}"));
+        }
+        let value = nearest(axis, value);
+        match asked.iter_mut().find(|(known, _)| *known == number) {
+            Some((_, values)) if values.contains(&value) => {}
+            Some((_, values)) => values.push(value),
+            None => asked.push((number, vec![value])),
+        }
+    }
+    if let Some((number, values)) = asked.iter().find(|(_, values)| values.len() > MOST) {
+        let name = &layout.coordinates[*number].name;
+        return wrong(format!("{} values of {name}, expected at most {MOST}", values.len()));
+    }
+    Ok(asked)
+}
+
+/// The coordinate that has another value in each tile: the one that was given several, or one that
+/// was given none, the cloud's third axis before others.
+fn varied(
+    layout: &Layout,
+    free: &[usize],
+    asked: &[(usize, Vec<u64>)],
+) -> Result<Option<usize>, Failure> {
+    let several: Vec<usize> = asked.iter().filter(|a| a.1.len() > 1).map(|a| a.0).collect();
+    if let [a, b, ..] = several[..] {
+        let [a, b] = [a, b].map(|number| &layout.coordinates[number].name);
+        let problem = format!("several values of both {a} and {b}, expected of one coordinate");
+        return Err(Failure::flag("--slice", problem));
+    }
+    if let [one] = several[..] {
+        return Ok(Some(one));
+    }
+    let open = || free.iter().copied().filter(|n| !asked.iter().any(|(known, _)| known == n));
+    let third = layout.axes.last().copied().filter(|third| open().any(|number| number == *third));
+    let count = |number: &usize| layout.coordinates[*number].axis.as_ref().map_or(0, |a| a.count);
+    Ok(third.or_else(|| open().max_by_key(count)))
+}
+
+/// Tiles in a row.
+fn columns(tiles: usize) -> usize {
+    match tiles {
+        0..=3 => tiles.max(1),
+        4 => 2,
+        5..=9 => 3,
+        _ => 6.min(tiles.div_ceil(4)),
+    }
+}
