@@ -1,10 +1,11 @@
 //! The picture of a motion: everything over time.
 
 use super::source::{Kind, Rate, Source, Stop};
+use super::workspace::value_label;
 use super::{PanelName, drawn};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
-use crate::text::{count, short};
+use crate::text::count;
 use opm_core::joint::Quantity;
 use opm_mcap::Flat;
 use opm_plot::{Curve, Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
@@ -289,7 +290,7 @@ impl<'a> Motion<'a> {
                 parts.push(format!("{label}{value}"));
             }
         }
-        parts.push(format!("{} samples in {} s", count(self.instants), short(seconds)));
+        parts.push(format!("{} samples in {} s", count(self.instants), value_label(seconds)));
         let lines = vec![format!("{}; {}", parts.join(", "), self.source.units_line())];
         Heading { title: self.source.title(), lines, notes: vec![] }
     }
@@ -311,8 +312,7 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
     let find = |record: &str| source.metadata(record).get(field).cloned();
     let (name, quantity, group) = match topic.kind {
         TopicKind::Condition => {
-            let group =
-                if field == CONDITION { Group::Condition } else { Group::Singularity };
+            let group = if field == CONDITION { Group::Condition } else { Group::Singularity };
             (field.to_owned(), None, group)
         }
         TopicKind::Pose => {
@@ -379,7 +379,12 @@ fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
     for name in &args.values {
         if !known.contains(&&**name) {
             let mut seen = Vec::new();
-            known.retain(|name| !seen.contains(name) && { seen.push(*name); true });
+            known.retain(|name| {
+                !seen.contains(name) && {
+                    seen.push(*name);
+                    true
+                }
+            });
             let problem = format!("{name:?} is none of {}", known.join(", "));
             return Err(Failure::flag("--values", problem));
         }
@@ -460,7 +465,7 @@ fn violations(source: &Source<'_>) -> (Vec<f64>, Vec<String>) {
     let mut notes: Vec<String> = (1..)
         .zip(&times)
         .take(LISTED)
-        .map(|(number, (time, text))| format!("{number}: at {} s, {text}", short(*time)))
+        .map(|(number, (time, text))| format!("{number}: at {} s, {text}", value_label(*time)))
         .collect();
     if times.len() > LISTED {
         notes.push(format!("and {} more", times.len() - LISTED));

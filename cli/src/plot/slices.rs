@@ -11,7 +11,7 @@ use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spaci
 use opm_workspace::Axis;
 
 /// Most slices that are chosen without --slice.
-const CHOSEN: u64 = 9;
+const CHOSEN: u64 = 8;
 /// Most slices that --slice may ask for.
 const MOST: usize = 36;
 /// Share of the colours that the slices take: the brightest is left to no one.
@@ -87,15 +87,8 @@ impl<'a> Slices<'a> {
             let range = range.map(|value| value / factor);
             Colored { field: field.clone(), measure, factor, range }
         });
-        let mut slices = Self {
-            layout,
-            view: view.map(seen),
-            held,
-            varied,
-            tiles: vec![],
-            color,
-            home: None,
-        };
+        let mut slices =
+            Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
         let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
             (None, _) => vec![0],
             (_, Some((_, values))) => values,
@@ -105,9 +98,8 @@ impl<'a> Slices<'a> {
         let content = |slices: &Self| slices.content(extents);
         slices.tiles = values.into_iter().map(|value| (value, content(&slices))).collect();
         let [a, b] = view.map(|number| &layout.coordinates[number]);
-        slices.home = a.home.zip(b.home).map(|(a, b)| {
-            [a / slices.view[0].factor, b / slices.view[1].factor]
-        });
+        slices.home =
+            a.home.zip(b.home).map(|(a, b)| [a / slices.view[0].factor, b / slices.view[1].factor]);
         Ok(slices)
     }
 
@@ -128,8 +120,12 @@ impl<'a> Slices<'a> {
             Ok(())
         })?;
         let Some([first, last]) = ends else { return Ok(vec![]) };
+        // Equal steps from home, if that is among them.
         let step = (last - first).div_ceil(CHOSEN - 1).max(1);
-        Ok((first..=last).step_by(step as usize).collect())
+        let home = home(&self.layout.coordinates[varied]);
+        let start =
+            if (first..=last).contains(&home) { first + (home - first) % step } else { first };
+        Ok((start..=last).step_by(step as usize).collect())
     }
 
     /// An empty tile.
@@ -317,10 +313,12 @@ impl<'a> Slices<'a> {
         if self.tiles.iter().any(coarse) {
             notes.push("Cells hold several values of the grid, one of them reachable.".to_owned());
         }
-        if self.home.is_some() && self.tiles.iter().any(|(value, _)| {
-            let home = |&(number, value): &(usize, u64)| home(&coordinates[number]) == value;
-            self.held.iter().all(home) && self.varied.is_none_or(|v| home(&(v, *value)))
-        }) {
+        if self.home.is_some()
+            && self.tiles.iter().any(|(value, _)| {
+                let home = |&(number, value): &(usize, u64)| home(&coordinates[number]) == value;
+                self.held.iter().all(home) && self.varied.is_none_or(|v| home(&(v, *value)))
+            })
+        {
             notes.push("The cross is home.".to_owned());
         }
         notes
@@ -450,7 +448,8 @@ fn columns(tiles: usize) -> usize {
     match tiles {
         0..=3 => tiles.max(1),
         4 => 2,
-        5..=9 => 3,
-        _ => 6.min(tiles.div_ceil(4)),
+        5 | 6 | 9 => 3,
+        7 | 8 => 4,
+        _ => tiles.div_ceil(4).min(6),
     }
 }

@@ -49,7 +49,6 @@ pub enum Kind {
 pub enum Stop {
     Read(ReadError),
     Interrupted,
-    Failure(Failure),
 }
 
 impl From<ReadError> for Stop {
@@ -109,7 +108,6 @@ impl<'a> Source<'a> {
                 let seen = count(done());
                 Failure::Interrupted(format!("interrupted; {seen} messages were read"))
             }
-            Stop::Failure(failure) => failure,
             Stop::Read(error) => match &error {
                 ReadError::Io { source, .. } => Failure::at(&self.label, source),
                 ReadError::NotMcap { .. } => {

@@ -126,8 +126,13 @@ impl Layout {
             axis.map(|field| (*field).to_owned()).or_else(|| scalar.cloned())
         };
         let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
-        let mut layout =
-            Self { coordinates: vec![], lost: vec![], axes: vec![], scalars: scalars.clone(), color: None };
+        let mut layout = Self {
+            coordinates: vec![],
+            lost: vec![],
+            axes: vec![],
+            scalars: scalars.clone(),
+            color: None,
+        };
 
         let manipulator = source.manipulator();
         let grid = manipulator.and_then(|manipulator| {
@@ -281,7 +286,7 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
     let number = |text: Option<&String>| text.and_then(|text| text.parse::<u64>().ok());
     match (number(result.get("reachable")), number(run.get("poses"))) {
         (Some(reachable), Some(poses)) if poses > 0 => {
-            let share = short(100.0 * reachable as f64 / poses as f64);
+            let share = value_label(100.0 * reachable as f64 / poses as f64);
             let (reachable, poses) = (count(reachable), count(poses));
             parts.push(format!("{reachable} of {poses} poses reachable ({share} %)"));
         }
@@ -291,10 +296,13 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
         }
     }
     let mut lines = vec![format!("{}; {}", parts.join(", "), source.units_line())];
-    let grid: Vec<String> =
-        layout.coordinates.iter().filter_map(|c| Some(range(source, c, c.axis.as_ref()?))).collect();
+    let grid: Vec<String> = layout
+        .coordinates
+        .iter()
+        .filter_map(|c| Some(range(source, c, c.axis.as_ref()?)))
+        .collect();
     if !grid.is_empty() {
-        lines.push(format!("grid: {}", grid.join(", ")));
+        lines.push(format!("grid (values): {}", grid.join(", ")));
     }
     let mut title = source.title();
     title.push_str(": workspace");
@@ -309,7 +317,7 @@ fn range(source: &Source<'_>, coordinate: &Coordinate, axis: &Axis) -> String {
     let symbol = &measure.unit.symbol;
     match axis.count {
         1 => format!("{} = {min} {symbol}", axis.name),
-        count => format!("{} {min} to {max} {symbol} in {count}", axis.name),
+        count => format!("{} {min} to {max} {symbol} ({count})", axis.name),
     }
 }
 

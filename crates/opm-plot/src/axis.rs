@@ -85,7 +85,8 @@ impl Axis {
         let [low, high] = range;
         let span = high - low;
         let exponent = exponent(low.abs().max(high.abs()));
-        let mut step = first_step(span / (most.max(1) as f64), steps);
+        // So many steps have one tick more, at most.
+        let mut step = first_step(span / (most.max(1) + 1) as f64, steps);
         loop {
             let ticks = ticks(range, step, exponent);
             if ticks.len() < 2 || ticks.len() <= most && fits(&ticks, step / span) {

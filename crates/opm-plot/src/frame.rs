@@ -17,7 +17,7 @@ const TICK_LENGTH: f64 = 4.0;
 /// Between a tick and its number.
 const TICK_GAP: f64 = 3.0;
 /// Between two numbers.
-const APART: f64 = 12.0;
+const APART: f64 = 8.0;
 /// Between the numbers of an axis and its name.
 const NAME_GAP: f64 = 6.0;
 /// Below a horizontal axis: ticks and numbers.
@@ -125,9 +125,8 @@ impl Frame<'_> {
     pub fn beside(&self, name: Option<&str>) -> Shape {
         let edge = self.place.x - TICK_LENGTH - TICK_GAP;
         let half = 0.5 * TICK.size * CAPITALS;
-        let number = |tick: &Tick| {
-            TICK.text(&*tick.label, [edge, self.up(tick.value) + half], Anchor::End)
-        };
+        let number =
+            |tick: &Tick| TICK.text(&*tick.label, [edge, self.up(tick.value) + half], Anchor::End);
         let mut shapes: Vec<Shape> = self.y.ticks.iter().map(number).collect();
         if let Some(name) = name {
             let middle = self.place.y + 0.5 * self.place.height;

@@ -208,7 +208,10 @@ mod tests {
 
     #[test]
     fn numbers_and_names_are_safe_to_write() {
-        assert_eq!([12.0, -0.001, 1.005, -3.5, 0.126].map(number), ["12", "0", "1", "-3.5", "0.13"]);
+        assert_eq!(
+            [12.0, -0.001, 1.005, -3.5, 0.126].map(number),
+            ["12", "0", "1", "-3.5", "0.13"]
+        );
         assert_eq!(escape("a<b & \"c\"\u{1}"), "a&lt;b &amp; &quot;c&quot; ");
     }
 }

@@ -31,7 +31,7 @@ pub struct TileFigure {
 pub struct Section {
     /// What stands above it.
     pub title: String,
-    /// Tiles in a row.
+    /// Tiles in a row, where they are about as tall as wide.
     pub columns: usize,
     /// All tiles have the same axes, which are numbered at the outer sides only.
     pub shared: bool,
@@ -107,6 +107,8 @@ const WIDEST_HISTOGRAM: f64 = 620.0;
 const FLAT: f64 = 0.72;
 const FLAT_HISTOGRAM: f64 = 0.36;
 const TALLEST: f64 = 1.05;
+/// The same of tiles that are as wide as their lengths demand.
+const TALLEST_SHARED: f64 = 2.0;
 /// Least width and height of a tile.
 const LEAST: f64 = 60.0;
 /// Between columns.
@@ -126,6 +128,8 @@ const EMPTY: Style = Style { size: 12.0, face: Face::Regular, color: FAINT };
 /// A section with all sizes known.
 struct Laid<'a> {
     section: &'a Section,
+    /// Tiles in a row.
+    columns: usize,
     ranges: Vec<[[f64; 2]; 2]>,
     /// Room left of the first column, and of each further one.
     left: [f64; 2],
@@ -179,9 +183,7 @@ impl TileFigure {
     fn least(&self) -> Size {
         let laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, WIDTH)).collect();
         let grow = laid.iter().map(|s| LEAST / s.width.min(s.height)).fold(0.0, f64::max);
-        let width = |s: &Laid<'_>| {
-            s.right() - s.section.columns as f64 * s.width * (1.0 - grow.min(1.0))
-        };
+        let width = |s: &Laid<'_>| s.right() - s.columns as f64 * s.width * (1.0 - grow.min(1.0));
         let width = laid.iter().map(width).fold(NARROW, f64::max).ceil();
         let between = SECTIONS_APART * laid.len().saturating_sub(1) as f64;
         let fixed = self.heading.top(width) + between + self.heading.bottom(width);
@@ -195,7 +197,6 @@ impl<'a> Laid<'a> {
         let ranges = section.ranges();
         let tile = section.tiles.first();
         let histogram = tile.is_some_and(|t| matches!(t.content, Content::Histogram(_)));
-        let columns = section.columns.max(1) as f64;
         let axis = |number: usize, named| {
             let y = Axis::linear(
                 ranges[number][1],
@@ -208,9 +209,6 @@ impl<'a> Laid<'a> {
         let widest = (0..ranges.len()).map(|i| axis(i, true)).fold(0.0, f64::max);
         let left = [widest, if section.shared { BETWEEN } else { widest + BETWEEN }];
         let bar = section.bar.as_ref().map_or(0.0, Bar::room);
-        let free = room - 2.0 * MARGIN - left[0] - left[1] * (columns - 1.0) - bar;
-        let most = if histogram { WIDEST_HISTOGRAM } else { WIDEST };
-        let width = (free / columns).clamp(1.0, most);
         // Lengths, and angles, are as long one way as the other.
         let slope = |number: usize| {
             let ([x, y], tile) = (ranges[number], &section.tiles[number]);
@@ -225,23 +223,29 @@ impl<'a> Laid<'a> {
         };
         let slopes: Vec<f64> = (0..ranges.len()).map(slope).collect();
         let steepest = slopes.iter().copied().fold(0.0, f64::max).max(0.15);
-        let height = width * steepest.min(TALLEST);
+        // More of tall tiles go in a row.
+        let columns = match section.shared && steepest > TALLEST {
+            true => (section.columns as f64 * steepest).round() as usize,
+            false => section.columns,
+        };
+        let columns = columns.clamp(1, section.tiles.len().max(1));
+        let between = left[1] * (columns - 1) as f64;
+        let free = room - 2.0 * MARGIN - left[0] - between - bar;
+        let most = if histogram { WIDEST_HISTOGRAM } else { WIDEST };
+        let width = (free / columns as f64).clamp(1.0, most);
+        let tallest = if section.shared { TALLEST_SHARED } else { TALLEST };
+        let height = width * steepest.min(tallest);
         let width = if section.shared { height / steepest } else { width };
-        Self { section, ranges, left, bar, width, height }
+        Self { section, columns, ranges, left, bar, width, height }
     }
 
     fn rows(&self) -> usize {
-        self.section.tiles.len().div_ceil(self.section.columns.max(1))
-    }
-
-    /// Tiles in the first row.
-    fn columns(&self) -> f64 {
-        self.section.tiles.len().min(self.section.columns.max(1)) as f64
+        self.section.tiles.len().div_ceil(self.columns)
     }
 
     /// Width of the tiles with their numbers.
     fn across(&self) -> f64 {
-        let columns = self.columns();
+        let columns = self.columns as f64;
         self.left[0] + self.left[1] * (columns - 1.0) + columns * self.width
     }
 
@@ -277,22 +281,21 @@ impl<'a> Laid<'a> {
         let mut shapes = vec![title];
         let start = top + TITLE_ROOM;
         for (number, tile) in section.tiles.iter().enumerate() {
-            let (row, column) = (number / section.columns, number % section.columns);
+            let (row, column) = (number / self.columns, number % self.columns);
             let x = MARGIN + self.left[0] + column as f64 * (self.width + self.left[1]);
             let step = self.above() + self.height + self.below();
             let y = start + row as f64 * step + self.above();
-            let lowest = number + section.columns >= section.tiles.len();
-            let sides = Sides {
-                left: column == 0 || !section.shared,
-                below: lowest || !section.shared,
-            };
+            let lowest = number + self.columns >= section.tiles.len();
+            let sides =
+                Sides { left: column == 0 || !section.shared, below: lowest || !section.shared };
             let place = Rect { x, y, width: self.width, height: self.height };
             shapes.push(self.tile(tile, self.ranges[number], place, sides));
         }
         if let Some(bar) = &section.bar {
             let x = MARGIN + self.across() + BETWEEN;
-            let height = (self.tiles() + (self.rows() as f64 - 1.0) * (self.above() + self.below()))
-                .min(320.0);
+            let height = (self.tiles()
+                + (self.rows() as f64 - 1.0) * (self.above() + self.below()))
+            .min(320.0);
             shapes.push(bar.draw(Rect { x, y: start + self.above(), width: BAR, height }));
         }
         Shape::Group { kind: "section", label: section.title.clone(), shapes }
@@ -439,7 +442,8 @@ impl Bar {
         }
         shapes.push(Shape::Line(ticks, pen));
         let name = axis.title(&self.measure.name, &self.measure.unit);
-        let x = place.right() + 10.0 + axis.label_width(TICK.face, TICK.size) + 6.0 + NAME.size * 0.8;
+        let x =
+            place.right() + 10.0 + axis.label_width(TICK.face, TICK.size) + 6.0 + NAME.size * 0.8;
         let middle = place.y + 0.5 * place.height;
         let room = place.height + NUMBERS_BELOW;
         let name = NAME.face.fit(&name, NAME.size, room);
@@ -453,7 +457,9 @@ fn cross([x, y]: [f64; 2]) -> Shape {
     const ARM: f64 = 5.0;
     let mut path = Path::through([[x - ARM, y], [x + ARM, y]]);
     path.0.extend(Path::through([[x, y - ARM], [x, y + ARM]]).0);
-    let shapes =
-        vec![Shape::Line(path.clone(), Pen::new(WHITE, 3.4)), Shape::Line(path, Pen::new(INK, 1.3))];
+    let shapes = vec![
+        Shape::Line(path.clone(), Pen::new(WHITE, 3.4)),
+        Shape::Line(path, Pen::new(INK, 1.3)),
+    ];
     Shape::Group { kind: "mark", label: String::new(), shapes }
 }

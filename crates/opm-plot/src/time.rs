@@ -274,10 +274,10 @@ impl Panel {
         let positive = curves.filter_map(Curve::smallest_positive).reduce(f64::min);
         let most = ticks_in(height);
         match (self.scale, values, positive) {
-            (Scale::Logarithmic, Some([_, high]), Some(low)) => Axis::logarithmic([low, high], most),
-            _ => {
-                Axis::linear(axis::around(values, &self.unit), self.unit.steps, most, |_, _| true)
+            (Scale::Logarithmic, Some([_, high]), Some(low)) => {
+                Axis::logarithmic([low, high], most)
             }
+            _ => Axis::linear(axis::around(values, &self.unit), self.unit.steps, most, |_, _| true),
         }
     }
 }

@@ -169,8 +169,7 @@ impl Cells {
             let row: Vec<Option<Color>> = row.collect();
             (0..up).for_each(|_| pixels.extend_from_slice(&row));
         }
-        let image =
-            Image { width: (columns * across) as u32, height: (rows * up) as u32, pixels };
+        let image = Image { width: (columns * across) as u32, height: (rows * up) as u32, pixels };
         Shape::Image { place: self.place(frame, [i0, i1 + 1], [j0, j1 + 1]), image }
     }
 

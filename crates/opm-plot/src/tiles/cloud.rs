@@ -39,7 +39,9 @@ impl Cloud {
         }
         self.points += 1;
         let count = &mut self.counts[bin(y, self.range[1]) * BINS + bin(x, self.range[0])];
-        if *count == 0 && let Some(dots) = &mut self.dots {
+        if *count == 0
+            && let Some(dots) = &mut self.dots
+        {
             dots.push([x, y]);
             if dots.len() > MOST_SHAPES {
                 self.dots = None;
