@@ -32,6 +32,8 @@ Examples:
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+                                                       a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds";
@@ -62,6 +64,7 @@ pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
     Linkage(LinkageArgs),
+    Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
@@ -176,6 +179,49 @@ pub struct LinkageArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
+}
+
+/// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
+///
+/// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
+/// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task
+/// coordinates, in seconds, metres and radians), or the name of a shipped motion. The working mode
+/// stays the same, and angles go on across half a turn.
+///
+/// What the mechanism cannot follow is told with its time, its leg or joint and by how much: out of
+/// reach, past a joint's limit, passive ones too, through a singularity. It is found between the
+/// samples as well, wherever a distance falls and rises but once from one sample to the next. The rest
+/// is recorded whole; with --strict the exit status is then 1.
+///
+/// The recording has joints, speeds, accelerations, imaginary joints, pose and condition number to be
+/// plotted, and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of
+/// /bodies in Rerun.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000 -o fine.mcap
+  opm trajectory plano-spherical-5dof --motion poses.csv --strict --format json")]
+pub struct TrajectoryArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The motion: a TOML or CSV file, or the name of a shipped one
+    #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
+    pub motion: PathBuf,
+    /// Record it in this MCAP file
+    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Samples a second, instead of those of the motion file; of a CSV file 100
+    #[arg(long, value_name = "HZ", value_parser = crate::trajectory::rate)]
+    pub rate: Option<f64>,
+    /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+    /// Exit with status 1 if the mechanism cannot follow all of it
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// Sweep a grid of poses: how many are in reach, and where they are

@@ -12,12 +12,15 @@ mod inspect;
 mod lines;
 mod linkage;
 mod load;
+mod motion;
 mod output;
 mod plot;
 mod pose;
 mod progress;
 mod record;
+mod scene;
 mod text;
+mod trajectory;
 mod workspace;
 
 use crate::args::{Args, Command};
@@ -38,6 +41,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
+        Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),

@@ -2,6 +2,7 @@
 //! mechanisms of every pair of partial subspaces, and sweeps the slow way.
 
 pub mod by_inverse;
+pub mod differences;
 pub mod paper;
 pub mod random;
 

@@ -1,4 +1,5 @@
-//! Inverse kinematics does not allocate, nor does a linkage's position: both may run in a control loop.
+//! Inverse kinematics does not allocate, nor do velocities or a linkage's position: all may run in a
+//! control loop.
 
 use allocation_counter::measure;
 use fastrand::Rng;
@@ -39,6 +40,38 @@ fn inverse_kinematics_does_not_allocate() {
         }
     }
     assert!(reached > 500, "{reached} poses in reach");
+}
+
+#[test]
+fn velocities_do_not_allocate() {
+    let mut rng = Rng::with_seed(31);
+    let mut moved = 0;
+    for pair in PAIRS {
+        for balls in [false, true] {
+            let options = Options { limited: 0.0, balls };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mode = manipulator.home_mode();
+            let (mut solution, mut motion) = (manipulator.solution(), manipulator.motion());
+            let (mut jacobians, length) =
+                (manipulator.jacobians(), manipulator.characteristic_length());
+            let rates: Vec<f64> = manipulator.task().home().iter().map(|_| rng.f64()).collect();
+            for _ in 0..50 {
+                let mut pose = manipulator.task().home();
+                pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
+                let info = measure(|| {
+                    if manipulator.inverse(&pose, mode, &mut solution).unwrap() {
+                        manipulator.velocity(&solution, &rates, &rates, &mut motion).unwrap();
+                        manipulator.differentiate(&solution, &mut jacobians).unwrap();
+                        manipulator.conditioning(&jacobians, length);
+                        moved += 1;
+                    }
+                });
+                assert_eq!(info.count_total, 0, "{pair:?}");
+            }
+        }
+    }
+    assert!(moved > 500, "{moved} poses in reach");
 }
 
 #[test]

@@ -293,6 +293,52 @@ pub enum ChainJoint {
     Ball,
 }
 
+/// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
+/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Those of
+/// two numbers get a zero, and two joints a third one that takes what nothing moves along: then three
+/// screws are always a square matrix of the right determinant.
+///
+/// # Errors
+/// A joint that the subspace does not hold.
+pub(crate) fn screws(
+    subspace: &Subspace,
+    joints: &[ChainJoint],
+) -> Result<[Vector3<f64>; 3], ChainError> {
+    let needs = |needed| ChainError::Count { needed, given: joints.len() };
+    Ok(match subspace.kind {
+        SubspaceKind::Planar => {
+            let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+            planar_joints(subspace, joints)?.map(|joint| match joint {
+                PlanarJoint::Revolute { at, reversed: false } => Vector3::new(1.0, at.im, -at.re),
+                PlanarJoint::Revolute { at, reversed: true } => Vector3::new(-1.0, -at.im, at.re),
+                PlanarJoint::Prismatic { along } => Vector3::new(0.0, along.re, along.im),
+            })
+        }
+        SubspaceKind::Spherical => match joints {
+            // About the base's directions, as a rotation vector is measured.
+            [ChainJoint::Ball] => [0, 1, 2].map(|i| subspace.axes.row(i).transpose()),
+            _ => {
+                let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+                spherical_axes(subspace, joints)?.map(Unit::into_inner)
+            }
+        },
+        SubspaceKind::Cylindrical => {
+            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+            let [p, q] = coaxial_joints(subspace, joints)?;
+            [
+                Vector3::new(p.turn, p.advance, 0.0),
+                Vector3::new(q.turn, q.advance, 0.0),
+                Vector3::z(),
+            ]
+        }
+        SubspaceKind::TranslationalPlane => {
+            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+            let [u, v] = slides(subspace, joints)?;
+            [Vector3::new(u.re, u.im, 0.0), Vector3::new(v.re, v.im, 0.0), Vector3::z()]
+        }
+    })
+}
+
 fn planar_joints(
     subspace: &Subspace,
     joints: &[ChainJoint; 3],

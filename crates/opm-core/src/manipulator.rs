@@ -31,7 +31,8 @@ use crate::limits::Limits;
 use crate::mechanism::Mechanism;
 use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
-use leg::CompiledLeg;
+use leg::Surroundings;
+pub(crate) use leg::{CompiledLeg, CompiledSection, LegSolution};
 use mode::ModeLayout;
 
 /// Choices that a [`Mode`] has room for.
@@ -49,7 +50,7 @@ pub struct ImaginaryJoint {
     /// Value at home, radians or metres.
     pub home: f64,
     /// `1` or `-1`: which way along the intersection motion counts as positive.
-    sign: f64,
+    pub(crate) sign: f64,
 }
 
 /// Why a mechanism cannot be compiled.
@@ -80,13 +81,14 @@ pub struct Manipulator {
     mechanism: Mechanism,
     decomposition: Decomposition,
     task: Task,
-    legs: Vec<CompiledLeg>,
+    pub(crate) legs: Vec<CompiledLeg>,
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
     actuated: Vec<usize>,
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
     home_mode: Mode,
+    length: f64,
 }
 
 impl Manipulator {
@@ -169,6 +171,13 @@ impl Manipulator {
         &self.imaginary
     }
 
+    /// Characteristic length, metres: [`Frame::length`](crate::subspace::Frame), the root mean square
+    /// of the distances of the joint axes at home from the point nearest to all of them, and of their
+    /// pitches. The same wherever the mechanism stands; of a mechanism twice the size, twice as long.
+    pub fn characteristic_length(&self) -> f64 {
+        self.length
+    }
+
     /// Number of two-valued choices; there are `2^choices` working modes.
     pub fn choices(&self) -> u32 {
         self.modes.count()
@@ -222,14 +231,15 @@ struct Compiled {
     actuated: Vec<usize>,
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
+    length: f64,
 }
 
 impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let size = frame(mechanism).length;
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, size)).collect();
+        let length = frame(mechanism).length;
+        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, length)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
@@ -245,7 +255,9 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let mut compiled = CompiledLeg::new(leg, split, &task, first, &drives, &limits)
+            let around =
+                Surroundings { task: &task, drives: &drives, limits: &limits, size: length };
+            let mut compiled = CompiledLeg::new(leg, split, first, around)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {
                 compiled.imaginary = Some(imaginary.len());
@@ -258,11 +270,11 @@ impl Compiled {
         if modes.count() > MOST_CHOICES {
             return Err(CompileError::Choices(modes.count()));
         }
-        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes })
+        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes, length })
     }
 
     fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
-        let Self { task, legs, coordinates, limits, actuated, imaginary, modes } = self;
+        let Self { task, legs, coordinates, limits, actuated, imaginary, modes, length } = self;
         let mut manipulator = Manipulator {
             mechanism,
             decomposition,
@@ -274,6 +286,7 @@ impl Compiled {
             imaginary,
             modes,
             home_mode: Mode::default(),
+            length,
         };
         manipulator.home_mode = manipulator.mode_at_home();
         manipulator
@@ -288,6 +301,11 @@ impl ImaginaryJoint {
             None => (0.0, 1.0),
         };
         Self { name: leg.imaginary_name(), leg: number, quantity, home, sign }
+    }
+
+    /// The displacement along the intersection motion for a value as it is reported.
+    pub fn displacement(&self, value: f64) -> f64 {
+        self.sign * (value - self.home)
     }
 
     /// The value to report for a displacement along the intersection motion; of a turn, the one

@@ -19,6 +19,7 @@ mod flat;
 pub mod joints;
 mod log;
 mod reader;
+pub mod scene;
 pub mod trajectory;
 pub mod workspace;
 

@@ -54,10 +54,22 @@ pub struct Solution {
     pub imaginary: Vec<f64>,
     /// Every leg's displacement along the intersection motion, reported or not.
     cuts: Vec<f64>,
+    /// Where it is a solution: what velocities start from.
+    pub(crate) place: Place,
+    /// Every leg's displacements from home, as its chains find them.
+    pub(crate) legs: Vec<LegSolution>,
     /// All joint coordinates are within their limits.
     pub within_limits: bool,
     /// The legs that are out of reach. Where there are any, the rest is not to be read.
     pub unreachable: Vec<Unreachable>,
+}
+
+/// A pose, and its two displacements `g = v · b`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub pose: Vec<f64>,
+    pub v: Displacement,
+    pub b: Displacement,
 }
 
 /// The actuated and the imaginary joints of one working mode; made by [`Manipulator::drives`].
@@ -74,6 +86,7 @@ pub struct Drives {
 /// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
 #[derive(Clone, Debug)]
 pub struct AllModes {
+    place: Place,
     legs: Vec<LegModes>,
     count: u32,
 }
@@ -90,6 +103,8 @@ impl Manipulator {
             joints: self.coordinates.iter().map(|c| c.home).collect(),
             imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
             cuts: vec![0.0; self.legs.len()],
+            place: self.place_at_home(),
+            legs: vec![LegSolution::HOME; self.legs.len()],
             within_limits: false,
             unreachable: Vec::with_capacity(self.legs.len()),
         }
@@ -106,7 +121,17 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        AllModes { legs: vec![[None; 4]; self.legs.len()], count: self.modes.count() }
+        AllModes {
+            place: self.place_at_home(),
+            legs: vec![[None; 4]; self.legs.len()],
+            count: self.modes.count(),
+        }
+    }
+
+    fn place_at_home(&self) -> Place {
+        let pose = self.task.home();
+        let (v, b) = (self.task.lower(&pose), self.task.upper(&pose[self.task.lower_count..]));
+        Place { pose, v, b }
     }
 
     /// Every joint at a pose in one working mode, angles within half a turn of home; `false` where
@@ -115,8 +140,8 @@ impl Manipulator {
     /// # Errors
     /// A pose of the wrong length, or with a coordinate that is not a finite number.
     pub fn inverse(&self, pose: &[f64], mode: Mode, out: &mut Solution) -> Result<bool, PoseError> {
-        let (v, b) = self.displacements(pose)?;
-        self.solve_legs(&v, &b, mode, out, Turns::NearHome);
+        self.displace(pose, &mut out.place)?;
+        self.solve_legs(mode, out, Turns::NearHome);
         Ok(out.unreachable.is_empty())
     }
 
@@ -133,8 +158,8 @@ impl Manipulator {
         mode: Mode,
         out: &mut Solution,
     ) -> Result<bool, PoseError> {
-        let (v, b) = self.displacements(pose)?;
-        self.solve_legs(&v, &b, mode, out, Turns::NearHeld);
+        self.displace(pose, &mut out.place)?;
+        self.solve_legs(mode, out, Turns::NearHeld);
         Ok(out.unreachable.is_empty())
     }
 
@@ -181,7 +206,8 @@ impl Manipulator {
     /// # Errors
     /// As [`Manipulator::inverse`].
     pub fn inverse_all(&self, pose: &[f64], out: &mut AllModes) -> Result<bool, PoseError> {
-        let (v, b) = self.displacements(pose)?;
+        self.displace(pose, &mut out.place)?;
+        let Place { v, b, .. } = out.place;
         for (number, (leg, modes)) in self.legs.iter().zip(&mut out.legs).enumerate() {
             *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
@@ -210,6 +236,9 @@ impl Manipulator {
                 None => return false,
             }
         }
+        let Place { pose, v, b } = &all.place;
+        out.place.pose.copy_from_slice(pose);
+        (out.place.v, out.place.b) = (*v, *b);
         out.unreachable.is_empty()
     }
 
@@ -248,6 +277,14 @@ impl Manipulator {
         Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
     }
 
+    /// Keeps a pose and its displacements, which must have finite coordinates.
+    #[inline]
+    fn displace(&self, pose: &[f64], place: &mut Place) -> Result<(), PoseError> {
+        (place.v, place.b) = self.displacements(pose)?;
+        place.pose.copy_from_slice(pose);
+        Ok(())
+    }
+
     #[inline]
     fn write_drives(&self, section: &CompiledSection, amounts: &[Amount; 3], out: &mut Drives) {
         out.within_limits &= section.admits(&self.limits, amounts);
@@ -262,20 +299,14 @@ impl Manipulator {
         }
     }
 
-    fn solve_legs(
-        &self,
-        v: &Displacement,
-        b: &Displacement,
-        mode: Mode,
-        out: &mut Solution,
-        turns: Turns,
-    ) {
+    fn solve_legs(&self, mode: Mode, out: &mut Solution, turns: Turns) {
+        let Place { v, b, .. } = out.place;
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
             let near = turns.near(out.cuts[number], 0.0);
-            match leg.solve(&self.task, [v, b], branches, near) {
+            match leg.solve(&self.task, [&v, &b], branches, near) {
                 Ok(solution) => self.write(number, &solution, out, turns),
                 Err((section, gap)) => {
                     out.unreachable.push(Unreachable { leg: number, section, gap });
@@ -288,6 +319,7 @@ impl Manipulator {
     #[inline]
     fn write(&self, number: usize, solution: &LegSolution, out: &mut Solution, turns: Turns) {
         let leg = &self.legs[number];
+        out.legs[number] = *solution;
         self.write_section(&leg.lower, &solution.lower, out, turns);
         self.write_section(&leg.upper, &solution.upper, out, turns);
         out.cuts[number] = solution.tau.nearest(turns.near(out.cuts[number], 0.0));

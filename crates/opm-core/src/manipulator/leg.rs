@@ -1,11 +1,12 @@
 //! One leg, cut in two closed-form chains.
 
-use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap};
+use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
 use crate::decomposition::{Freedom, LegSplit};
 use crate::joint::JointKind;
 use crate::leg::Leg;
 use crate::limits::Limits;
 use crate::task::{Displacement, Subspace, SubspaceKind, Task};
+use crate::velocity::determinant_scale;
 use nalgebra::{Unit, Vector3};
 use std::fmt;
 
@@ -57,7 +58,7 @@ pub enum RefusedLeg {
 
 /// Where a chain's amount goes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slot {
+pub(crate) struct Slot {
     /// Number of the joint coordinate in the mechanism.
     pub coordinate: usize,
     /// Its number among the actuated ones.
@@ -66,8 +67,12 @@ pub(super) struct Slot {
 
 /// One section: its chain, and where the chain's amounts go (`None`: the cut).
 #[derive(Clone, Debug)]
-pub(super) struct CompiledSection {
+pub(crate) struct CompiledSection {
     pub chain: Chain,
+    /// The chain's screws at home: see [`crate::chain::screws`].
+    pub screws: [Vector3<f64>; 3],
+    /// What the determinant of the screws is measured in.
+    pub scale: f64,
     pub slots: [Option<Slot>; 3],
     /// Any of its coordinates has limits.
     pub limited: bool,
@@ -77,7 +82,7 @@ pub(super) struct CompiledSection {
 
 /// A leg cut in two.
 #[derive(Clone, Debug)]
-pub(super) struct CompiledLeg {
+pub(crate) struct CompiledLeg {
     pub lower: CompiledSection,
     pub upper: CompiledSection,
     /// The section that takes the cut, and so is solved first when it is the upper one.
@@ -90,25 +95,41 @@ pub(super) struct CompiledLeg {
     unwinds: bool,
 }
 
+/// What a leg is compiled in.
+#[derive(Clone, Copy)]
+pub(crate) struct Surroundings<'a> {
+    pub task: &'a Task,
+    /// Each coordinate's number among the actuated ones.
+    pub drives: &'a [Option<usize>],
+    pub limits: &'a [Limits],
+    /// Of the mechanism, metres.
+    pub size: f64,
+}
+
 /// One solution of a leg: displacements from home.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LegSolution {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LegSolution {
     pub lower: [Amount; 3],
     pub upper: [Amount; 3],
     /// Along the intersection motion.
     pub tau: Amount,
 }
 
+impl LegSolution {
+    /// No displacement.
+    pub const HOME: Self = {
+        let none = Amount::Value(0.0);
+        Self { lower: [none; 3], upper: [none; 3], tau: none }
+    };
+}
+
 impl CompiledLeg {
-    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism; `drives`
-    /// gives each coordinate's number among the actuated ones.
+    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism.
     pub fn new(
         leg: &Leg,
         split: &LegSplit,
-        task: &Task,
         first: usize,
-        drives: &[Option<usize>],
-        limits: &[Limits],
+        Surroundings { task, drives, limits, size }: Surroundings<'_>,
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
@@ -134,11 +155,14 @@ impl CompiledLeg {
             if section == cut {
                 joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);
             }
-            let chain = Chain::new(subspace, &joints)
-                .map_err(|error| RefusedLeg::Chain { section, error })?;
+            let refused = |error| RefusedLeg::Chain { section, error };
+            let chain = Chain::new(subspace, &joints).map_err(refused)?;
+            let screws = screws(subspace, &joints).map_err(refused)?;
             let slot = || slots.iter().flatten();
             Ok(CompiledSection {
                 chain,
+                screws,
+                scale: determinant_scale(subspace.kind, &screws, size),
                 slots,
                 limited: slot().any(|s| limits[s.coordinate].any()),
                 driven: slot().any(|s| s.drive.is_some()),
@@ -263,7 +287,7 @@ impl CompiledSection {
 
 /// The branch of each section's chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LegBranches {
+pub(crate) struct LegBranches {
     pub lower: Branch,
     pub upper: Branch,
 }

@@ -1,0 +1,298 @@
+//! Velocities and accelerations of every joint, from those of the task coordinates.
+//!
+//! A leg's closure `exp(I τ) · U = b`, `L = v · exp(I τ)` (or, with its cut in the lower section,
+//! `L · exp(-I τ) = v`, `U = exp(-I τ) · b`) is differentiated one section at a time. A section's chain
+//! has as many joints as its subspace has dimensions, so that in the subspace's own frame its screws
+//! are a square matrix of at most 3 × 3: the rows of its inverse are the reciprocal screws, each
+//! of which sees one joint and none of the others (Eq. 6 of the paper multiplies by one of them,
+//! `v × w`). Nothing is solved by least squares.
+//!
+//! * Upper section: `V_b = ḃ b⁻¹ = I τ̇ + Σ s q̇` gives the imaginary rate (Eqs. 5-9);
+//! * lower section: `V_v + Ad(v) I τ̇ = Σ s q̇` the others (Eqs. 17-23).
+//!
+//! Accelerations are the derivative of these, `Σ s q̈ = V̇ − Σ_{j<k} [sⱼ, sₖ] q̇ⱼ q̇ₖ`, with the Lie
+//! brackets of the screws as they have moved.
+//!
+//! A rate is the time derivative of the coordinate as it is reported: a spherical joint's are the
+//! derivatives of its rotation vector, an imaginary joint's has its sign.
+
+mod condition;
+mod jacobian;
+mod local;
+mod pose;
+mod rotation_vector;
+mod screws;
+mod section;
+mod serial;
+
+pub use condition::Conditioning;
+pub use jacobian::Jacobians;
+pub(crate) use section::determinant_scale;
+
+use crate::chain::Amount;
+use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
+use local::Local;
+use nalgebra::Vector3;
+use section::Differential;
+
+/// A measure of singularity below this is zero, and there are no rates. At a singular pose, where two
+/// solutions meet, a chain takes the square root of a number that is zero but for rounding: some 1e-16,
+/// times a few. Whatever a root says below the root of that is noise.
+pub const SINGULAR: f64 = 1e-7;
+
+/// Rates that cannot be computed with, or a solution without joints.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum VelocityError {
+    /// Another number of rates than the manipulator has task coordinates.
+    #[error("{given} rates, expected {expected}, one a task coordinate")]
+    Length {
+        /// How many were given.
+        given: usize,
+        /// How many there are.
+        expected: usize,
+    },
+    /// Not a number, infinite, or too large.
+    #[error(
+        "the rate or acceleration of {name} is {value:?}, expected a number of at most {LARGEST:?}"
+    )]
+    NotFinite {
+        /// The task coordinate.
+        name: &'static str,
+        /// Its rate.
+        value: f64,
+    },
+    /// The solution is not one: legs are out of reach.
+    #[error("the pose is out of reach, no joint has a rate there")]
+    OutOfReach,
+    /// The joints' rates or accelerations are too large to be numbers.
+    #[error("leg number {leg} would have to move infinitely fast")]
+    Overflow {
+        /// The leg, counted from zero.
+        leg: usize,
+    },
+}
+
+/// A leg that has no rates: a section of it is singular.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SingularLeg {
+    /// Number of the leg.
+    pub leg: usize,
+    /// Which of its sections: a serial singularity of that.
+    pub section: Section,
+}
+
+/// Rates and accelerations of every joint; made by [`Manipulator::motion`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Rate of every joint coordinate, in the order of [`Manipulator::coordinates`]; rad/s and m/s.
+    pub joint_rates: Vec<f64>,
+    /// Acceleration of every joint coordinate, in the same order; rad/s² and m/s².
+    pub joint_accelerations: Vec<f64>,
+    /// Rate of every imaginary joint, in the order of [`Manipulator::imaginary`].
+    pub imaginary_rates: Vec<f64>,
+    /// Acceleration of every imaginary joint, in the same order.
+    pub imaginary_accelerations: Vec<f64>,
+    /// The legs that have no rates. The numbers of their joints are zeros that mean nothing.
+    pub singular: Vec<SingularLeg>,
+}
+
+/// What the task coordinates do: the twists of `v` and of `b`, and their derivatives.
+#[derive(Clone, Copy)]
+struct Drive {
+    v: [Local; 2],
+    b: [Local; 2],
+}
+
+/// What a leg does: rates and accelerations of its sections' chains and along the cut.
+struct LegMotion {
+    lower: [Local; 2],
+    upper: [Local; 2],
+    tau: [f64; 2],
+}
+
+/// A leg's two sections at one configuration.
+#[derive(Clone, Copy, Debug)]
+struct LegDifferential {
+    lower: Differential,
+    upper: Differential,
+}
+
+impl LegDifferential {
+    /// The section that has no rates, if one has none.
+    #[inline]
+    fn singular(&self) -> Option<Section> {
+        let sections = [(&self.lower, Section::Lower), (&self.upper, Section::Upper)];
+        sections.into_iter().find(|(differential, _)| differential.is_singular()).map(|(_, s)| s)
+    }
+}
+
+impl Manipulator {
+    /// A buffer for [`Manipulator::velocity`].
+    pub fn motion(&self) -> Motion {
+        let (joints, imaginary) = (self.coordinates().len(), self.imaginary().len());
+        Motion {
+            joint_rates: vec![0.0; joints],
+            joint_accelerations: vec![0.0; joints],
+            imaginary_rates: vec![0.0; imaginary],
+            imaginary_accelerations: vec![0.0; imaginary],
+            singular: Vec::with_capacity(self.legs()),
+        }
+    }
+
+    /// Rates and accelerations of every joint at a solved pose, for first and second time derivatives
+    /// of the task coordinates: in rad/s, m/s and their like. `false` where a leg is singular and has
+    /// none (`out.singular` says which); the other legs have theirs. Nothing is allocated.
+    ///
+    /// `at` is what [`Manipulator::inverse`] and its kind made of a pose; a new
+    /// [`Manipulator::solution`] is home.
+    ///
+    /// # Errors
+    /// Another number of rates than task coordinates, one that is not a finite number, or a
+    /// solution that is out of reach.
+    pub fn velocity(
+        &self,
+        at: &Solution,
+        rates: &[f64],
+        accelerations: &[f64],
+        out: &mut Motion,
+    ) -> Result<bool, VelocityError> {
+        self.check_rates(rates)?;
+        self.check_rates(accelerations)?;
+        if !at.unreachable.is_empty() {
+            return Err(VelocityError::OutOfReach);
+        }
+        let drive = self.drive(&at.place.pose, rates, accelerations);
+        out.singular.clear();
+        for number in 0..self.legs.len() {
+            let leg = self.leg_differential(at, number);
+            let motion = match leg.singular() {
+                Some(section) => {
+                    out.singular.push(SingularLeg { leg: number, section });
+                    LegMotion::NONE
+                }
+                None => self.leg_motion(at, number, &leg, &drive),
+            };
+            if !motion.is_finite() {
+                return Err(VelocityError::Overflow { leg: number });
+            }
+            self.write_motion(number, &motion, out);
+        }
+        Ok(out.singular.is_empty())
+    }
+
+    fn check_rates(&self, rates: &[f64]) -> Result<(), VelocityError> {
+        let coordinates = self.task_coordinates();
+        if rates.len() != coordinates.len() {
+            let (given, expected) = (rates.len(), coordinates.len());
+            return Err(VelocityError::Length { given, expected });
+        }
+        for (coordinate, &value) in coordinates.iter().zip(rates) {
+            if value.is_nan() || value.abs() > LARGEST {
+                return Err(VelocityError::NotFinite { name: coordinate.name, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// The twists of `v` and `b` for rates of the task coordinates.
+    fn drive(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> Drive {
+        let task = self.task();
+        let count = task.lower_count;
+        let of = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
+            let vector = |all| Local::from_fn(|i, _| *part(all, count).get(i).unwrap_or(&0.0));
+            let (rates, accelerations) = (vector(rates), vector(accelerations));
+            [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]
+        };
+        Drive {
+            v: of(&task.lower_screws(pose), |all, count| &all[..count]),
+            b: of(&task.upper_screws(pose), |all, count| &all[count..]),
+        }
+    }
+
+    #[inline]
+    fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
+        let (leg, solved) = (&self.legs[number], &at.legs[number]);
+        let task = self.task();
+        let coordinates = self.coordinates();
+        let vector = |first: usize| {
+            Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
+        };
+        LegDifferential {
+            lower: Differential::new(task.lower.kind, &leg.lower, &solved.lower, vector),
+            upper: Differential::new(task.upper.kind, &leg.upper, &solved.upper, vector),
+        }
+    }
+
+    #[inline]
+    fn leg_motion(
+        &self,
+        at: &Solution,
+        number: usize,
+        LegDifferential { lower, upper }: &LegDifferential,
+        drive: &Drive,
+    ) -> LegMotion {
+        let task = self.task();
+        let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
+        let solve = |section: &Differential, [twist, derivative]: [Local; 2]| {
+            let rates = section.rates(&twist);
+            [rates, section.accelerations(&twist, &derivative, &rates)]
+        };
+        match leg.cut {
+            Section::Upper => {
+                let upper = solve(upper, drive.b);
+                let tau = upper.map(|u| u.x);
+                let along = at.place.v.carried(&task.lower_cut.twist(task.lower.kind));
+                let [twist, derivative] = drive.v;
+                let turned = task.lower.kind.bracket(&twist, &along);
+                let target =
+                    [twist + along * tau[0], derivative + along * tau[1] + turned * tau[0]];
+                LegMotion { lower: solve(lower, target), upper, tau }
+            }
+            Section::Lower => {
+                let lower = solve(lower, drive.v);
+                let last = leg.lower.chain.freedoms() - 1;
+                let cut = lower.map(|l| l[last]);
+                let kind = task.upper.kind;
+                let along = task.upper_cut.twist(kind);
+                let amount: Amount = solved.tau.inverse();
+                let [twist, derivative] =
+                    drive.b.map(|twist| task.upper_cut.carried(kind, amount, &twist));
+                let turned = kind.bracket(&along, &twist);
+                let target =
+                    [along * cut[0] + twist, along * cut[1] + derivative + turned * cut[0]];
+                LegMotion { lower, upper: solve(upper, target), tau: cut.map(|c| -c) }
+            }
+        }
+    }
+
+    #[inline]
+    fn write_motion(&self, number: usize, motion: &LegMotion, out: &mut Motion) {
+        let leg = &self.legs[number];
+        for (section, [rates, accelerations]) in
+            [(&leg.lower, &motion.lower), (&leg.upper, &motion.upper)]
+        {
+            for (i, slot) in section.slots.iter().enumerate() {
+                let Some(slot) = slot else { continue };
+                out.joint_rates[slot.coordinate] = rates[i];
+                out.joint_accelerations[slot.coordinate] = accelerations[i];
+            }
+        }
+        if let Some(imaginary) = leg.imaginary {
+            let sign = self.imaginary()[imaginary].sign;
+            out.imaginary_rates[imaginary] = sign * motion.tau[0];
+            out.imaginary_accelerations[imaginary] = sign * motion.tau[1];
+        }
+    }
+}
+
+impl LegMotion {
+    const NONE: Self = {
+        let zero = [Local::new(0.0, 0.0, 0.0); 2];
+        Self { lower: zero, upper: zero, tau: [0.0; 2] }
+    };
+
+    fn is_finite(&self) -> bool {
+        let sections = self.lower.iter().chain(&self.upper).flatten();
+        sections.chain(&self.tau).all(|value| value.is_finite())
+    }
+}

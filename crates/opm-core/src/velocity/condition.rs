@@ -1,0 +1,155 @@
+//! How far a pose is from singular: condition number and manipulability.
+
+use super::Jacobians;
+use crate::joint::Quantity;
+use crate::manipulator::Manipulator;
+use nalgebra::SMatrix;
+
+/// Most components of a section twist: two subspaces of three dimensions that share one.
+const MOST: usize = 5;
+
+/// A singular value below this share of the largest is zero: rounding of the few dozen operations that
+/// lead to it.
+const RANK: f64 = 1e-13;
+
+/// The most rotations' sweeps; regular matrices need about six.
+const MAX_SWEEPS: usize = 30;
+
+type Square = SMatrix<f64, MOST, MOST>;
+
+/// The conditioning of the actuated joints' Jacobian by the platform's twist.
+///
+/// Lengths are over the characteristic length: the velocity of the platform's reference point, and
+/// the rates of sliders. Then it has no dimension, and is the same for whatever coordinates the
+/// pose is written in, wherever the mechanism stands and however large it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditioning {
+    /// Largest over smallest singular value, at least one: how unevenly joint rates move the
+    /// platform. Infinite at a singularity, serial or parallel, and where fewer joints are actuated
+    /// than the platform has freedoms; of more, all count.
+    pub condition: f64,
+    /// Inverse of the product of the singular values: the volume of the platform's twists for unit
+    /// rates of the actuated joints (Yoshikawa's measure). Zero at a serial singularity, infinite at a
+    /// parallel one.
+    pub manipulability: f64,
+}
+
+impl Conditioning {
+    const SERIAL: Self = Self { condition: f64::INFINITY, manipulability: 0.0 };
+    const PARALLEL: Self = Self { condition: f64::INFINITY, manipulability: f64::INFINITY };
+}
+
+impl Manipulator {
+    /// How well conditioned the actuated joints' Jacobian is, at the pose of `jacobians`; with a
+    /// characteristic length in metres, usually [`Manipulator::characteristic_length`]. Nothing is
+    /// allocated.
+    ///
+    /// # Panics
+    /// If the length is not a positive number.
+    pub fn conditioning(&self, jacobians: &Jacobians, length: f64) -> Conditioning {
+        assert!(length > 0.0 && length.is_finite(), "characteristic length {length}");
+        if !jacobians.singular.is_empty() {
+            return Conditioning::SERIAL;
+        }
+        let n = jacobians.platform.ncols();
+        // Twists that are orthonormal: the platform's columns are Q R.
+        let metric = triangle(n, 6, |row, column| {
+            let value = jacobians.platform[(row, column)];
+            if row < 3 { value } else { value / length }
+        });
+        let actuated = self.actuated();
+        let mut joints = triangle(n, actuated.len(), |row, column| {
+            let coordinate = actuated[row];
+            let value = jacobians.joints[(coordinate, column)];
+            match self.coordinates()[coordinate].quantity {
+                Quantity::Angle => value,
+                Quantity::Length => value / length,
+            }
+        });
+        divide(&mut joints, &metric, n);
+        let values = singular_values(joints, n);
+        let (mut largest, mut smallest, mut product) = (0.0_f64, f64::INFINITY, 1.0);
+        for &value in &values[..n] {
+            largest = largest.max(value);
+            smallest = smallest.min(value);
+            product *= value;
+        }
+        // Poses so far out that squares overflow.
+        if !product.is_finite() || !largest.is_finite() {
+            return Conditioning::SERIAL;
+        }
+        if smallest <= RANK * largest {
+            return Conditioning::PARALLEL;
+        }
+        Conditioning { condition: largest / smallest, manipulability: 1.0 / product }
+    }
+}
+
+/// The triangle `R` of a matrix's `Q R`, by Givens rotations, a row at a time.
+fn triangle(n: usize, rows: usize, entry: impl Fn(usize, usize) -> f64) -> Square {
+    let mut r = Square::zeros();
+    for row in 0..rows {
+        let mut next = [0.0; MOST];
+        for (column, value) in next[..n].iter_mut().enumerate() {
+            *value = entry(row, column);
+        }
+        for i in 0..n {
+            if next[i] == 0.0 {
+                continue;
+            }
+            let length = r[(i, i)].hypot(next[i]);
+            let (cos, sin) = (r[(i, i)] / length, next[i] / length);
+            for j in i..n {
+                let (above, below) = (r[(i, j)], next[j]);
+                r[(i, j)] = cos * above + sin * below;
+                next[j] = cos * below - sin * above;
+            }
+        }
+    }
+    r
+}
+
+/// `matrix R⁻¹`, from its first column on.
+fn divide(matrix: &mut Square, r: &Square, n: usize) {
+    for j in 0..n {
+        for k in 0..j {
+            let factor = r[(k, j)];
+            for i in 0..n {
+                matrix[(i, j)] -= matrix[(i, k)] * factor;
+            }
+        }
+        for i in 0..n {
+            matrix[(i, j)] /= r[(j, j)];
+        }
+    }
+}
+
+/// Singular values by one-sided Jacobi rotations, as in `svd.rs`, which would allocate.
+fn singular_values(mut m: Square, n: usize) -> [f64; MOST] {
+    for _ in 0..MAX_SWEEPS {
+        let mut rotated = false;
+        for p in 0..n {
+            for q in p + 1..n {
+                let (pp, qq) = (m.column(p).norm_squared(), m.column(q).norm_squared());
+                let pq = m.column(p).dot(&m.column(q));
+                if pq.abs() <= f64::EPSILON * (pp * qq).sqrt() {
+                    continue;
+                }
+                rotated = true;
+                let zeta = (qq - pp) / (2.0 * pq);
+                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+                let cos = 1.0 / tan.hypot(1.0);
+                let sin = cos * tan;
+                for i in 0..n {
+                    let (x, y) = (m[(i, p)], m[(i, q)]);
+                    m[(i, p)] = cos * x - sin * y;
+                    m[(i, q)] = sin * x + cos * y;
+                }
+            }
+        }
+        if !rotated {
+            break;
+        }
+    }
+    std::array::from_fn(|i| m.column(i).norm())
+}

@@ -1,0 +1,121 @@
+//! Derivatives of a rotation vector, which is how a spherical joint is measured.
+//!
+//! With `r` the vector, `θ = |r|`, and `ω` the angular velocity of `exp(r)` in the fixed frame,
+//! `ṙ = ω − ½ r × ω + c(θ) r × (r × ω)`, `c = (1 − (θ/2) cot(θ/2)) / θ²` (Bullo and Murray,
+//! "Proportional derivative control on the Euclidean group", ECC 1995). At a whole turn other than none
+//! there is no such derivative: the axis of a full turn is any axis.
+
+use super::SINGULAR;
+use super::local::Local;
+use nalgebra::Matrix3;
+
+/// A rotation vector, with what its derivatives need.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RotationVector {
+    vector: Local,
+    /// `c(θ)`.
+    second: f64,
+    /// `c′(θ) / θ`.
+    slope: f64,
+    singular: bool,
+}
+
+/// Below it the series is as good as double precision; above it the closed form loses less than three
+/// digits to its difference.
+const SMALL: f64 = 0.5;
+
+impl RotationVector {
+    pub fn new(vector: Local) -> Self {
+        let square = vector.norm_squared();
+        let angle = square.sqrt();
+        if angle < SMALL {
+            return Self {
+                vector,
+                second: series(&SECOND, square),
+                slope: series(&SLOPE, square),
+                singular: false,
+            };
+        }
+        let (sin, cos) = (0.5 * angle).sin_cos();
+        if sin.abs() < SINGULAR {
+            return Self { vector, second: 0.0, slope: 0.0, singular: true };
+        }
+        let half = 0.5 * angle * cos / sin;
+        let second = (1.0 - half) / square;
+        let slope = ((half - 2.0) / square + 0.25 / (sin * sin)) / square;
+        Self { vector, second, slope, singular: false }
+    }
+
+    /// At a whole turn, where it has no derivative.
+    pub fn is_singular(&self) -> bool {
+        self.singular
+    }
+
+    /// The matrix that gives `ṙ` from `ω`.
+    pub fn rates_of_spin(&self) -> Matrix3<f64> {
+        let cross = self.vector.cross_matrix();
+        Matrix3::identity() - cross * 0.5 + cross * cross * self.second
+    }
+
+    /// `r̈` at constant `ω`, that is the derivative of that matrix times `ω`.
+    pub fn bias(&self, rates: &Local, spin: &Local) -> Local {
+        let r = &self.vector;
+        let turned = r.cross(spin);
+        let squared = rates.cross(&turned) + r.cross(&rates.cross(spin));
+        r.cross(&turned) * (self.slope * r.dot(rates)) + squared * self.second
+            - rates.cross(spin) * 0.5
+    }
+}
+
+/// `c` in powers of `θ²`: the series of `x cot x`, with Bernoulli numbers.
+const SECOND: [f64; 7] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30_240.0,
+    1.0 / 1_209_600.0,
+    1.0 / 47_900_160.0,
+    691.0 / 1_307_674_368_000.0,
+    1.0 / 74_724_249_600.0,
+];
+
+/// `c′ / θ` in powers of `θ²`: the derivative of that.
+const SLOPE: [f64; 6] = [
+    2.0 / 720.0,
+    4.0 / 30_240.0,
+    6.0 / 1_209_600.0,
+    8.0 / 47_900_160.0,
+    10.0 * 691.0 / 1_307_674_368_000.0,
+    12.0 / 74_724_249_600.0,
+];
+
+fn series(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    proptest! {
+        /// Both forms, where they meet.
+        #[test]
+        fn series_and_closed_form_agree(angle in 0.45..0.5_f64) {
+            let (sin, cos) = (0.5 * angle).sin_cos();
+            let half = 0.5 * angle * cos / sin;
+            let square = angle * angle;
+            let second = (1.0 - half) / square;
+            let slope = ((half - 2.0) / square + 0.25 / (sin * sin)) / square;
+            prop_assert!((series(&SECOND, square) - second).abs() < 1e-14);
+            prop_assert!((series(&SLOPE, square) - slope).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_has_no_derivative_but_half_a_turn_has() {
+        assert!(RotationVector::new(Local::z() * (2.0 * PI)).is_singular());
+        assert!(!RotationVector::new(Local::z() * PI).is_singular());
+        assert!(!RotationVector::new(Local::zeros()).is_singular());
+    }
+}

@@ -1,0 +1,106 @@
+//! One section of a leg at one configuration: from the twist of its outer link to its joints' rates.
+
+use super::SINGULAR;
+use super::local::{Local, linear, quarter};
+use super::rotation_vector::RotationVector;
+use super::screws::Screws;
+use crate::chain::{Amount, Chain};
+use crate::manipulator::CompiledSection;
+use crate::task::SubspaceKind;
+use nalgebra::Matrix3;
+
+/// A section's screws as they have moved, and the reciprocal ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Differential {
+    pub screws: Screws,
+    /// Rows that give the rates; zeros where there are none.
+    pub reciprocal: [Local; 3],
+    /// The determinant over what it is measured in: dimensionless.
+    pub measure: f64,
+    /// Where the section is a spherical joint: it has no screws, but three coordinates.
+    ball: Option<RotationVector>,
+}
+
+impl Differential {
+    /// Of a section that is at `amounts`; a spherical joint at the rotation vector `vector` from home,
+    /// whole turns counted, in base coordinates.
+    #[inline]
+    pub fn new(
+        kind: SubspaceKind,
+        section: &CompiledSection,
+        amounts: &[Amount; 3],
+        vector: impl FnOnce(usize) -> Local,
+    ) -> Self {
+        if let Chain::Ball(ball) = &section.chain {
+            let first = section.slots[0].map_or(0, |slot| slot.coordinate);
+            let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
+            let rows = ball.axes * vector.rates_of_spin();
+            return Self {
+                screws: Screws { kind, moved: section.screws },
+                reciprocal: [0, 1, 2].map(|i| rows.row(i).transpose()),
+                measure: 1.0,
+                ball: Some(vector),
+            };
+        }
+        let screws = Screws::new(kind, &section.screws, amounts);
+        let (crosses, determinant) = screws.reciprocal();
+        let measure = determinant / section.scale;
+        let reciprocal = if measure.abs() < SINGULAR {
+            [Local::zeros(); 3]
+        } else {
+            crosses.map(|row| row / determinant)
+        };
+        Self { screws, reciprocal, measure, ball: None }
+    }
+
+    /// Why there are no rates for a twist, if there are none.
+    #[inline]
+    pub fn is_singular(&self) -> bool {
+        self.measure.abs() < SINGULAR || self.ball.is_some_and(|vector| vector.is_singular())
+    }
+
+    /// The rates of its joints, base first, for a twist of its outer link.
+    #[inline]
+    pub fn rates(&self, twist: &Local) -> Local {
+        Local::from_fn(|joint, _| self.rate(joint, twist))
+    }
+
+    /// The rate of one joint.
+    #[inline]
+    pub fn rate(&self, joint: usize, twist: &Local) -> f64 {
+        self.reciprocal[joint].dot(twist)
+    }
+
+    /// The accelerations of its joints for a twist of its outer link, that twist's derivative, and the
+    /// rates that go with them.
+    #[inline]
+    pub fn accelerations(&self, twist: &Local, derivative: &Local, rates: &Local) -> Local {
+        match &self.ball {
+            Some(vector) => {
+                let axes = Matrix3::from_rows(&self.screws.moved.map(|screw| screw.transpose()));
+                let bias = vector.bias(&axes.tr_mul(rates), twist);
+                self.rates(derivative) + axes * bias
+            }
+            None => self.rates(&(derivative - self.screws.bias(rates))),
+        }
+    }
+}
+
+/// What the determinant of a chain's screws is measured in, so that it has no dimension: links in a
+/// plane, where two neighbouring pivots are on one; `size` where a slider is between two pivots. On
+/// an axis the determinant does not change, and is its own measure.
+pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[Local; 3], size: f64) -> f64 {
+    match kind {
+        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Cylindrical => home[0].cross(&home[1]).z.abs(),
+        SubspaceKind::Planar => {
+            let pivot = |s: &Local| (s.x != 0.0).then(|| quarter(linear(s)) * s.x);
+            match home.each_ref().map(pivot) {
+                [Some(a), Some(b), Some(c)] => (b - a).norm() * (c - b).norm(),
+                [Some(a), Some(b), None] | [None, Some(a), Some(b)] => (b - a).norm(),
+                [Some(_), None, Some(_)] => size,
+                _ => 1.0,
+            }
+        }
+    }
+}
