@@ -90,6 +90,11 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
             return Err(Failure::flag("--output", problem));
         }
     };
+    if args.output.canonicalize().is_ok_and(|output| args.file.canonicalize().ok() == Some(output))
+    {
+        let problem = format!("{} is also the input", args.output.display());
+        return Err(Failure::flag("--output", problem));
+    }
     let target = Target::create(&args.output)?;
     let progress = interruptible()?;
     let source = Source::open(&args.file, output, &progress)?;

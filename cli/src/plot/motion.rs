@@ -7,14 +7,17 @@ use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;
 use opm_core::joint::Quantity;
-use opm_mcap::Flat;
+use opm_mcap::trajectory::{
+    ACCELERATIONS_TOPIC, CONDITION_TOPIC, IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC,
+    JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC, Role, VALID, VELOCITIES_TOPIC,
+};
+use opm_mcap::{Flat, Metadata};
+use opm_plot::axis::label;
 use opm_plot::{Curve, Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
 use std::collections::BTreeMap;
 
 /// Nanoseconds in a second.
 const SECOND: f64 = 1e9;
-/// Field of `/condition` that is 1 where the mechanism can be as recorded.
-const VALID: &str = "valid";
 /// Field of `/condition` whose size spans powers of ten.
 const CONDITION: &str = "condition";
 /// Violations that the notes list.
@@ -53,14 +56,14 @@ const TOPICS: [Topic; 8] = {
         Topic { name, kind, rate }
     }
     [
-        topic("/pose", TopicKind::Pose, Rate::Position),
-        topic("/pose_velocities", TopicKind::Pose, Rate::Velocity),
-        topic("/joints", TopicKind::Joints, Rate::Position),
-        topic("/velocities", TopicKind::Joints, Rate::Velocity),
-        topic("/accelerations", TopicKind::Joints, Rate::Acceleration),
-        topic("/imaginary_joints", TopicKind::Imaginary, Rate::Position),
-        topic("/imaginary_velocities", TopicKind::Imaginary, Rate::Velocity),
-        topic("/condition", TopicKind::Condition, Rate::Position),
+        topic(POSE_TOPIC, TopicKind::Pose, Rate::Position),
+        topic(POSE_VELOCITIES_TOPIC, TopicKind::Pose, Rate::Velocity),
+        topic(JOINTS_TOPIC, TopicKind::Joints, Rate::Position),
+        topic(VELOCITIES_TOPIC, TopicKind::Joints, Rate::Velocity),
+        topic(ACCELERATIONS_TOPIC, TopicKind::Joints, Rate::Acceleration),
+        topic(IMAGINARY_TOPIC, TopicKind::Imaginary, Rate::Position),
+        topic(IMAGINARY_VELOCITIES_TOPIC, TopicKind::Imaginary, Rate::Velocity),
+        topic(CONDITION_TOPIC, TopicKind::Condition, Rate::Position),
     ]
 };
 
@@ -156,6 +159,8 @@ struct Motion<'a> {
     source: &'a Source<'a>,
     /// Time of the first message, in nanoseconds.
     start: u64,
+    /// Time of the motion at that message, in seconds.
+    offset: f64,
     /// The traces of every topic, once it has been seen.
     traces: Vec<Option<Vec<Trace>>>,
     /// Time of the messages that are being read.
@@ -171,8 +176,12 @@ struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     fn new(source: &'a Source<'a>) -> Self {
+        let run = source.metadata("run");
+        let offset =
+            run.get("start").and_then(|start| start.parse().ok()).filter(|s: &f64| s.is_finite());
         Self {
             source,
+            offset: offset.unwrap_or(0.0),
             start: source.recording.time_range.map_or(0, |range| range[0]),
             traces: TOPICS.iter().map(|_| None).collect(),
             now: None,
@@ -186,7 +195,7 @@ impl<'a> Motion<'a> {
     }
 
     fn seconds(&self, time: u64) -> f64 {
-        time.saturating_sub(self.start) as f64 / SECOND
+        self.offset + time.saturating_sub(self.start) as f64 / SECOND
     }
 
     fn add(&mut self, topic: usize, flat: &Flat, time: u64, values: &[f64]) {
@@ -234,11 +243,17 @@ impl<'a> Motion<'a> {
 
     fn figure(self, wanted: &Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
         let seconds = self.seconds(self.end);
-        let heading = self.heading(seconds);
-        let Self { source, traces, invalid, .. } = self;
+        let heading = self.heading(seconds - self.offset);
+        let Self { source, traces, mut invalid, offset, .. } = self;
         let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
-        let (marks, mut notes) = violations(source);
+        let violations = violations(source);
+        let mut notes = listed(&violations);
+        // Between samples, too, where the recording tells.
+        invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
+        if !invalid.is_empty() {
+            notes.insert(0, "Shaded: the mechanism cannot follow.".to_owned());
+        }
         if let Some(thinned) = all.iter().find(|trace| trace.curve.is_thinned()) {
             notes.push(format!(
                 "Each curve is drawn by the extremes of its {} samples in thousands of spans of time.",
@@ -273,10 +288,10 @@ impl<'a> Motion<'a> {
         let notes = [notes, source.notes()].concat();
         Ok(TimeFigure {
             heading: Heading { notes, ..heading },
-            time: [0.0, seconds],
+            time: [offset, seconds],
             rows: rows.collect(),
             invalid,
-            marks,
+            marks: violations.iter().map(|violation| violation.start).collect(),
         })
     }
 
@@ -332,11 +347,11 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
             let name = find("joints").unwrap_or_else(|| field.to_owned());
             let (known, group) = joint(source, &name);
             let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
-            let group = group.or_else(|| match find("roles").as_deref() {
-                Some("actuated") => Some(Group::Actuated),
-                Some("passive") => Some(Group::Passive),
-                _ => None,
-            });
+            let role = find("roles");
+            let is = |known: Role| role.as_deref() == Some(known.name());
+            let group = group
+                .or_else(|| is(Role::Actuated).then_some(Group::Actuated))
+                .or_else(|| is(Role::Passive).then_some(Group::Passive));
             (name, quantity, group.unwrap_or(Group::Joints))
         }
     };
@@ -406,7 +421,8 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
     let number = |name: &str| names.iter().position(|known| known == name).unwrap_or(0);
     let panel = |traces: Vec<Trace>| {
         let (quantity, rate) = traces.first().map(|trace| (trace.quantity, trace.rate))?;
-        let (Measure { name, unit }, _) = source.measure(axis(quantity, rate), quantity, rate);
+        let (Measure { name, unit }, _) =
+            source.measure(axis(group, quantity, rate), quantity, rate);
         let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
         let scale = match group {
             Group::Condition => Scale::Logarithmic,
@@ -419,10 +435,11 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
 }
 
 /// What an axis is called.
-fn axis(quantity: Option<Quantity>, rate: Rate) -> &'static str {
+fn axis(group: Group, quantity: Option<Quantity>, rate: Rate) -> &'static str {
     match (rate, quantity) {
         (Rate::Position, Some(Quantity::Angle)) => "angle",
         (Rate::Position, Some(Quantity::Length)) => "length",
+        (Rate::Position, None) if group == Group::Condition => "condition",
         (Rate::Position, None) => "value",
         (Rate::Velocity, _) => "velocity",
         (Rate::Acceleration, _) => "acceleration",
@@ -431,8 +448,9 @@ fn axis(quantity: Option<Quantity>, rate: Rate) -> &'static str {
 
 fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
     let what = match (group, quantity) {
-        (Group::Pose, Some(Quantity::Length)) => "Platform: position",
-        (Group::Pose, _) => "Platform: orientation",
+        (Group::Pose, Some(Quantity::Length)) if rate == Rate::Position => "Platform position",
+        (Group::Pose, Some(Quantity::Length)) => "Platform",
+        (Group::Pose, _) => "Platform orientation",
         (Group::Imaginary, _) => "Imaginary joints",
         (Group::Actuated, _) => "Actuated joints",
         (Group::Passive, _) => "Passive joints",
@@ -447,28 +465,68 @@ fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
     }
 }
 
-/// Times of violations, and notes that say what they are.
-fn violations(source: &Source<'_>) -> (Vec<f64>, Vec<String>) {
-    let records = source.recording.metadata.iter();
-    let found = records.filter(|(name, _)| name.starts_with("violation."));
-    let mut times: Vec<(f64, String)> = found
-        .filter_map(|(_, record)| {
-            let time = record.get("time")?.parse().ok()?;
-            let text = record.get("text").cloned().unwrap_or_else(|| {
-                let parts = record.iter().filter(|(key, _)| *key != "time");
-                parts.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
-            });
-            Some((time, text))
-        })
-        .collect();
-    times.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut notes: Vec<String> = (1..)
-        .zip(&times)
-        .take(LISTED)
-        .map(|(number, (time, text))| format!("{number}: at {} s, {text}", value_label(*time)))
-        .collect();
-    if times.len() > LISTED {
-        notes.push(format!("and {} more", times.len() - LISTED));
+/// What the mechanism could not follow, as its recording tells.
+struct Violation {
+    start: f64,
+    end: f64,
+    /// What, and by how much.
+    text: String,
+}
+
+impl Violation {
+    /// From a metadata record; `None` of one without a time.
+    fn new(source: &Source<'_>, record: &Metadata) -> Option<Self> {
+        let number = |key: &str| record.get(key)?.parse::<f64>().ok().filter(|n| n.is_finite());
+        let word = |key: &str| record.get(key).map(String::as_str);
+        let start = number("start")?;
+        let end = number("end").unwrap_or(start);
+        let section = word("section").map_or(String::new(), |section| format!("{section} "));
+        let what = match word("kind") {
+            Some("limit") => format!(
+                "{} past its {} value",
+                word("joint").unwrap_or("a joint"),
+                word("bound").unwrap_or("last")
+            ),
+            Some("reach") => format!("out of reach in its {section}section"),
+            Some("singularity") => {
+                let kind = word("singularity").map_or(String::new(), |kind| format!("{kind} "));
+                format!("{kind}singularity of the {section}section")
+            }
+            other => other.unwrap_or("violation").to_owned(),
+        };
+        let leg = word("leg").map_or(String::new(), |leg| format!("{leg}: "));
+        let measured = quantity(word("unit")).zip(number("amount"));
+        let by = measured.map_or(String::new(), |(quantity, amount)| {
+            let (measure, factor) = source.measure("", Some(quantity), Rate::Position);
+            format!(" by {} {}", value_label(amount / factor), measure.unit.symbol)
+        });
+        Some(Self { start, end, text: format!("{leg}{what}{by}") })
     }
-    (times.into_iter().map(|(time, _)| time).collect(), notes)
+}
+
+/// Violations in the order of their times.
+fn violations(source: &Source<'_>) -> Vec<Violation> {
+    let records = source.recording.metadata.iter();
+    let records = records.filter(|(name, _)| name.starts_with("violation."));
+    let mut found: Vec<Violation> =
+        records.filter_map(|(_, record)| Violation::new(source, record)).collect();
+    found.sort_by(|a, b| a.start.total_cmp(&b.start));
+    found
+}
+
+/// Notes that say what the marks are.
+fn listed(violations: &[Violation]) -> Vec<String> {
+    let note = |(number, violation): (usize, &Violation)| {
+        let Violation { start, end, text } = violation;
+        let [start, end] = [*start, *end].map(|time| label(time, 3));
+        match start == end {
+            true => format!("{number}: at {start} s, {text}"),
+            false => format!("{number}: {start} to {end} s, {text}"),
+        }
+    };
+    let mut notes: Vec<String> = (1..).zip(violations).take(LISTED).map(note).collect();
+    if violations.len() > LISTED {
+        notes.push(format!("and {} more", violations.len() - LISTED));
+    }
+    notes
 }

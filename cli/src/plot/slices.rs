@@ -14,6 +14,8 @@ use opm_workspace::Axis;
 const CHOSEN: u64 = 8;
 /// Most slices that --slice may ask for.
 const MOST: usize = 36;
+/// Values of the grid and of home that differ by less are the same.
+const ROUNDING: f64 = 1e-9;
 /// Share of the colours that the slices take: the brightest is left to no one.
 const COLORS: f64 = 0.95;
 
@@ -248,22 +250,22 @@ impl<'a> Slices<'a> {
             let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
-        let at_home = |number: usize, value: u64| home(&coordinates[number]) == value;
         let mut title = "Reachable positions".to_owned();
         if !self.held.is_empty() {
             let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
             title = format!("Reachable at {}", held.join(", "));
         }
-        if let Some((first, rest)) = self.layout.lost.split_first() {
+        let positions = self.view.iter().all(|seen| coordinates[seen.number].axis.is_some());
+        if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
             let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
             title.push_str(&format!(", at any {names}"));
         }
-        let held_home = self.held.iter().all(|&(number, value)| at_home(number, value));
         let [a, b] = &self.view;
         let columns = columns(self.tiles.len());
-        let shared_mark = self.home.filter(|_| held_home);
+        let marks: Vec<Option<[f64; 2]>> =
+            self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
-        let tile = |(value, content): (u64, Content)| {
+        let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
             let content = match content {
                 Content::Cells(cells, Paint::Plain(_)) => {
@@ -271,7 +273,6 @@ impl<'a> Slices<'a> {
                 }
                 other => other,
             };
-            let mark = shared_mark.filter(|_| self.varied.is_none_or(|v| at_home(v, value)));
             Tile {
                 title: self.varied.map_or_else(String::new, |number| name(number, value)),
                 x: a.measure.clone(),
@@ -287,8 +288,20 @@ impl<'a> Slices<'a> {
             scale: Scale::Linear,
         });
         let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
-        let tiles = self.tiles.into_iter().map(tile).collect();
+        let tiles = self.tiles.into_iter().zip(marks).map(tile).collect();
         Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+    }
+
+    /// The place of home, if it is in the tile of this value.
+    fn mark(&self, value: u64) -> Option<[f64; 2]> {
+        let value_of = |number: usize| {
+            let held = self.held.iter().find(|(held, _)| *held == number).map(|held| held.1);
+            held.or_else(|| (self.varied == Some(number)).then_some(value)).unwrap_or(0)
+        };
+        let seen = |number: usize| self.view.iter().any(|seen| seen.number == number);
+        let others = (0..self.layout.coordinates.len()).filter(|number| !seen(*number));
+        let mut others = others.map(|number| (&self.layout.coordinates[number], value_of(number)));
+        self.home.filter(|_| others.all(|(coordinate, value)| is_home(coordinate, value)))
     }
 
     /// What has to be said of the picture.
@@ -311,14 +324,12 @@ impl<'a> Slices<'a> {
             _ => false,
         };
         if self.tiles.iter().any(coarse) {
-            notes.push("Cells hold several values of the grid, one of them reachable.".to_owned());
+            notes.push(
+                "A cell holds several values of the grid, at least one of them reachable."
+                    .to_owned(),
+            );
         }
-        if self.home.is_some()
-            && self.tiles.iter().any(|(value, _)| {
-                let home = |&(number, value): &(usize, u64)| home(&coordinates[number]) == value;
-                self.held.iter().all(home) && self.varied.is_none_or(|v| home(&(v, *value)))
-            })
-        {
+        if self.tiles.iter().any(|(value, _)| self.mark(*value).is_some()) {
             notes.push("The cross is home.".to_owned());
         }
         notes
@@ -372,6 +383,14 @@ fn home(coordinate: &Coordinate) -> u64 {
         (Some(axis), None) => axis.count / 2,
         (None, _) => 0,
     }
+}
+
+/// Whether a value of the grid is as near to home as any could be.
+fn is_home(coordinate: &Coordinate, value: u64) -> bool {
+    let (Some(axis), Some(home)) = (&coordinate.axis, coordinate.home) else { return false };
+    let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
+    let slack = ROUNDING * axis.max.abs().max(axis.min.abs()).max(1.0);
+    (axis.value(value) - home).abs() <= 0.5 * step + slack
 }
 
 /// What `--slice` asks for: coordinates with numbers of their grids' values.
@@ -438,7 +457,10 @@ fn varied(
         return Ok(Some(one));
     }
     let open = || free.iter().copied().filter(|n| !asked.iter().any(|(known, _)| known == n));
-    let third = layout.axes.last().copied().filter(|third| open().any(|number| number == *third));
+    // The third axis of the cloud, or what its colours show.
+    let color = layout.colored.as_deref().and_then(|name| layout.find(name));
+    let third = [layout.axes.get(2).copied(), color].into_iter().flatten();
+    let third = third.into_iter().find(|third| open().any(|number| number == *third));
     let count = |number: &usize| layout.coordinates[*number].axis.as_ref().map_or(0, |a| a.count);
     Ok(third.or_else(|| open().max_by_key(count)))
 }

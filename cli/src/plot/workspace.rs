@@ -22,7 +22,9 @@ pub struct Layout {
     pub axes: Vec<usize>,
     /// Names of the values stored with every point.
     pub scalars: Vec<String>,
-    /// What the recording's colours show, and from where to where.
+    /// What the recording's colours show.
+    pub colored: Option<String>,
+    /// The same, if it is stored with the points, and its values at the ends of the colours.
     pub color: Option<(String, [f64; 2])>,
 }
 
@@ -131,6 +133,7 @@ impl Layout {
             lost: vec![],
             axes: vec![],
             scalars: scalars.clone(),
+            colored: clouds.get("color").cloned(),
             color: None,
         };
 

@@ -99,7 +99,7 @@ pub struct Bar {
 
 /// Width of a figure that nobody chose one for, at most; and the least one.
 const WIDTH: f64 = 1000.0;
-const NARROW: f64 = 420.0;
+const NARROW: f64 = 600.0;
 /// Widest tile; widest histogram.
 const WIDEST: f64 = 420.0;
 const WIDEST_HISTOGRAM: f64 = 620.0;
@@ -149,12 +149,12 @@ impl TileFigure {
         let room = size.map_or(WIDTH, |size| size.width);
         let mut laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, room)).collect();
         let used = laid.iter().map(Laid::right).fold(NARROW, f64::max);
-        let width = size.map_or(used, |size| size.width);
+        let width = size.map_or(used.ceil(), |size| size.width);
         let between = SECTIONS_APART * laid.len().saturating_sub(1) as f64;
         let fixed = self.heading.top(width) + between + self.heading.bottom(width);
         let around: f64 = laid.iter().map(Laid::around).sum();
         let tiles: f64 = laid.iter().map(Laid::tiles).sum();
-        let height = size.map_or(fixed + around + tiles, |size| size.height);
+        let height = size.map_or((fixed + around + tiles).ceil(), |size| size.height);
         // Tiles of the same shapes, smaller.
         let shrink = ((height - fixed - around) / tiles).min(1.0);
         for section in &mut laid {
@@ -228,7 +228,9 @@ impl<'a> Laid<'a> {
             true => (section.columns as f64 * steepest).round() as usize,
             false => section.columns,
         };
-        let columns = columns.clamp(1, section.tiles.len().max(1));
+        // Rows of about the same length.
+        let tiles = section.tiles.len().max(1);
+        let columns = tiles.div_ceil(tiles.div_ceil(columns.clamp(1, tiles)));
         let between = left[1] * (columns - 1) as f64;
         let free = room - 2.0 * MARGIN - left[0] - between - bar;
         let most = if histogram { WIDEST_HISTOGRAM } else { WIDEST };
@@ -303,7 +305,7 @@ impl<'a> Laid<'a> {
 
     fn tile(&self, tile: &Tile, range: [[f64; 2]; 2], place: Rect, sides: Sides) -> Shape {
         let [x, y] = range;
-        let most = (place.width / 44.0).max(2.0) as usize;
+        let most = (place.width / 44.0).clamp(2.0, 10.0) as usize;
         let x = Axis::linear(x, tile.x.unit.steps, most, fits(place.width));
         let y = Axis::linear(y, tile.y.unit.steps, ticks_in(place.height), |_, _| true);
         // Tiles of the other shapes in the section keep theirs inside the common box.

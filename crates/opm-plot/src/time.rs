@@ -97,7 +97,7 @@ impl TimeFigure {
         let beside = MARGIN + sides.left.iter().sum::<f64>() + sides.legend + MARGIN;
         let beside = beside + BETWEEN * (columns - 1) as f64;
         let natural = beside + columns as f64 * WIDTHS[(columns - 1).min(WIDTHS.len() - 1)];
-        let width = size.map_or(natural, |size| size.width);
+        let width = size.map_or(natural.ceil(), |size| size.width);
         let panel = (width - beside) / columns as f64;
 
         let least: Vec<f64> =
@@ -110,7 +110,7 @@ impl TimeFigure {
         let early = self.early(columns) as f64 * (BELOW - SPACE);
         let fixed = self.heading.top(width) + between + early + self.heading.bottom(width);
         let natural: Vec<f64> = least.iter().map(|least| least.max(HEIGHT)).collect();
-        let height = size.map_or(fixed + natural.iter().sum::<f64>(), |size| size.height);
+        let height = size.map_or((fixed + natural.iter().sum::<f64>()).ceil(), |size| size.height);
         let needed = Size {
             width: (beside + LEAST_WIDTH * columns as f64).ceil(),
             height: (fixed + least.iter().sum::<f64>()).ceil(),
@@ -126,6 +126,7 @@ impl TimeFigure {
         for (number, (row, height)) in self.rows.iter().zip(&heights).enumerate() {
             y += ABOVE;
             let mut x = MARGIN;
+            let mut side = x;
             let mut last = false;
             for column in 0..columns {
                 x += sides.left[column];
@@ -134,10 +135,11 @@ impl TimeFigure {
                     let ends = self.ends(number, column);
                     last |= ends && number + 1 < self.rows.len();
                     shapes.push(self.panel(found, row, place, ends, number == 0));
+                    side = place.right();
                 }
                 x += panel + BETWEEN;
             }
-            let at = [x - BETWEEN + BEHIND * 2.0, y];
+            let at = [side + 2.0 * BEHIND, y];
             shapes.push(legend(&row.names, at, *height));
             y += height + if last { BELOW } else { SPACE };
         }
@@ -242,6 +244,7 @@ impl TimeFigure {
     }
 }
 
+const DECADE: f64 = 10.0;
 /// Room for one more digit than the numbers were measured with.
 const TICK_SLACK: f64 = 7.0;
 
@@ -274,7 +277,8 @@ impl Panel {
         let positive = curves.filter_map(Curve::smallest_positive).reduce(f64::min);
         let most = ticks_in(height);
         match (self.scale, values, positive) {
-            (Scale::Logarithmic, Some([_, high]), Some(low)) => {
+            // Within a power of ten, logarithms have no numbers to put at an axis.
+            (Scale::Logarithmic, Some([_, high]), Some(low)) if high > DECADE * low => {
                 Axis::logarithmic([low, high], most)
             }
             _ => Axis::linear(axis::around(values, &self.unit), self.unit.steps, most, |_, _| true),

@@ -7,10 +7,14 @@ use crate::frame::Frame;
 
 /// Bins in a row and in a column: points in one bin are one dot.
 const BINS: usize = 1024;
-/// Bins in a row of one pixel of the image.
-const POOL: usize = 4;
-/// Pixels of the image for one pool, each way.
-const FINE: usize = 3;
+/// Bins in a row that share a pixel of the image: the first of these that gives so many points to a
+/// pixel that the image is more than noise.
+const POOLS: [usize; 3] = [4, 8, 16];
+const ENOUGH: u64 = 6;
+/// Pixels of the image file in a row.
+const FINE: usize = 768;
+/// Radius of a dot.
+const RADIUS: f64 = 1.6;
 
 /// Points in a plane, in bounded memory.
 #[derive(Clone, Debug)]
@@ -67,41 +71,52 @@ impl Cloud {
 
     /// Most points in one place, where they are not dots.
     pub fn densest(&self) -> u64 {
-        self.pools().into_iter().max().unwrap_or(0)
+        self.pools().1.into_iter().max().unwrap_or(0)
     }
 
-    /// Points in every pool, the lowest row first.
-    fn pools(&self) -> Vec<u64> {
-        const SIDE: usize = BINS / POOL;
-        let mut pools = vec![0; SIDE * SIDE];
-        for (bin, &count) in self.counts.iter().enumerate() {
-            pools[bin / BINS / POOL * SIDE + bin % BINS / POOL] += u64::from(count);
+    /// How many places a row has, and the points in each place, the lowest row first.
+    fn pools(&self) -> (usize, Vec<u64>) {
+        let pooled = |pool: usize| {
+            let side = BINS / pool;
+            let mut pools = vec![0; side * side];
+            for (bin, &count) in self.counts.iter().enumerate() {
+                pools[bin / BINS / pool * side + bin % BINS / pool] += u64::from(count);
+            }
+            (side, pools)
+        };
+        let mut found = pooled(POOLS[0]);
+        for pool in &POOLS[1..] {
+            let filled = found.1.iter().filter(|&&count| count > 0).count() as u64;
+            if self.points >= ENOUGH * filled {
+                break;
+            }
+            found = pooled(*pool);
         }
-        pools
+        found
     }
 
     /// The points; where they are many, coloured between one and `densest` by the logarithm.
     pub(crate) fn draw(&self, frame: &Frame<'_>, densest: u64) -> Vec<Shape> {
         if let Some(dots) = &self.dots {
-            let radius = if dots.len() > 400 { 1.4 } else { 2.2 };
             let mut path = Path::default();
             for [x, y] in dots {
-                path.add_dot(frame.at(*x, *y), radius);
+                path.add_dot(frame.at(*x, *y), RADIUS);
             }
             return vec![Shape::Area(path, DOT)];
         }
-        const SIDE: usize = BINS / POOL;
+        let (side, pools) = self.pools();
+        let fine = FINE / side;
         let color = |count: u64| {
             let share = (count as f64).ln() / (densest as f64).ln().max(f64::MIN_POSITIVE);
             (count > 0).then(|| Map::Cividis.color(share))
         };
-        let mut pixels: Vec<Option<Color>> = Vec::with_capacity((SIDE * FINE).pow(2));
-        for row in self.pools().chunks(SIDE).rev() {
+        let mut pixels: Vec<Option<Color>> = Vec::with_capacity((side * fine).pow(2));
+        for row in pools.chunks(side).rev() {
             let row: Vec<_> =
-                row.iter().flat_map(|&n| std::iter::repeat_n(color(n), FINE)).collect();
-            (0..FINE).for_each(|_| pixels.extend_from_slice(&row));
+                row.iter().flat_map(|&n| std::iter::repeat_n(color(n), fine)).collect();
+            (0..fine).for_each(|_| pixels.extend_from_slice(&row));
         }
-        let side = (SIDE * FINE) as u32;
+        let side = (side * fine) as u32;
         let [[left, right], [low, high]] = self.range;
         let ([x, bottom], [right, y]) = (frame.at(left, low), frame.at(right, high));
         let place = Rect { x, y, width: right - x, height: bottom - y };

@@ -1,0 +1,5 @@
+//! Figures as files: what an XML parser and a PNG decoder find in them.
+
+mod seen;
+mod tiles;
+mod time;
