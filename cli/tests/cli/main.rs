@@ -6,6 +6,7 @@ mod decompose;
 mod ik;
 mod inspect;
 mod linkage;
+mod plot;
 mod run;
 mod small;
 mod workspace;
