@@ -26,7 +26,6 @@ use crate::decomposition::{Decomposition, Freedom};
 use crate::joint::{Joint, JointKind};
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::Mechanism;
-use crate::mobility::frame;
 use crate::screw::Screw;
 use crate::subspace::SubspaceClass;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -148,7 +147,7 @@ pub struct Cuts<'a> {
 impl Skeleton {
     /// The bodies of a mechanism and of its imaginary joints.
     pub fn new(mechanism: &Mechanism, cuts: Cuts<'_>) -> Self {
-        let size = frame(mechanism).length;
+        let size = centre::size(mechanism);
         Builder {
             mechanism,
             sizes: Sizes::of(size),
@@ -303,6 +302,7 @@ impl Builder<'_> {
     /// A ring of rods from leg to leg.
     fn draw_base(&mut self) {
         let feet: Vec<_> = self.centres.iter().filter_map(|leg| leg.first().copied()).collect();
+        let feet = centre::around(feet);
         let count = if feet.len() > 2 { feet.len() } else { 1 };
         for i in 0..count {
             self.rod(0, [feet[i], feet[(i + 1) % feet.len()]], Material::Base);

@@ -4,15 +4,36 @@
 //! joint stands on it. And axes of one centre (the joints of a spherical section) are drawn each at
 //! the same distance out from there, or all of their links would have no length.
 
-use crate::joint::{Joint, JointKind};
+use crate::joint::{Joint, JointKind, Quantity};
 use crate::mechanism::Mechanism;
+use crate::mobility::frame;
 use nalgebra::{Point3, Vector3};
 
 /// Points closer than this, as a share of the mechanism's size, are one.
 pub(super) const TOUCH: f64 = 1e-6;
 
 /// How far out from a common centre its axes' joints are, as a share of the mechanism's size.
-const OUT: f64 = 0.35;
+const OUT: f64 = 0.25;
+
+/// A mechanism is at least this share of its longest slider's travel large, however small its links.
+const TRAVEL: f64 = 0.2;
+
+/// How large the mechanism is to look at, metres: the joints' points and the platform's lie within
+/// this distance of each other, unless sliders travel farther.
+pub(super) fn size(mechanism: &Mechanism) -> f64 {
+    let points: Vec<_> = mechanism
+        .joints()
+        .map(|joint| joint.point)
+        .chain([mechanism.platform])
+        .collect();
+    let apart = |p: &Point3<f64>| points.iter().map(|q| (q - p).norm()).fold(0.0, f64::max);
+    let across = points.iter().map(apart).fold(0.0, f64::max);
+    let lengths = mechanism.coordinates().filter(|c| c.quantity == Quantity::Length);
+    let travel = lengths.filter_map(|c| c.limits.map(|[low, high]| high - low));
+    let size = travel.map(|travel| TRAVEL * travel).fold(across, f64::max);
+    // Where all axes go through one point there is no length but that of the drawing.
+    if size > 0.0 { size } else { frame(mechanism).length }
+}
 
 /// Centres of every joint, leg by leg.
 pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>> {
@@ -47,6 +68,21 @@ pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>>
         }
     }
     legs
+}
+
+/// Points in the order in which one passes them on the way around their middle.
+pub(super) fn around(mut points: Vec<Point3<f64>>) -> Vec<Point3<f64>> {
+    let sum: Vector3<f64> = points.iter().map(|p| p.coords).sum();
+    let middle = Point3::from(sum / points.len().max(1) as f64);
+    let out: Vec<Vector3<f64>> = points.iter().map(|p| p - middle).collect();
+    let pairs = out.iter().flat_map(|a| out.iter().map(move |b| (a, a.cross(b))));
+    let widest = pairs.max_by(|(_, m), (_, n)| m.norm().total_cmp(&n.norm()));
+    if let Some((&x, normal)) = widest {
+        let y = normal.normalize().cross(&x);
+        let angle = |p: &Point3<f64>| y.dot(&(p - middle)).atan2(x.dot(&(p - middle)));
+        points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    }
+    points
 }
 
 fn turns_about_axis(joint: &Joint) -> bool {

@@ -115,11 +115,11 @@ impl Sizes {
     pub fn of(size: f64) -> Self {
         Self {
             touch: TOUCH * size,
-            rod: 0.018 * size,
-            ball: 0.045 * size,
-            collar: 0.06 * size,
+            rod: 0.012 * size,
+            ball: 0.03 * size,
+            collar: 0.045 * size,
             travel: 0.5 * size,
-            pin: 0.14 * size,
+            pin: 0.09 * size,
         }
     }
 
@@ -177,7 +177,7 @@ impl Sizes {
         let (low, high) = (low.min(high), low.max(high));
         // A little farther, so that the slider at its limit is still on it.
         let at = |s: f64| centre + joint.axis.into_inner() * s;
-        Solid::rod([at(low - self.collar), at(high + self.collar)], 0.7 * self.rod)
+        Solid::rod([at(low - self.collar), at(high + self.collar)], 0.6 * self.rod)
     }
 
     fn cylinder(

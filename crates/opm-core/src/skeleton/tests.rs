@@ -4,6 +4,7 @@ use super::*;
 use crate::manipulator::Manipulator;
 use crate::mechanism::examples::EXAMPLES;
 use crate::mechanism::file;
+use crate::mobility::frame;
 use std::collections::HashSet;
 
 /// Rounding of a leg's product of exponentials, as a share of the mechanism's size.
