@@ -341,7 +341,7 @@ fn wrong_usage_names_the_flag() {
         (&cloud, &["-o", &svg, "--slice", "xi=3mm"], &["--slice", "xi is an angle"]),
         (&cloud, &["-o", &svg, "--slice", "xi=0,xi=1,psi=0,psi=0.3"], &["--slice", "xi and psi"]),
         (&cloud, &["-o", &svg, "--size", "200x100"], &["--size", "200x100", "need at least"]),
-        (&turn, &["-o", &svg, "--values", "c1"], &["--values", "\"c1\"", "tau.leg1, a1"]),
+        (&turn, &["-o", &svg, "--values", "c1"], &["--values", "\"c1\"", "a1, b3, a2"]),
         (&turn, &["-o", &svg, "--panels", "slices"], &["--panels", "slices", "motion"]),
         (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "no workspace"]),
     ] {

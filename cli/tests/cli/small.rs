@@ -53,11 +53,19 @@ fn completions_know_the_subcommands() {
 #[test]
 fn help_and_version_go_to_standard_output() {
     assert_eq!(opm(&["--version"]).text(), concat!("opm ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in ["decompose", "ik", "linkage", "workspace", "inspect", "examples", "completions"]
+    for command in
+        ["decompose", "ik", "linkage", "workspace", "plot", "inspect", "examples", "completions"]
     {
         let help = opm(&[command, "--help"]);
         assert!(help.text().contains("Examples:\n  opm "), "{}", help.stdout);
     }
+}
+
+/// Recordings of the names that the examples of `opm plot` have.
+fn record_for_plots(folder: &Folder) {
+    let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
+    let scalars = ["--scalars", "theta11,theta12,theta13", "-o", &folder.arg("cloud.mcap")];
+    opm(&[&["workspace", PLANO], &grid[..], &scalars].concat()).text();
 }
 
 /// What the help shows works as it stands.
@@ -65,7 +73,10 @@ fn help_and_version_go_to_standard_output() {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "linkage", "workspace", "examples"] {
+    for command in ["decompose", "ik", "linkage", "workspace", "plot", "examples"] {
+        if command == "plot" {
+            record_for_plots(&folder);
+        }
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
@@ -81,7 +92,8 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap") {
+                let files = ["cloud.mcap", "cloud.svg", "joints.csv", "joints.svg", "tilted.png"];
+                if files.contains(&&**arg) || arg.starts_with("turn.") {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {
