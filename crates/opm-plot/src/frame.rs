@@ -121,8 +121,8 @@ impl Frame<'_> {
         Shape::Group { kind: "x-axis", label: name.unwrap_or_default().to_owned(), shapes }
     }
 
-    /// The numbers of the vertical axis, and its name.
-    pub fn beside(&self, name: Option<&str>) -> Shape {
+    /// The numbers of the vertical axis, and its name at the left of the room that they have.
+    pub fn beside(&self, name: Option<&str>, room: f64) -> Shape {
         let edge = self.place.x - TICK_LENGTH - TICK_GAP;
         let half = 0.5 * TICK.size * CAPITALS;
         let number =
@@ -130,7 +130,7 @@ impl Frame<'_> {
         let mut shapes: Vec<Shape> = self.y.ticks.iter().map(number).collect();
         if let Some(name) = name {
             let middle = self.place.y + 0.5 * self.place.height;
-            let line = edge - self.y.label_width(TICK.face, TICK.size) - NAME_GAP;
+            let line = self.place.x - room + NAME.size;
             shapes.push(NAME.turned(name, [line, middle], Anchor::Middle));
         }
         Shape::Group { kind: "y-axis", label: name.unwrap_or_default().to_owned(), shapes }

@@ -3,6 +3,7 @@
 use crate::color::{Color as Rgb, WHITE};
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
 use crate::font::{Face, Stroke as Outline};
+use png::{BitDepth, ColorType, Compression, EncodingError, PixelDimensions, Unit};
 use tiny_skia::{
     Color, FillRule, FilterQuality, LineJoin, Paint, PathBuilder, Pixmap, PixmapPaint, Stroke,
     StrokeDash, Transform,
@@ -23,8 +24,8 @@ pub enum Error {
         height: u32,
     },
     /// The encoder's reason.
-    #[error("cannot encode the picture: {0}")]
-    Encode(String),
+    #[error("cannot encode the picture")]
+    Encode(#[from] EncodingError),
 }
 
 /// The whole file.
@@ -36,20 +37,39 @@ pub fn write(drawing: &Drawing) -> Result<Vec<u8>, Error> {
     let mut canvas = pixmap(pixels(drawing.size.width), pixels(drawing.size.height))?;
     canvas.fill(color(WHITE));
     shapes(&mut canvas, &drawing.shapes)?;
-    encode(&canvas)
+    encode(&canvas, ColorType::Rgb)
 }
 
 /// An image of a drawing as a file of its own.
 pub(crate) fn image(image: &Image) -> Result<Vec<u8>, Error> {
-    encode(&raster(image)?)
+    encode(&raster(image)?, ColorType::Rgba)
 }
 
 fn pixmap(width: u32, height: u32) -> Result<Pixmap, Error> {
     Pixmap::new(width, height).ok_or(Error::Size { width, height })
 }
 
-fn encode(canvas: &Pixmap) -> Result<Vec<u8>, Error> {
-    canvas.encode_png().map_err(|reason| Error::Encode(reason.to_string()))
+/// With or without a channel that says what is seen of the ground: all of it or nothing.
+fn encode(canvas: &Pixmap, kind: ColorType) -> Result<Vec<u8>, Error> {
+    /// Pixels to the metre: twice the 96 to the inch of a screen.
+    const DENSITY: u32 = (96 * SCALE * 10_000).div_ceil(254);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, canvas.width(), canvas.height());
+    encoder.set_color(kind);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::High);
+    let (xppu, yppu) = (DENSITY, DENSITY);
+    encoder.set_pixel_dims(Some(PixelDimensions { xppu, yppu, unit: Unit::Meter }));
+    let pixels: Vec<u8> = match kind {
+        ColorType::Rgba => canvas.data().to_vec(),
+        _ => {
+            canvas.data().as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+        }
+    };
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 fn raster(image: &Image) -> Result<Pixmap, Error> {

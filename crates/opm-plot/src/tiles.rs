@@ -109,8 +109,9 @@ const FLAT_HISTOGRAM: f64 = 0.36;
 const TALLEST: f64 = 1.05;
 /// The same of tiles that are as wide as their lengths demand.
 const TALLEST_SHARED: f64 = 2.0;
-/// Least width and height of a tile.
+/// Least width and height of a tile, and what it may lack by rounding.
 const LEAST: f64 = 60.0;
+const ROUNDING: f64 = 1e-6;
 /// Between columns.
 const BETWEEN: f64 = 22.0;
 /// Above a tile: with a title, and without.
@@ -162,7 +163,7 @@ impl TileFigure {
             section.height *= shrink;
         }
         let smallest = laid.iter().map(|s| s.width.min(s.height)).fold(f64::MAX, f64::min);
-        if !(smallest >= LEAST - 1e-6) || width < used - 1.0 || height > MOST || width > MOST {
+        if smallest < LEAST - ROUNDING || width < used - 1.0 || height > MOST || width > MOST {
             return Err(TooSmall { needed: self.least(), panels: self.panels() });
         }
 
@@ -330,7 +331,7 @@ impl<'a> Laid<'a> {
         shapes.extend(frame.border());
         let name = y.title(&tile.y.name, &tile.y.unit);
         if sides.left {
-            shapes.push(frame.beside(Some(&name)));
+            shapes.push(frame.beside(Some(&name), left_of(&y, true)));
         }
         let name = x.title(&tile.x.name, &tile.x.unit);
         if sides.below {

@@ -80,10 +80,21 @@ const MARKS: f64 = 14.0;
 
 const MARK: Style = Style { size: 10.5, face: Face::Bold, color: ALARM };
 
-/// What a panel's vertical axis is, before its height is known.
+/// Room beside the panels: left of every column, and for the legends.
 struct Sides {
     left: Vec<f64>,
     legend: f64,
+}
+
+/// Where a panel goes.
+struct Spot {
+    place: Rect,
+    /// Room left of it.
+    left: f64,
+    /// No panel is below it.
+    ends: bool,
+    /// It is in the first row.
+    first: bool,
 }
 
 impl TimeFigure {
@@ -132,9 +143,10 @@ impl TimeFigure {
                 x += sides.left[column];
                 if let Some(found) = row.panels.get(column).and_then(Option::as_ref) {
                     let place = Rect { x, y, width: panel, height: *height };
-                    let ends = self.ends(number, column);
+                    let (left, ends) = (sides.left[column], self.ends(number, column));
                     last |= ends && number + 1 < self.rows.len();
-                    shapes.push(self.panel(found, row, place, ends, number == 0));
+                    let spot = Spot { place, left, ends, first: number == 0 };
+                    shapes.push(self.panel(found, row, &spot));
                     side = place.right();
                 }
                 x += panel + BETWEEN;
@@ -188,7 +200,8 @@ impl TimeFigure {
         }
     }
 
-    fn panel(&self, panel: &Panel, row: &Row, place: Rect, ends: bool, first: bool) -> Shape {
+    fn panel(&self, panel: &Panel, row: &Row, spot: &Spot) -> Shape {
+        let Spot { place, left, ends, first } = *spot;
         let most = (place.width / 50.0) as usize;
         let x = Axis::linear(widened(self.time), Steps::Decimal, most, fits(place.width));
         let y = panel.axis(place.height);
@@ -211,7 +224,7 @@ impl TimeFigure {
         }
         shapes.extend(self.marks(&frame, first));
         shapes.extend(frame.border());
-        shapes.push(frame.beside(Some(&y.title(&panel.name, &panel.unit))));
+        shapes.push(frame.beside(Some(&y.title(&panel.name, &panel.unit)), left));
         if ends {
             shapes.push(frame.below(Some(&x.title("time", &seconds()))));
         }

@@ -1,5 +1,6 @@
 //! Points in a plane.
 
+use crate::picture::decoded;
 use crate::seen::{ROUNDING, across, assert_legible, class, label, named, paths, pieces, text, up};
 use opm_plot::color::Map;
 use opm_plot::{
@@ -130,8 +131,8 @@ fn values_colour_the_cells_by_their_mean() {
     });
     let drawing = figure(vec![section]).draw(None).unwrap();
     assert_legible(&text(&drawing));
-    let picture = tiny_skia::Pixmap::decode_png(&png::write(&drawing).unwrap()).unwrap();
-    let has = |rgb: [u8; 3]| picture.pixels().iter().any(|p| [p.red(), p.green(), p.blue()] == rgb);
+    let picture = decoded(&png::write(&drawing).unwrap());
+    let has = |rgb: [u8; 3]| picture.pixels.contains(&rgb);
     assert!(has(Map::Viridis.color(0.1)) && has(Map::Viridis.color(1.0)));
 }
 

@@ -1,5 +1,6 @@
 //! Curves over time.
 
+use crate::picture::decoded;
 use crate::seen::{ROUNDING, across, assert_legible, class, label, named, paths, pieces, text, up};
 use opm_plot::{Curve, Heading, Panel, Row, Scale, Size, Steps, TimeFigure, Unit, png};
 use roxmltree::Document;
@@ -175,12 +176,9 @@ fn spans_and_marks_are_at_their_times() {
 fn a_png_shows_it_in_the_stated_size() {
     let drawing = two_rows().draw(Some(Size { width: 900.0, height: 500.0 })).unwrap();
     let bytes = png::write(&drawing).unwrap();
-    let picture = tiny_skia::Pixmap::decode_png(&bytes).unwrap();
-    assert_eq!((picture.width(), picture.height()), (1800, 1000));
-    let color = |rgb: [u8; 3]| {
-        let same = |p: &&tiny_skia::PremultipliedColorU8| [p.red(), p.green(), p.blue()] == rgb;
-        picture.pixels().iter().filter(same).count()
-    };
+    let picture = decoded(&bytes);
+    assert_eq!(picture.size, [1800, 1000]);
+    let color = |rgb: [u8; 3]| picture.pixels.iter().filter(|pixel| **pixel == rgb).count();
     for k in 0..2 {
         assert!(color(opm_plot::color::line(k).0) > 500, "curve {k}");
     }
