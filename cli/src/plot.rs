@@ -1,6 +1,7 @@
 //! `opm plot`: pictures of recordings.
 
 mod cloud;
+mod layout;
 mod motion;
 mod slices;
 mod source;

@@ -1,7 +1,8 @@
 //! Slices of a workspace: what is reachable while all but two coordinates are held.
 
+use super::layout::{Coordinate, Layout, Place};
 use super::source::{Rate, Source, Stop};
-use super::workspace::{Coordinate, Layout, Place, value_label};
+use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_mcap::Cloud as Points;
@@ -250,7 +251,7 @@ impl<'a> Slices<'a> {
             let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
-        let mut title = "Reachable positions".to_owned();
+        let mut title = "Reachable poses".to_owned();
         if !self.held.is_empty() {
             let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
             title = format!("Reachable at {}", held.join(", "));

@@ -1,8 +1,9 @@
 //! The picture of a workspace: slices of it, and what the imaginary joints do in it.
 
 use super::cloud::JointCloud;
+use super::layout::Layout;
 use super::slices::Slices;
-use super::source::{Source, Stop};
+use super::source::{Rate, Source, Stop};
 use super::{PanelName, drawn};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
@@ -10,43 +11,7 @@ use crate::text::{count, short};
 use opm_core::joint::Quantity;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::{Drawing, Heading, TileFigure};
-use opm_workspace::{Axis, Grid};
-
-/// What a recorded workspace is made of.
-pub struct Layout {
-    /// What can be known of a point: task coordinates, stored values.
-    pub coordinates: Vec<Coordinate>,
-    /// Names of task coordinates of which a point's value is not stored.
-    pub lost: Vec<String>,
-    /// What x, y and z of the cloud are, by their numbers among the coordinates.
-    pub axes: Vec<usize>,
-    /// Names of the values stored with every point.
-    pub scalars: Vec<String>,
-    /// What the recording's colours show.
-    pub colored: Option<String>,
-    /// The same, if it is stored with the points, and its values at the ends of the colours.
-    pub color: Option<(String, [f64; 2])>,
-}
-
-/// One coordinate of the points.
-pub struct Coordinate {
-    pub name: String,
-    pub quantity: Option<Quantity>,
-    /// SI.
-    pub home: Option<f64>,
-    /// Its values on the grid, SI; `None` of the platform's point, which is on no grid.
-    pub axis: Option<Axis>,
-    pub place: Place,
-}
-
-/// Where the value of a point's coordinate is found.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In a field of the cloud.
-    Field(String),
-    /// In the number of the slice, divided by this.
-    Slice(u64),
-}
+use opm_workspace::Axis;
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
     let asked = |panel: PanelName| args.panels.contains(&panel);
@@ -110,122 +75,6 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     heading.notes.extend(source.notes());
     let figure = TileFigure { heading, sections };
     drawn(args, |size| figure.draw(size))
-}
-
-impl Layout {
-    fn new(source: &Source<'_>) -> Self {
-        let run = source.metadata("run");
-        let clouds = source.metadata("clouds");
-        let list = |key: &str| -> Vec<String> {
-            let text = clouds.get(key).map_or("", |text| text);
-            text.split(',').filter(|name| !name.is_empty()).map(str::to_owned).collect()
-        };
-        let (names, scalars) = (list("axes"), list("scalars"));
-        let field = |name: &str| {
-            let axis = names.iter().position(|axis| axis == name);
-            let axis = axis.and_then(|i| opm_mcap::cloud::POSITION_FIELDS.get(i));
-            let scalar = scalars.iter().find(|scalar| *scalar == name);
-            axis.map(|field| (*field).to_owned()).or_else(|| scalar.cloned())
-        };
-        let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
-        let mut layout = Self {
-            coordinates: vec![],
-            lost: vec![],
-            axes: vec![],
-            scalars: scalars.clone(),
-            colored: clouds.get("color").cloned(),
-            color: None,
-        };
-
-        let manipulator = source.manipulator();
-        let grid = manipulator.and_then(|manipulator| {
-            let axes = manipulator.task_coordinates().iter().map(|c| axis(c.name));
-            Grid::new(manipulator, axes.collect::<Option<_>>()?).ok()
-        });
-        if let (Some(manipulator), Some(grid)) = (manipulator, grid) {
-            let together = crate::record::together(&grid);
-            let mut product = 1;
-            for (i, (c, axis)) in manipulator.task_coordinates().iter().zip(grid.axes()).enumerate()
-            {
-                // The slices of the first axes of the upper section may have been recorded as one.
-                let place = if i < grid.lower() {
-                    field(c.name).map(Place::Field)
-                } else {
-                    let slice = (product >= together).then(|| Place::Slice(product / together));
-                    product *= axis.count;
-                    slice.or_else(|| field(c.name).map(Place::Field))
-                };
-                let Some(place) = place else {
-                    if axis.count > 1 {
-                        layout.lost.push(c.name.to_owned());
-                    }
-                    continue;
-                };
-                layout.coordinates.push(Coordinate {
-                    name: c.name.to_owned(),
-                    quantity: Some(c.quantity),
-                    home: Some(c.home),
-                    axis: Some(axis.clone()),
-                    place,
-                });
-            }
-        }
-        // The platform's point; or of an unknown mechanism, the axes as they are called.
-        for (i, name) in names.iter().enumerate().take(3) {
-            if layout.coordinates.iter().any(|c| c.name == *name) {
-                continue;
-            }
-            let tip = name.starts_with("tip.");
-            layout.coordinates.push(Coordinate {
-                name: name.clone(),
-                quantity: tip.then_some(Quantity::Length),
-                home: None,
-                axis: axis(name),
-                place: Place::Field(opm_mcap::cloud::POSITION_FIELDS[i].to_owned()),
-            });
-        }
-        if names.is_empty() {
-            for field in opm_mcap::cloud::POSITION_FIELDS {
-                let place = Place::Field(field.to_owned());
-                let name = field.to_owned();
-                layout.coordinates.push(Coordinate {
-                    name,
-                    quantity: None,
-                    home: None,
-                    axis: None,
-                    place,
-                });
-            }
-        }
-        let shown = if names.is_empty() {
-            opm_mcap::cloud::POSITION_FIELDS.map(str::to_owned).into()
-        } else {
-            names
-        };
-        layout.axes = shown.iter().filter_map(|name| layout.find(name)).collect();
-        let number = |key: &str| clouds.get(key).and_then(|text| text.parse().ok());
-        layout.color = clouds
-            .get("color")
-            .filter(|name| scalars.contains(name))
-            .and_then(|name| Some((name.clone(), [number("color_min")?, number("color_max")?])));
-        layout
-    }
-
-    pub fn find(&self, name: &str) -> Option<usize> {
-        self.coordinates.iter().position(|c| c.name == name)
-    }
-
-    pub fn names(&self) -> String {
-        self.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// A grid axis from the metadata: its ends and the number of its values.
-fn axis(name: &str, text: &str) -> Option<Axis> {
-    let mut parts = text.split(':');
-    let mut number = || parts.next()?.parse::<f64>().ok().filter(|number| number.is_finite());
-    let (min, max, count) = (number()?, number()?, number()?);
-    (min <= max && count >= 1.0 && count <= 1e15).then(|| Axis::new(name, min, max, count as u64))
 }
 
 /// What `--values` names: two coordinates to see the slices along, and stored values.
@@ -299,11 +148,8 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
         }
     }
     let mut lines = vec![format!("{}; {}", parts.join(", "), source.units_line())];
-    let grid: Vec<String> = layout
-        .coordinates
-        .iter()
-        .filter_map(|c| Some(range(source, c, c.axis.as_ref()?)))
-        .collect();
+    let grid: Vec<String> =
+        layout.grid.iter().map(|(quantity, axis)| range(source, *quantity, axis)).collect();
     if !grid.is_empty() {
         lines.push(format!("grid (values): {}", grid.join(", ")));
     }
@@ -313,9 +159,8 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
 }
 
 /// A grid axis as the heading tells it.
-fn range(source: &Source<'_>, coordinate: &Coordinate, axis: &Axis) -> String {
-    let (measure, factor) =
-        source.measure(&axis.name, coordinate.quantity, super::source::Rate::Position);
+fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
+    let (measure, factor) = source.measure(&axis.name, Some(quantity), Rate::Position);
     let [min, max] = [axis.min, axis.max].map(|value| value_label(value / factor));
     let symbol = &measure.unit.symbol;
     match axis.count {
