@@ -12,6 +12,7 @@ use opm_mcap::workspace::SLICES_TOPIC;
 use opm_mcap::{Message, Metadata, ReadError, Recording, read};
 use opm_plot::{Measure, Steps, Unit};
 use opm_workspace::Progress;
+use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -65,6 +66,12 @@ impl<'a> Source<'a> {
         progress: &'a Progress,
     ) -> Result<Self, Failure> {
         let label = path.display().to_string();
+        // It is read more than once.
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Err(Failure::Work(format!(
+                "{label}: not a regular file, expected a recording"
+            )));
+        }
         let recording = Recording {
             topics: vec![],
             time_range: None,

@@ -6,6 +6,10 @@ mod seen;
 
 use crate::run::{Folder, Run, number, opm};
 use crate::{HELICAL, PLANO};
+use opm_mcap::trajectory::{Coordinate, Posture, Role, Sample};
+use opm_mcap::{
+    CloudLayout, Metadata, Trajectory, TrajectoryRecorder, Workspace, WorkspaceRecorder,
+};
 use roxmltree::Document;
 use seen::{across, assert_legible, class, label, named, paths, pieces, up};
 use std::fs;
@@ -315,6 +319,8 @@ fn what_is_no_recording_is_refused_and_leaves_nothing() {
     opm(&["plot", &text, "-o", &output]).fails_with_one_line(1, &["text.mcap: not an MCAP file"]);
     let missing = folder.arg("missing.mcap");
     opm(&["plot", &missing, "-o", &output]).fails_with_one_line(1, &["missing.mcap: No such file"]);
+    opm(&["plot", &folder.arg(""), "-o", &output]).fails_with_one_line(1, &["directory"]);
+    opm(&["plot", "/dev/null", "-o", &output]).fails_with_one_line(1, &["not a regular file"]);
     let nowhere = folder.arg("far.mcap");
     let grid = ["--grid", "x=5:6:3", "--grid", "y=0:1:3"];
     opm(&[&["workspace", PLANO, "-o", &nowhere, "-q"], &grid[..]].concat()).text();
@@ -370,4 +376,94 @@ fn an_output_that_cannot_be_written_is_told_at_once() {
         .fails_with_one_line(2, &["--output", "also the input"]);
     opm(&["plot", HELICAL, "-o", &folder.arg("q.svg")]).fails_with_one_line(1, &[HELICAL]);
     assert_eq!(folder.names(), ["p.svg", "turn.svg"]);
+}
+
+/// A recording of an unknown mechanism, with two joints.
+fn unknown_motion(path: &str, values: &[[f64; 2]]) {
+    let joint = |name: &str| Coordinate { name: name.into(), unit: "rad", role: Role::Actuated };
+    let trajectory = Trajectory {
+        pose: vec![],
+        joints: vec![joint("a"), joint("b")],
+        imaginary: vec![],
+        rates: false,
+        measures: vec![],
+        bodies: vec![],
+        files: vec![("nonsense.toml", b"nonsense")],
+        run: Metadata::new(),
+    };
+    let mut recorder = TrajectoryRecorder::create(path.as_ref(), &trajectory).unwrap();
+    for (i, joints) in (0..).zip(values) {
+        let posture = Some(Posture { joints, ..Posture::default() });
+        recorder.push(i * 1_000_000, &Sample { posture, ..Sample::default() }).unwrap();
+    }
+    recorder.finish(&Metadata::new()).unwrap();
+}
+
+#[test]
+fn what_is_not_a_number_is_a_gap() {
+    let folder = Folder::new();
+    let file = folder.arg("odd.mcap");
+    let mut values = [[1.0, 1e-17]; 30];
+    for (i, odd) in [(10, f64::NAN), (11, f64::INFINITY), (20, f64::NEG_INFINITY)] {
+        values[i][0] = odd;
+    }
+    unknown_motion(&file, &values);
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let lengths = |name| -> Vec<usize> {
+        pieces(paths(named(document.root(), "curve", name))[0]).iter().map(Vec::len).collect()
+    };
+    assert_eq!((lengths("a"), lengths("b")), (vec![10, 8, 9], vec![30]));
+    assert!(texts(&document).iter().any(|text| text.contains("no mechanism file")));
+    assert!(texts(&document).contains(&"angle (rad)"));
+    for values in [&[[f64::NAN; 2]; 3][..], &[[1.0, 2.0]]] {
+        unknown_motion(&file, values);
+        assert_legible(&plot(&folder, &file, &[]).1);
+    }
+    unknown_motion(&file, &[]);
+    opm(&["plot", &file, "-o", &folder.arg("none.svg")])
+        .fails_with_one_line(1, &["odd.mcap", "no sample to draw"]);
+}
+
+#[test]
+fn points_of_an_unknown_mechanism_are_drawn_as_they_are() {
+    let folder = Folder::new();
+    let file = folder.arg("odd.mcap");
+    let workspace = Workspace {
+        layout: CloudLayout {
+            axes: ["a", "b", "c"].map(String::from),
+            scalars: vec!["s".into()],
+            color: "s".into(),
+            color_range: [0.0, 1.0],
+            frame_id: "f".into(),
+        },
+        mechanism_name: "nonsense.toml",
+        mechanism: b"nonsense",
+        run: Metadata::new(),
+        points: 50,
+        slices: 1,
+    };
+    let rows: Vec<f64> = (0..50).flat_map(|i| [i, i * i, 7, i % 5].map(f64::from)).collect();
+    let mut recorder = WorkspaceRecorder::create(file.as_ref(), &workspace).unwrap();
+    recorder.overview(&rows).unwrap();
+    recorder.push(0, &rows).unwrap();
+    recorder.finish(&Metadata::new()).unwrap();
+    let (run, svg) = plot(&folder, &file, &[]);
+    assert!(run.stderr.contains("no values of imaginary joints"), "{}", run.stderr);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let panel = class(document.root(), "panel")[0];
+    let (across, up) = (across(panel), up(panel));
+    let dots = pieces(paths(class(panel, "points")[0])[0]);
+    assert_eq!(dots.len(), 50);
+    for (i, dot) in dots.iter().enumerate() {
+        let middle = |k: usize| dot.iter().map(|p| p[k]).sum::<f64>() / dot.len() as f64;
+        let (a, b) = (i as f64, (i * i) as f64);
+        assert!((across(middle(0)) - a).abs() < 0.01, "{i}");
+        assert!((up(middle(1)) - b).abs() < 1.0, "{i}");
+    }
+    let (_, svg) = plot(&folder, &file, &["--values", "a,c,s"]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["c over a", "poses over s"]);
 }

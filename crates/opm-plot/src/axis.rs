@@ -258,7 +258,7 @@ mod tests {
     fn angles_are_in_parts_of_a_turn() {
         assert_eq!(labels([-185.0, 185.0], Steps::Degrees, 5), ["−180", "−90", "0", "90", "180"]);
         assert_eq!(labels([0.0, 100.0], Steps::Degrees, 4), ["0", "30", "60", "90"]);
-        assert_eq!(labels([-50.0, 50.0], Steps::Degrees, 3), ["−45", "0", "45"]);
+        assert_eq!(labels([-70.0, 70.0], Steps::Degrees, 3), ["−45", "0", "45"]);
         assert_eq!(labels([0.0, 9.0], Steps::Degrees, 5), ["0", "2", "4", "6", "8"]);
         assert_eq!(labels([0.0, 600.0], Steps::Degrees, 4), ["0", "180", "360", "540"]);
         assert_eq!(labels([0.0, 2000.0], Steps::Degrees, 3), ["0", "720", "1440"]);

@@ -16,6 +16,7 @@ use crate::frame::{BELOW, Frame, NAME, NUMBERS_BELOW, TICK, fits, left_of, ticks
 use crate::heading::{Heading, MARGIN};
 use crate::time::Scale;
 use crate::{MOST, TooSmall};
+use cloud::Density;
 
 /// Sections of tiles, from top to bottom.
 #[derive(Clone, Debug)]
@@ -132,6 +133,7 @@ struct Laid<'a> {
     /// Tiles in a row.
     columns: usize,
     ranges: Vec<[[f64; 2]; 2]>,
+    density: Density,
     /// Room left of the first column, and of each further one.
     left: [f64; 2],
     /// Room for the colours.
@@ -239,7 +241,8 @@ impl<'a> Laid<'a> {
         let tallest = if section.shared { TALLEST_SHARED } else { TALLEST };
         let height = width * steepest.min(tallest);
         let width = if section.shared { height / steepest } else { width };
-        Self { section, columns, ranges, left, bar, width, height }
+        let density = section.density();
+        Self { section, columns, ranges, density, left, bar, width, height }
     }
 
     fn rows(&self) -> usize {
@@ -314,7 +317,7 @@ impl<'a> Laid<'a> {
         let mut shapes = vec![frame.grid()];
         let content = match &tile.content {
             Content::Cells(cells, paint) => cells.draw(&frame, *paint),
-            Content::Cloud(cloud) => cloud.draw(&frame, self.section.densest()),
+            Content::Cloud(cloud) => cloud.draw(&frame, self.density),
             Content::Histogram(histogram) => histogram.draw(&frame),
         };
         if tile.content.extent().is_none() {
@@ -358,13 +361,21 @@ struct Sides {
 }
 
 impl Section {
-    /// Most points in one place of any cloud.
+    /// Most points in one place of any cloud whose points are not dots; 1 without one.
     pub fn densest(&self) -> u64 {
-        let clouds = self.tiles.iter().filter_map(|tile| match &tile.content {
-            Content::Cloud(cloud) if !cloud.has_dots() => Some(cloud.densest()),
-            _ => None,
-        });
-        clouds.max().unwrap_or(1)
+        self.density().most
+    }
+
+    fn density(&self) -> Density {
+        let clouds = || {
+            self.tiles.iter().filter_map(|tile| match &tile.content {
+                Content::Cloud(cloud) if !cloud.has_dots() => Some(cloud),
+                _ => None,
+            })
+        };
+        let pool = clouds().map(Cloud::pool).max().unwrap_or(1);
+        let most = clouds().flat_map(|cloud| cloud.pools(pool)).max().unwrap_or(1);
+        Density { pool, most }
     }
 
     /// What the axes of every tile show.

@@ -69,34 +69,27 @@ impl Cloud {
         (self.points > 0).then_some(self.range)
     }
 
-    /// Most points in one place, where they are not dots.
-    pub fn densest(&self) -> u64 {
-        self.pools().1.into_iter().max().unwrap_or(0)
-    }
-
-    /// How many places a row has, and the points in each place, the lowest row first.
-    fn pools(&self) -> (usize, Vec<u64>) {
-        let pooled = |pool: usize| {
-            let side = BINS / pool;
-            let mut pools = vec![0; side * side];
-            for (bin, &count) in self.counts.iter().enumerate() {
-                pools[bin / BINS / pool * side + bin % BINS / pool] += u64::from(count);
-            }
-            (side, pools)
+    /// How many bins in a row share a pixel, where the points are not dots.
+    pub(crate) fn pool(&self) -> usize {
+        let enough = |pool: &&usize| {
+            let filled = self.pools(**pool).iter().filter(|&&count| count > 0).count() as u64;
+            self.points >= ENOUGH * filled
         };
-        let mut found = pooled(POOLS[0]);
-        for pool in &POOLS[1..] {
-            let filled = found.1.iter().filter(|&&count| count > 0).count() as u64;
-            if self.points >= ENOUGH * filled {
-                break;
-            }
-            found = pooled(*pool);
-        }
-        found
+        POOLS.iter().find(enough).copied().unwrap_or(POOLS[POOLS.len() - 1])
     }
 
-    /// The points; where they are many, coloured between one and `densest` by the logarithm.
-    pub(crate) fn draw(&self, frame: &Frame<'_>, densest: u64) -> Vec<Shape> {
+    /// Points in every place of so many bins in a row and in a column, the lowest row first.
+    pub(crate) fn pools(&self, pool: usize) -> Vec<u64> {
+        let side = BINS / pool;
+        let mut pools = vec![0; side * side];
+        for (bin, &count) in self.counts.iter().enumerate() {
+            pools[bin / BINS / pool * side + bin % BINS / pool] += u64::from(count);
+        }
+        pools
+    }
+
+    /// The points; where they are many, coloured by the logarithm of their number in a place.
+    pub(crate) fn draw(&self, frame: &Frame<'_>, density: Density) -> Vec<Shape> {
         if let Some(dots) = &self.dots {
             let mut path = Path::default();
             for [x, y] in dots {
@@ -104,14 +97,14 @@ impl Cloud {
             }
             return vec![Shape::Area(path, DOT)];
         }
-        let (side, pools) = self.pools();
+        let side = BINS / density.pool;
         let fine = FINE / side;
         let color = |count: u64| {
-            let share = (count as f64).ln() / (densest as f64).ln().max(f64::MIN_POSITIVE);
+            let share = (count as f64).ln() / (density.most as f64).ln().max(f64::MIN_POSITIVE);
             (count > 0).then(|| Map::Cividis.color(share))
         };
         let mut pixels: Vec<Option<Color>> = Vec::with_capacity((side * fine).pow(2));
-        for row in pools.chunks(side).rev() {
+        for row in self.pools(density.pool).chunks(side).rev() {
             let row: Vec<_> =
                 row.iter().flat_map(|&n| std::iter::repeat_n(color(n), fine)).collect();
             (0..fine).for_each(|_| pixels.extend_from_slice(&row));
@@ -122,4 +115,13 @@ impl Cloud {
         let place = Rect { x, y, width: right - x, height: bottom - y };
         vec![Shape::Image { place, image: Image { width: side, height: side, pixels } }]
     }
+}
+
+/// How dense the clouds of a section are: what their colours are measured by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Density {
+    /// Bins in a row that share a pixel.
+    pub pool: usize,
+    /// Most points in one place.
+    pub most: u64,
 }
