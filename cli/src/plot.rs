@@ -1,10 +1,13 @@
 //! `opm plot`: pictures of recordings.
 
+mod choice;
 mod cloud;
 mod layout;
 mod motion;
 mod slices;
 mod source;
+mod traces;
+mod violations;
 mod workspace;
 
 use crate::args::{Output, PlotArgs};

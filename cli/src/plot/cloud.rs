@@ -2,7 +2,6 @@
 
 use super::source::{Rate, Source};
 use crate::text::count;
-use opm_core::joint::Quantity;
 use opm_mcap::Cloud as Points;
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cloud, Content, Histogram, Measure, Scale, Section, Tile};
@@ -32,7 +31,8 @@ impl JointCloud {
         let mut joints = vec![];
         let mut ranges = vec![];
         for name in names.iter().take(MOST) {
-            let (measure, factor) = source.measure(name, quantity(source, name), Rate::Position);
+            let (measure, factor) =
+                source.measure(name, source.joint_quantity(name), Rate::Position);
             let extent = source.recording.extents.iter().find(|extent| extent.field == *name)?;
             ranges.push([extent.min / factor, extent.max / factor]);
             joints.push(Joint { field: name.clone(), measure, factor });
@@ -110,12 +110,4 @@ impl JointCloud {
         });
         section
     }
-}
-
-/// What a stored value measures, as far as the mechanism says.
-fn quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
-    let manipulator = source.manipulator()?;
-    let imaginary = manipulator.imaginary().iter().map(|joint| (&*joint.name, joint.quantity));
-    let joints = manipulator.coordinates().iter().map(|c| (&*c.name, c.quantity));
-    imaginary.chain(joints).find(|(known, _)| *known == name).map(|(_, quantity)| quantity)
 }

@@ -143,5 +143,5 @@ fn axis(name: &str, text: &str) -> Option<Axis> {
     let mut parts = text.split(':');
     let mut number = || parts.next()?.parse::<f64>().ok().filter(|number| number.is_finite());
     let (min, max, count) = (number()?, number()?, number()?);
-    (min <= max && count >= 1.0 && count <= 1e15).then(|| Axis::new(name, min, max, count as u64))
+    (min <= max && (1.0..=1e15).contains(&count)).then(|| Axis::new(name, min, max, count as u64))
 }

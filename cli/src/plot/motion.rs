@@ -1,71 +1,21 @@
 //! The picture of a motion: everything over time.
 
-use super::source::{Kind, Rate, Source, Stop};
+use super::source::{Rate, Source, Stop};
+use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
+use super::violations::{listed, violations};
 use super::workspace::value_label;
 use super::{PanelName, drawn};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;
 use opm_core::joint::Quantity;
-use opm_mcap::trajectory::{
-    ACCELERATIONS_TOPIC, CONDITION_TOPIC, IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC,
-    JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC, Role, VALID, VELOCITIES_TOPIC,
-};
-use opm_mcap::{Flat, Metadata};
-use opm_plot::axis::label;
-use opm_plot::{Curve, Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
+use opm_mcap::Flat;
+use opm_mcap::trajectory::VALID;
+use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
 use std::collections::BTreeMap;
 
 /// Nanoseconds in a second.
 const SECOND: f64 = 1e9;
-/// Field of `/condition` whose size spans powers of ten.
-const CONDITION: &str = "condition";
-/// Violations that the notes list.
-const LISTED: usize = 8;
-
-/// What a curve belongs to: the rows of the picture, from top to bottom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Group {
-    Pose,
-    Imaginary,
-    Actuated,
-    Passive,
-    Joints,
-    Condition,
-    Singularity,
-}
-
-/// The topics that are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Topic {
-    name: &'static str,
-    kind: TopicKind,
-    rate: Rate,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum TopicKind {
-    Pose,
-    Joints,
-    Imaginary,
-    Condition,
-}
-
-const TOPICS: [Topic; 8] = {
-    const fn topic(name: &'static str, kind: TopicKind, rate: Rate) -> Topic {
-        Topic { name, kind, rate }
-    }
-    [
-        topic(POSE_TOPIC, TopicKind::Pose, Rate::Position),
-        topic(POSE_VELOCITIES_TOPIC, TopicKind::Pose, Rate::Velocity),
-        topic(JOINTS_TOPIC, TopicKind::Joints, Rate::Position),
-        topic(VELOCITIES_TOPIC, TopicKind::Joints, Rate::Velocity),
-        topic(ACCELERATIONS_TOPIC, TopicKind::Joints, Rate::Acceleration),
-        topic(IMAGINARY_TOPIC, TopicKind::Imaginary, Rate::Position),
-        topic(IMAGINARY_VELOCITIES_TOPIC, TopicKind::Imaginary, Rate::Velocity),
-        topic(CONDITION_TOPIC, TopicKind::Condition, Rate::Position),
-    ]
-};
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     if let Some(slices) = args.slice.first() {
@@ -141,17 +91,6 @@ impl Wanted {
             None => group != Group::Passive || !args.values.is_empty(),
         }
     }
-}
-
-/// A value over time.
-struct Trace {
-    name: String,
-    group: Group,
-    quantity: Option<Quantity>,
-    rate: Rate,
-    /// By what SI values are divided.
-    factor: f64,
-    curve: Curve,
 }
 
 /// Everything over time.
@@ -311,84 +250,6 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// `valid` is not a curve, but what is shaded.
-fn skipped(topic: usize, name: &str) -> bool {
-    TOPICS[topic].kind == TopicKind::Condition && name == VALID
-}
-
-/// The traces of a topic's fields.
-fn traces(source: &Source<'_>, topic: Topic, flat: &Flat) -> Vec<Trace> {
-    let number = TOPICS.iter().position(|known| *known == topic).unwrap_or(0);
-    let fields = flat.names.iter().filter(|field| !skipped(number, field));
-    fields.map(|field| trace(source, topic, field)).collect()
-}
-
-fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
-    let find = |record: &str| source.metadata(record).get(field).cloned();
-    let (name, quantity, group) = match topic.kind {
-        TopicKind::Condition => {
-            let group = if field == CONDITION { Group::Condition } else { Group::Singularity };
-            (field.to_owned(), None, group)
-        }
-        TopicKind::Pose => {
-            let mut task =
-                source.manipulator().into_iter().flat_map(|m| m.task_coordinates().iter());
-            let known = task.find(|c| c.name == field).map(|c| c.quantity);
-            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
-            (field.to_owned(), quantity, Group::Pose)
-        }
-        TopicKind::Imaginary => {
-            let name = find("joints").unwrap_or_else(|| field.to_owned());
-            let known = imaginary_quantity(source, &name);
-            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
-            (name, quantity, Group::Imaginary)
-        }
-        TopicKind::Joints => {
-            let name = find("joints").unwrap_or_else(|| field.to_owned());
-            let (known, group) = joint(source, &name);
-            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
-            let role = find("roles");
-            let is = |known: Role| role.as_deref() == Some(known.name());
-            let group = group
-                .or_else(|| is(Role::Actuated).then_some(Group::Actuated))
-                .or_else(|| is(Role::Passive).then_some(Group::Passive));
-            (name, quantity, group.unwrap_or(Group::Joints))
-        }
-    };
-    let (_, factor) = source.measure("", quantity, topic.rate);
-    Trace { name, group, quantity, rate: topic.rate, factor, curve: Curve::default() }
-}
-
-/// The quantity that an SI unit measures.
-fn quantity(unit: Option<&str>) -> Option<Quantity> {
-    [Quantity::Angle, Quantity::Length].into_iter().find(|q| Some(q.unit()) == unit)
-}
-
-fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
-    match &source.mechanism.as_ref()?.kind {
-        Kind::Manipulator(m) => m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity),
-        Kind::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
-        Kind::Other => None,
-    }
-}
-
-/// What the mechanism says of a joint coordinate. In a linkage, all joints belong together.
-fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
-    let Some(mechanism) = &source.mechanism else { return (None, None) };
-    let legs = mechanism.file.mechanism.legs.iter();
-    let mut joints = legs.flat_map(|leg| &leg.joints);
-    let found = joints.find_map(|joint| {
-        let coordinate = joint.coordinates.iter().find(|c| c.name == name)?;
-        let group = if joint.actuated { Group::Actuated } else { Group::Passive };
-        Some((coordinate.quantity, group))
-    });
-    let Some((quantity, group)) = found else { return (None, None) };
-    match mechanism.kind {
-        Kind::Linkage(_) => (Some(quantity), Some(Group::Joints)),
-        Kind::Manipulator(_) | Kind::Other => (Some(quantity), Some(group)),
-    }
-}
-
 fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
     let mut known: Vec<&str> = all.iter().map(|trace| &*trace.name).collect();
     for name in &args.values {
@@ -463,70 +324,4 @@ fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
         Rate::Velocity => format!("{what}, velocity"),
         Rate::Acceleration => format!("{what}, acceleration"),
     }
-}
-
-/// What the mechanism could not follow, as its recording tells.
-struct Violation {
-    start: f64,
-    end: f64,
-    /// What, and by how much.
-    text: String,
-}
-
-impl Violation {
-    /// From a metadata record; `None` of one without a time.
-    fn new(source: &Source<'_>, record: &Metadata) -> Option<Self> {
-        let number = |key: &str| record.get(key)?.parse::<f64>().ok().filter(|n| n.is_finite());
-        let word = |key: &str| record.get(key).map(String::as_str);
-        let start = number("start")?;
-        let end = number("end").unwrap_or(start);
-        let section = word("section").map_or(String::new(), |section| format!("{section} "));
-        let what = match word("kind") {
-            Some("limit") => format!(
-                "{} past its {} value",
-                word("joint").unwrap_or("a joint"),
-                word("bound").unwrap_or("last")
-            ),
-            Some("reach") => format!("out of reach in its {section}section"),
-            Some("singularity") => {
-                let kind = word("singularity").map_or(String::new(), |kind| format!("{kind} "));
-                format!("{kind}singularity of the {section}section")
-            }
-            other => other.unwrap_or("violation").to_owned(),
-        };
-        let leg = word("leg").map_or(String::new(), |leg| format!("{leg}: "));
-        let measured = quantity(word("unit")).zip(number("amount"));
-        let by = measured.map_or(String::new(), |(quantity, amount)| {
-            let (measure, factor) = source.measure("", Some(quantity), Rate::Position);
-            format!(" by {} {}", value_label(amount / factor), measure.unit.symbol)
-        });
-        Some(Self { start, end, text: format!("{leg}{what}{by}") })
-    }
-}
-
-/// Violations in the order of their times.
-fn violations(source: &Source<'_>) -> Vec<Violation> {
-    let records = source.recording.metadata.iter();
-    let records = records.filter(|(name, _)| name.starts_with("violation."));
-    let mut found: Vec<Violation> =
-        records.filter_map(|(_, record)| Violation::new(source, record)).collect();
-    found.sort_by(|a, b| a.start.total_cmp(&b.start));
-    found
-}
-
-/// Notes that say what the marks are.
-fn listed(violations: &[Violation]) -> Vec<String> {
-    let note = |(number, violation): (usize, &Violation)| {
-        let Violation { start, end, text } = violation;
-        let [start, end] = [*start, *end].map(|time| label(time, 3));
-        match start == end {
-            true => format!("{number}: at {start} s, {text}"),
-            false => format!("{number}: {start} to {end} s, {text}"),
-        }
-    };
-    let mut notes: Vec<String> = (1..).zip(violations).take(LISTED).map(note).collect();
-    if violations.len() > LISTED {
-        notes.push(format!("and {} more", violations.len() - LISTED));
-    }
-    notes
 }

@@ -6,7 +6,7 @@ use crate::progress::watch_reading;
 use crate::text::count;
 use opm_core::joint::Quantity;
 use opm_core::linkage::Linkage;
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::file::{AngleUnit, FileUnits, MechanismFile, read as read_mechanism};
 use opm_mcap::workspace::SLICES_TOPIC;
 use opm_mcap::{Message, Metadata, ReadError, Recording, read};
@@ -113,7 +113,7 @@ impl<'a> Source<'a> {
         found.map_err(|stop| match stop {
             Stop::Interrupted => {
                 let seen = count(done());
-                Failure::Interrupted(format!("interrupted; {seen} messages were read"))
+                Failure::Interrupted(format!("interrupted while reading; messages so far: {seen}"))
             }
             Stop::Read(error) => match &error {
                 ReadError::Io { source, .. } => Failure::at(&self.label, source),
@@ -148,6 +148,19 @@ impl<'a> Source<'a> {
             Kind::Manipulator(manipulator) => Some(manipulator),
             Kind::Linkage(_) | Kind::Other => None,
         }
+    }
+
+    /// Its imaginary joints.
+    pub fn imaginary(&self) -> &[ImaginaryJoint] {
+        self.manipulator().map(Manipulator::imaginary).unwrap_or_default()
+    }
+
+    /// What an imaginary or other joint of this name measures, as far as the mechanism says.
+    pub fn joint_quantity(&self, name: &str) -> Option<Quantity> {
+        let imaginary = self.imaginary().iter().map(|joint| (&*joint.name, joint.quantity));
+        let coordinates = self.manipulator().map(Manipulator::coordinates).unwrap_or_default();
+        let joints = coordinates.iter().map(|c| (&*c.name, c.quantity));
+        imaginary.chain(joints).find(|(known, _)| *known == name).map(|(_, quantity)| quantity)
     }
 
     pub fn is_workspace(&self) -> bool {
@@ -219,4 +232,9 @@ impl Rate {
             Self::Acceleration => "/s²",
         }
     }
+}
+
+/// The quantity that an SI unit measures.
+pub fn quantity(unit: Option<&str>) -> Option<Quantity> {
+    [Quantity::Angle, Quantity::Length].into_iter().find(|q| Some(q.unit()) == unit)
 }

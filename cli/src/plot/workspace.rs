@@ -109,8 +109,7 @@ fn chosen(
         }
     };
     if joints.is_empty() {
-        let imaginary = source.manipulator().map(|m| m.imaginary()).unwrap_or_default();
-        let names = imaginary.iter().map(|joint| joint.name.clone());
+        let names = source.imaginary().iter().map(|joint| joint.name.clone());
         joints = names.filter(|name| layout.scalars.contains(name)).collect();
     }
     Ok((view, joints))
@@ -118,8 +117,7 @@ fn chosen(
 
 /// How to record what is not there.
 fn missing(source: &Source<'_>) -> String {
-    let imaginary = source.manipulator().map(|m| m.imaginary()).unwrap_or_default();
-    let names: Vec<&str> = imaginary.iter().map(|joint| &*joint.name).collect();
+    let names: Vec<&str> = source.imaginary().iter().map(|joint| &*joint.name).collect();
     match &names[..] {
         [] => "no values of imaginary joints are stored with the points".to_owned(),
         names => format!(

@@ -1,20 +1,21 @@
 //! Small pictures of points in a plane, side by side in sections.
 
+mod bar;
 mod cells;
 mod cloud;
 mod histogram;
 
+pub use bar::Bar;
 pub use cells::{Cells, Paint, Spacing};
 pub use cloud::Cloud;
 pub use histogram::Histogram;
 
 use crate::axis::{self, Axis, Steps, Unit};
-use crate::color::{FAINT, INK, Map, WHITE};
+use crate::color::{FAINT, INK, WHITE};
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
-use crate::font::{CAPITALS, Face};
-use crate::frame::{BELOW, Frame, NAME, NUMBERS_BELOW, TICK, fits, left_of, ticks_in};
+use crate::font::Face;
+use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
-use crate::time::Scale;
 use crate::{MOST, TooSmall};
 use cloud::Density;
 
@@ -85,19 +86,6 @@ pub enum Content {
     Histogram(Histogram),
 }
 
-/// The colours of a section, from the lowest value to the highest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bar {
-    /// What the colours show.
-    pub measure: Measure,
-    /// Values at the two ends.
-    pub range: [f64; 2],
-    /// The colours.
-    pub map: Map,
-    /// How values are laid out along it.
-    pub scale: Scale,
-}
-
 /// Width of a figure that nobody chose one for, at most; and the least one.
 const WIDTH: f64 = 1000.0;
 const NARROW: f64 = 600.0;
@@ -121,8 +109,6 @@ const ABOVE_BARE: f64 = 8.0;
 /// Above a section, for its title; between sections.
 const TITLE_ROOM: f64 = 20.0;
 const SECTIONS_APART: f64 = 20.0;
-/// Width of the colours.
-const BAR: f64 = 14.0;
 
 const SECTION: Style = Style { size: 13.5, face: Face::Bold, color: INK };
 const EMPTY: Style = Style { size: 12.0, face: Face::Regular, color: FAINT };
@@ -211,7 +197,7 @@ impl<'a> Laid<'a> {
         };
         let widest = (0..ranges.len()).map(|i| axis(i, true)).fold(0.0, f64::max);
         let left = [widest, if section.shared { BETWEEN } else { widest + BETWEEN }];
-        let bar = section.bar.as_ref().map_or(0.0, Bar::room);
+        let bar = section.bar.as_ref().map_or(0.0, |bar| BETWEEN + bar.room());
         // Lengths, and angles, are as long one way as the other.
         let slope = |number: usize| {
             let ([x, y], tile) = (ranges[number], &section.tiles[number]);
@@ -302,7 +288,7 @@ impl<'a> Laid<'a> {
             let height = (self.tiles()
                 + (self.rows() as f64 - 1.0) * (self.above() + self.below()))
             .min(320.0);
-            shapes.push(bar.draw(Rect { x, y: start + self.above(), width: BAR, height }));
+            shapes.push(bar.draw([x, start + self.above()], height));
         }
         Shape::Group { kind: "section", label: section.title.clone(), shapes }
     }
@@ -406,63 +392,6 @@ impl Content {
             Self::Cloud(cloud) => cloud.extent(),
             Self::Histogram(histogram) => histogram.extent(),
         }
-    }
-}
-
-impl Bar {
-    fn axis(&self, height: f64) -> Axis {
-        match self.scale {
-            Scale::Linear => {
-                let range = if self.range[0] < self.range[1] {
-                    self.range
-                } else {
-                    axis::around(Some(self.range), &self.measure.unit)
-                };
-                Axis::linear(range, self.measure.unit.steps, ticks_in(height), |_, _| true)
-            }
-            Scale::Logarithmic => Axis::logarithmic(self.range, ticks_in(height)),
-        }
-    }
-
-    fn room(&self) -> f64 {
-        BETWEEN + BAR + 10.0 + self.axis(200.0).label_width(TICK.face, TICK.size) + 10.0 + NAME.size
-    }
-
-    fn draw(&self, place: Rect) -> Shape {
-        const SHADES: usize = 64;
-        let axis = self.axis(place.height);
-        let mut shapes = Vec::new();
-        let piece = place.height / SHADES as f64;
-        for i in 0..SHADES {
-            let color = self.map.color((i as f64 + 0.5) / SHADES as f64);
-            let y = place.bottom() - piece * (i + 1) as f64;
-            // Pieces lie over each other a little, so that no ground shows between them.
-            let height = (piece + 0.5).min(place.bottom() - y);
-            shapes.push(Shape::Area(Path::rect(Rect { y, height, ..place }), color));
-        }
-        let pen = Pen::new(INK, 0.8);
-        shapes.push(Shape::Line(Path::rect(place), pen));
-        let mut ticks = Path::default();
-        for tick in &axis.ticks {
-            let share = axis.share(tick.value);
-            if !(0.0..=1.0).contains(&share) {
-                continue;
-            }
-            let y = place.bottom() - share * place.height;
-            ticks.0.extend(Path::through([[place.right(), y], [place.right() + 4.0, y]]).0);
-            let half = 0.5 * CAPITALS * TICK.size;
-            let at = [place.right() + 7.0, y + half];
-            shapes.push(TICK.text(&*tick.label, at, Anchor::Start));
-        }
-        shapes.push(Shape::Line(ticks, pen));
-        let name = axis.title(&self.measure.name, &self.measure.unit);
-        let x =
-            place.right() + 10.0 + axis.label_width(TICK.face, TICK.size) + 6.0 + NAME.size * 0.8;
-        let middle = place.y + 0.5 * place.height;
-        let room = place.height + NUMBERS_BELOW;
-        let name = NAME.face.fit(&name, NAME.size, room);
-        shapes.push(NAME.turned(name, [x, middle], Anchor::Middle));
-        Shape::Group { kind: "bar", label: self.measure.name.clone(), shapes }
     }
 }
 
