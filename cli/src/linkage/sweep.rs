@@ -173,11 +173,8 @@ impl Sweep<'_> {
             let platform = mechanism.legs[0].displacement(joints);
             let frames = scene.frames(&core::Posture { joints, imaginary, platform });
             let posture = Posture { joints, imaginary, rates: None, frames };
-            let sample = Sample {
-                valid: position.within_limits,
-                posture: Some(posture),
-                ..Sample::default()
-            };
+            let sample =
+                Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };
             recorder.push(time, &sample).map_err(failed)
         };
         let summary = self.each(write, |failure| failure)?;

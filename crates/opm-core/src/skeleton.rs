@@ -225,8 +225,9 @@ impl Mover {
                 Isometry3::from_parts(Translation3::from(p - rotation * p), rotation)
             }
             Some(_) => Isometry3::identity(),
-            None => (0..freedoms)
-                .fold(Isometry3::identity(), |g, i| g * self.freedoms[i].0.exp(from_home(i))),
+            None => (0..freedoms).fold(Isometry3::identity(), |g, i| {
+                g * self.freedoms[i].0.exp(from_home(i))
+            }),
         }
     }
 }

@@ -47,9 +47,7 @@ const MOST_SAMPLES: f64 = 9e15;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
     /// A rate that is no rate.
-    #[error(
-        "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
-    )]
+    #[error("{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples")]
     Rate {
         /// Samples a second.
         rate: f64,
@@ -318,8 +316,7 @@ impl<'a> Trajectory<'a> {
             }
             Gauge::Parallel { section } => {
                 let all = solution.unreachable.is_empty();
-                let _ = section;
-                all.then_some(1.0)
+                let _ = section; all.then_some(1.0)
             }
         }
     }

@@ -220,12 +220,7 @@ impl Trajectory<'_> {
     }
 
     /// The joints and the gauges, not the rates, at a share of the way from one sample to another.
-    fn between(
-        &mut self,
-        from: &Sample,
-        to: &Sample,
-        share: f64,
-    ) -> Result<Sample, TrajectoryError> {
+    fn between(&mut self, from: &Sample, to: &Sample, share: f64) -> Result<Sample, TrajectoryError> {
         let mut sample = from.clone();
         let time = from.time + share * (to.time - from.time);
         self.solve(time, false, &mut sample)?;
