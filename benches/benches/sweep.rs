@@ -17,8 +17,7 @@ fn main() {
         ];
         Grid::new(&manipulator, axes).expect("a grid")
     };
-    let small = grid(65, 5);
-    let large = grid(65, 13);
+    let (small, large, long) = (grid(64, 5), grid(64, 25), grid(256, 12));
     let pool = |threads| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool")
     };
@@ -45,11 +44,14 @@ fn main() {
         Contender::new("inverse kinematics per pose, one thread", small.poses(), || {
             black_box(per_pose());
         }),
-        Contender::new("sweep, one thread", large.poses(), || {
+        Contender::new("sweep, 64 poses a row, one thread", large.poses(), || {
             black_box(count(&large, &one));
         }),
-        Contender::new("sweep, two threads", large.poses(), || {
+        Contender::new("sweep, 64 poses a row, two threads", large.poses(), || {
             black_box(count(&large, &two));
+        }),
+        Contender::new("sweep, 256 poses a row, one thread", long.poses(), || {
+            black_box(count(&long, &one));
         }),
     ]);
     println!("| sweep, 5 DoF | million poses a second | times inverse kinematics per pose |");

@@ -3,6 +3,7 @@
 use crate::linkage::InputValue;
 use crate::plot::{PanelName, PictureSize};
 use crate::pose::{GridAxis, Pose, SliceValue};
+use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -93,6 +94,11 @@ pub struct DecomposeArgs {
 /// A task coordinate that is not given has its home value; `opm decompose` lists them. Out of reach
 /// is an answer (exit status 0): it names the legs and by how much.
 ///
+/// --transform takes the platform's place in SE(3) instead: the position of its reference point, and
+/// the quaternion of its orientation, both in base coordinates; at home it is not turned, or as home's
+/// Euler angles say. One outside the manipulator's motion is told by how much and in which
+/// direction (exit status 0). JSON has the place of every pose as `transform`.
+///
 /// CSV in: a header of task coordinates in any order, then one pose a row, in metres and radians. CSV
 /// out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints. A pose out of reach keeps its row, its joint cells empty.
@@ -102,9 +108,10 @@ Examples:
   opm ik plano-spherical-5dof --pose x=10mm,y=0,xi=15deg
   opm ik plano-spherical-5dof --pose xi=15deg --mode \"-+ ++ ++ +\"
   opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
+  opm ik plano-spherical-5dof --transform 10mm,0,0,0.8,0.6,0,0
   opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
   generate-poses | opm ik plano-spherical-5dof --poses - | head")]
-#[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses"]))]
+#[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses", "transform"]))]
 pub struct IkArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -112,6 +119,9 @@ pub struct IkArgs {
     /// One pose, for example x=10mm,y=0,xi=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub pose: Option<Pose>,
+    /// Where the platform is: its point's position, and a unit quaternion, scalar first
+    #[arg(long, value_name = "X,Y,Z,QW,QX,QY,QZ", allow_hyphen_values = true)]
+    pub transform: Option<Transform>,
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
@@ -127,7 +137,7 @@ pub struct IkArgs {
         long,
         value_name = "OUT.csv",
         requires = "poses",
-        conflicts_with = "pose",
+        conflicts_with_all = ["pose", "transform"],
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
@@ -202,7 +212,7 @@ Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000 -o fine.mcap
-  opm trajectory plano-spherical-5dof --motion poses.csv --strict --format json")]
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -214,7 +224,7 @@ pub struct TrajectoryArgs {
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Samples a second, instead of those of the motion file; of a CSV file 100
-    #[arg(long, value_name = "HZ", value_parser = crate::trajectory::rate)]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = crate::trajectory::rate)]
     pub rate: Option<f64>,
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]

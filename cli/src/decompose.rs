@@ -4,15 +4,15 @@ use crate::args::{DecomposeArgs, Output};
 use crate::failure::{Failure, chain};
 use crate::load::{self, Loaded};
 use crate::text::{self, Table, short};
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use opm_core::decomposition::{Decomposition, Freedom, decompose};
 use opm_core::joint::Quantity;
 use opm_core::leg::Leg;
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mobility::{Mobility, mobility};
 use opm_core::subspace::SubspaceClass;
-use opm_core::task::TaskCoordinate;
+use opm_core::task::{Subspace, Task, TaskCoordinate};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{Display, Write};
@@ -33,6 +33,12 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     let ways: Vec<Way<'_>> =
         decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
     let compiled = Manipulator::new(mechanism.clone());
+    if let Err(CompileError::Task(error)) = &compiled
+        && error.key().is_some()
+    {
+        let place = loaded.place_of(&CompileError::Task(error.clone()));
+        return Err(Failure::at(place, error));
+    }
     let report = Report { loaded: &loaded, mobility, ways, manipulator: compiled.as_ref().ok() };
     output.print(&report.json(), report.text())?;
 
@@ -46,9 +52,9 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         ));
     }
     if let Err(error) = &compiled {
-        let hint = loaded.linkage_hint();
+        let (hint, place) = (loaded.linkage_hint(), loaded.place_of(error));
         let error = chain(error);
-        output.note(format_args!("{label}: no closed-form inverse kinematics: {error}{hint}"));
+        output.note(format_args!("{place}: no closed-form inverse kinematics: {error}{hint}"));
     }
     Ok(())
 }
@@ -57,7 +63,8 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
 struct Way<'a> {
     decomposition: &'a Decomposition,
     legs: Vec<Parts<'a>>,
-    coordinates: Vec<TaskCoordinate>,
+    /// `None` where there are no closed forms.
+    task: Option<Task>,
 }
 
 /// The parts of a leg.
@@ -90,21 +97,29 @@ impl<'a> Way<'a> {
             .collect();
         // Without closed forms there are no coordinates; a note says so.
         let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
-        let coordinates = compiled.map_or(vec![], |m| m.task_coordinates().to_vec());
-        Self { decomposition, legs, coordinates }
+        let task = compiled.ok().map(|manipulator| manipulator.task().clone());
+        Self { decomposition, legs, task }
+    }
+
+    fn coordinates(&self) -> &[TaskCoordinate] {
+        self.task.as_ref().map_or(&[], |task| &task.coordinates)
     }
 
     fn json(&self) -> Value {
         let d = self.decomposition;
         let coordinate = |c: &TaskCoordinate| json!({ "name": c.name, "home": c.home, "unit": c.quantity.unit() });
+        let frames = self.task.as_ref().map(
+            |task| json!({ "lower": frame_json(&task.lower), "upper": frame_json(&task.upper) }),
+        );
         json!({
             "imaginary_joints": d.imaginary_joints,
             "first_section_motions": d.first_section_motions,
             "lower": { "subspace": d.lower.name() },
             "upper": { "subspace": d.upper.name() },
             "intersection": intersection(&d.intersection),
-            "task_coordinates": self.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
+            "task_coordinates": self.coordinates().iter().map(coordinate).collect::<Vec<_>>(),
             "legs": self.legs,
+            "frames": frames,
         })
     }
 
@@ -183,13 +198,14 @@ impl Report<'_> {
             line(&format_args!("Of the imaginary joints, {} are redundant.", d.redundancy));
         }
 
-        if !way.coordinates.is_empty() {
+        if let Some(task) = &way.task {
             let mut table = Table::new(["task coordinate", ">home", "unit"]);
-            for c in &way.coordinates {
+            for c in &task.coordinates {
                 let home = text::number(c.home, c.quantity, units);
                 table.row([c.name, &home, units.symbol(c.quantity)]);
             }
             line(&format_args!("\n{table}"));
+            line(&frame_table(task, units));
         }
         line(&self.actuation());
         if let Some(manipulator) = self.manipulator {
@@ -263,6 +279,38 @@ fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
     names
 }
 
+/// The frame of a section, SI.
+fn frame_json(frame: &Subspace) -> Value {
+    let triple = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|c| c + 0.0);
+    let axis = |number: usize| triple(&frame.axes.column(number).into_owned());
+    json!({
+        "origin": triple(&frame.measured_from.coords),
+        "reference": triple(&frame.origin.coords),
+        "axes": [axis(0), axis(1), axis(2)],
+    })
+}
+
+/// Both frames, in the file's units.
+fn frame_table(task: &Task, units: FileUnits) -> Table {
+    let unit = units.length.symbol();
+    let places = [format!("origin, {unit}"), format!("reference point, {unit}")];
+    let mut table =
+        Table::new(["frame", &places[0], &places[1], "first axis", "second axis", "third axis"]);
+    for (name, frame) in [("lower", &task.lower), ("upper", &task.upper)] {
+        let place = |point: Point3<f64>| triple(&point.coords, units.length.factor());
+        let axis = |number: usize| triple(&frame.axes.column(number).into_owned(), 1.0);
+        let (origin, reference) = (place(frame.measured_from), place(frame.origin));
+        table.row([name, &origin, &reference, &axis(0), &axis(1), &axis(2)]);
+    }
+    table
+}
+
+/// A vector in a unit, to six decimals.
+fn triple(v: &Vector3<f64>, unit: f64) -> String {
+    let [x, y, z] = [v.x, v.y, v.z].map(|c| (c / unit * 1e6).round() / 1e6 + 0.0);
+    format!("({x}, {y}, {z})")
+}
+
 fn intersection(class: &SubspaceClass) -> Value {
     let (axis, point, pitch) = match class {
         SubspaceClass::Rotation { axis, point } => (axis, Some(point), None),
@@ -281,10 +329,6 @@ fn intersection(class: &SubspaceClass) -> Value {
 
 /// A subspace in words, in the file's units.
 fn describe(class: &SubspaceClass, units: FileUnits) -> String {
-    let triple = |v: &Vector3<f64>, scale: f64| {
-        let [x, y, z] = [v.x, v.y, v.z].map(|c| (c / scale * 1e6).round() / 1e6 + 0.0);
-        format!("({x}, {y}, {z})")
-    };
     let direction = |v: &Vector3<f64>| triple(v, 1.0);
     let place = |v: &Vector3<f64>| {
         let unit = units.length;

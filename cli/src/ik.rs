@@ -6,10 +6,11 @@ use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::text::{self, Table};
+use crate::transform::{self, Located};
 use opm_core::chain::Amount;
 use opm_core::joint::{JointCoordinate, Quantity};
 use opm_core::limits::Limits;
-use opm_core::manipulator::{Manipulator, Mode, Solution, Unreachable};
+use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
 use opm_core::mechanism::file::FileUnits;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -22,14 +23,16 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let manipulator = loaded.compile()?;
     let modes = Modes::new(args, &manipulator)?;
-    match &args.pose {
-        Some(pose) => {
-            let pose = pose.resolve(manipulator.task_coordinates())?;
-            let answer = Answer::new(&loaded, &manipulator, modes, pose)?;
-            output.print(&answer.json(), answer.text())
-        }
-        None => batch::run(args, output, &loaded, &manipulator, modes),
-    }
+    let located = match (&args.pose, &args.transform) {
+        (Some(pose), _) => Located::Pose(pose.resolve(manipulator.task_coordinates())?),
+        (None, Some(transform)) => transform.locate(&manipulator),
+        (None, None) => return batch::run(args, output, &loaded, &manipulator, modes),
+    };
+    let answer = match located {
+        Located::Pose(pose) => Answer::new(&loaded, &manipulator, modes, pose)?,
+        Located::Outside(outside) => Answer::outside(&loaded, &manipulator, modes, outside),
+    };
+    output.print(&answer.json(), answer.text())
 }
 
 /// Which working modes are asked for.
@@ -63,6 +66,8 @@ struct Answer<'a> {
     all: bool,
     solutions: Vec<(Mode, Solution)>,
     unreachable: Vec<Unreachable>,
+    /// How far the transform asked for is outside the motion; the pose is the nearest then.
+    outside: Option<OutsideMotion>,
 }
 
 #[derive(Serialize)]
@@ -71,6 +76,9 @@ struct Json<'a> {
     reachable: bool,
     solutions: Vec<JsonSolution>,
     unreachable: Vec<JsonUnreachable<'a>>,
+    transform: Value,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outside: Option<Value>,
 }
 
 #[derive(Serialize)]
@@ -116,7 +124,21 @@ impl<'a> Answer<'a> {
             }
         };
         let all = matches!(modes, Modes::All);
-        Ok(Self { loaded, manipulator, pose, all, solutions, unreachable })
+        Ok(Self { loaded, manipulator, pose, all, solutions, unreachable, outside: None })
+    }
+
+    /// At a transform that is no pose.
+    fn outside(
+        loaded: &'a Loaded,
+        manipulator: &'a Manipulator,
+        modes: Modes,
+        outside: OutsideMotion,
+    ) -> Self {
+        let all = matches!(modes, Modes::All);
+        let (solutions, unreachable) = (Vec::new(), Vec::new());
+        let pose = outside.nearest.clone();
+        let outside = Some(outside);
+        Self { loaded, manipulator, pose, all, solutions, unreachable, outside }
     }
 
     fn json(&self) -> Json<'_> {
@@ -140,12 +162,18 @@ impl<'a> Answer<'a> {
                 .iter()
                 .map(|u| JsonUnreachable { leg: self.leg(u), reason: reason(u, FileUnits::SI) })
                 .collect(),
+            transform: transform::json(self.manipulator, &self.pose),
+            outside: self.outside.as_ref().map(transform::outside_json),
         }
     }
 
     fn text(&self) -> String {
         let units = self.loaded.file.units;
-        let mut text = format!("{} at ", self.manipulator.mechanism().name);
+        let name = &self.manipulator.mechanism().name;
+        let mut text = match &self.outside {
+            Some(outside) => format!("{name}: {}\nnearest pose: ", outside_text(outside, units)),
+            None => format!("{name} at "),
+        };
         let pose: Vec<String> = (self.manipulator.task_coordinates().iter().zip(&self.pose))
             .map(|(c, &value)| {
                 let value = text::number(value, c.quantity, units);
@@ -153,6 +181,9 @@ impl<'a> Answer<'a> {
             })
             .collect();
         let _ = writeln!(text, "{}\n", pose.join(", "));
+        if self.outside.is_some() {
+            return text.trim_end().to_owned() + "\n";
+        }
         match &*self.solutions {
             [] => {
                 let whose = if self.all { "in every mode" } else { "in this mode" };
@@ -283,6 +314,20 @@ impl Of<'_> {
             Self::Imaginary(_) => true,
         }
     }
+}
+
+/// How far, and in which direction, a transform is outside the motion.
+fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
+    let parts = outside.parts().map(|(quantity, v)| {
+        let way = match quantity {
+            Quantity::Length => "along",
+            Quantity::Angle => "about",
+        };
+        let [x, y, z] = <[f64; 3]>::from(v.normalize()).map(|c| (c * 1e4).round() / 1e4 + 0.0);
+        format!("{} {way} ({x}, {y}, {z})", units.show(v.norm(), quantity))
+    });
+    let parts: Vec<String> = parts.collect();
+    format!("the transform is outside the manipulator's motion by {}", parts.join(" and "))
 }
 
 /// Which section of the leg does not close, and by how much.

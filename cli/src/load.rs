@@ -2,11 +2,11 @@
 
 use crate::failure::{Failure, chain};
 use opm_core::linkage::Linkage;
-use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::{self, MechanismFile};
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Longest mechanism file: beyond, it is something else, an endless device for instance.
@@ -43,7 +43,7 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
                     example_names()
                 )));
             }
-            None => return Err(Failure::at(&label, &io::Error::from(ErrorKind::NotFound))),
+            None => return Err(Failure::Work(format!("{label}: No such file or directory"))),
         },
     };
     let file = file::read(&text).map_err(|errors| Failure::Work(errors.in_file(&label)))?;
@@ -77,8 +77,27 @@ impl Loaded {
     /// The mechanism compiled for inverse kinematics.
     pub fn compile(&self) -> Result<Manipulator, Failure> {
         Manipulator::new(self.file.mechanism.clone()).map_err(|error| {
-            Failure::Work(format!("{}: {}{}", self.label, chain(&error), self.linkage_hint()))
+            let hint = self.linkage_hint();
+            Failure::Work(format!("{}: {}{hint}", self.place_of(&error), chain(&error)))
         })
+    }
+
+    /// What messages call the place that an error is about: the file, and the line where it can be
+    /// told.
+    pub fn place_of(&self, error: &CompileError) -> String {
+        let (file, places) = (&self.file, &self.file.places);
+        let place = match error {
+            CompileError::Leg { leg, .. } => {
+                let number = file.mechanism.legs.iter().position(|known| known.name == *leg);
+                number.and_then(|number| places.legs.get(number)).copied()
+            }
+            CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
+            CompileError::Decompose(_) | CompileError::Choices(_) => None,
+        };
+        match place {
+            Some((line, column)) => format!("{}:{line}:{column}", self.label),
+            None => self.label.clone(),
+        }
     }
 
     /// Of a mechanism without inverse kinematics: that it is a linkage, if it is one.

@@ -21,6 +21,7 @@ mod record;
 mod scene;
 mod text;
 mod trajectory;
+mod transform;
 mod workspace;
 
 use crate::args::{Args, Command};

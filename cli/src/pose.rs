@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 /// A text that does not say what it should.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Misread(String);
+pub struct Misread(pub String);
 
 impl Misread {
     /// What is wrong, and what was expected.
@@ -117,6 +117,16 @@ impl Number {
                 what(given)
             ))),
             _ => Ok(self.value),
+        }
+    }
+}
+
+impl Number {
+    /// The value of what is called `name` and has no unit.
+    pub fn bare(self, name: &str) -> Result<f64, Misread> {
+        match self.quantity {
+            Some(_) => Err(Misread(format!("{name} has a unit, expected a number alone"))),
+            None => Ok(self.value),
         }
     }
 }

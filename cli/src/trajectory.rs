@@ -11,18 +11,24 @@ use crate::progress::{interruptible, watch};
 use crate::record::partial;
 use crate::text::count;
 use opm_core::manipulator::{Manipulator, Mode};
-use opm_core::trajectory::{Change, Trajectory};
+use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError, Violation};
 use opm_mcap::PartialFile;
 use play::Player;
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::thread;
 use summary::Summary;
 
 /// Samples a second where nobody says.
 const RATE: f64 = 100.0;
 
-/// Samples between two looks at whether somebody pressed Ctrl-C.
-const BATCH: u64 = 256;
+/// Samples that are handed over at a time; in between, somebody may press Ctrl-C.
+const BATCH: usize = 256;
+
+/// Batches that may wait to be recorded.
+const WAITING: usize = 4;
 
 /// The clock of a recording counts nanoseconds: at more samples a second they would coincide.
 const HIGHEST_RATE: f64 = 1e9;
@@ -112,42 +118,82 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     }
 }
 
+/// Samples on their way from who follows the motion to who records it.
+type Batch = Vec<(Sample, Vec<Change>)>;
+
 impl Run<'_> {
-    /// Follows the motion from end to end, and records it where there is a player.
+    /// Follows the motion from end to end, and records it where there is a player: the one on a thread
+    /// of its own, while the other takes down what came before.
     fn follow(
         &self,
-        mut trajectory: Trajectory<'_>,
+        trajectory: Trajectory<'_>,
         mut player: Option<Player<PartialFile>>,
         done: &AtomicU64,
         cancelled: impl Fn() -> bool,
     ) -> Result<Summary, Failure> {
         let mut summary = Summary::new(self.manipulator);
-        let failed = |error| Failure::at(&self.motion.label, &error);
-        let mut number = 0;
-        while trajectory.advance().map_err(failed)? {
-            let sample = trajectory.sample();
-            summary.add(sample);
-            if let Some(player) = &mut player {
-                player.sample(self, number, sample, trajectory.changes())?;
-            }
-            for change in trajectory.changes() {
-                if let Change::Ends(violation) = change {
-                    summary.violation(*violation);
+        let open = thread::scope(|scope| {
+            let (ahead, batches) = mpsc::sync_channel::<Batch>(WAITING);
+            let (back, used) = mpsc::channel::<Batch>();
+            let follower = scope.spawn(move || follow(trajectory, &ahead, &used));
+            let mut number = 0;
+            for batch in batches {
+                for (sample, changes) in &batch {
+                    summary.add(sample);
+                    if let Some(player) = &mut player {
+                        player.sample(self, number, sample, changes)?;
+                    }
+                    for change in changes {
+                        if let Change::Ends(violation) = change {
+                            summary.violation(*violation);
+                        }
+                    }
+                    number += 1;
                 }
-            }
-            number += 1;
-            if number.is_multiple_of(BATCH) {
                 done.store(number, Ordering::Relaxed);
                 if cancelled() {
                     return Err(Failure::Interrupted(String::new()));
                 }
+                // Once the follower has come to its end it needs no more room.
+                let _ = back.send(batch);
             }
-        }
-        trajectory.open().for_each(|violation| summary.violation(*violation));
+            let followed = follower.join().unwrap_or_else(|panic| resume_unwind(panic));
+            followed.map_err(|error| Failure::at(&self.motion.label, &error))
+        })?;
+        open.into_iter().for_each(|violation| summary.violation(violation));
         summary.sort();
         if let Some(player) = player {
             player.finish(self, &summary)?;
         }
         Ok(summary)
+    }
+}
+
+/// Sends all samples, batch by batch, in batches that come back; the violations that last to the end.
+fn follow(
+    mut trajectory: Trajectory<'_>,
+    ahead: &SyncSender<Batch>,
+    used: &Receiver<Batch>,
+) -> Result<Vec<Violation>, TrajectoryError> {
+    loop {
+        let mut batch = used.try_recv().unwrap_or_default();
+        let mut length = 0;
+        while length < BATCH && trajectory.advance()? {
+            let (sample, changes) = (trajectory.sample(), trajectory.changes());
+            match batch.get_mut(length) {
+                Some((held, held_changes)) => {
+                    held.copy_from(sample);
+                    held_changes.clear();
+                    held_changes.extend_from_slice(changes);
+                }
+                None => batch.push((sample.clone(), changes.to_vec())),
+            }
+            length += 1;
+        }
+        batch.truncate(length);
+        // Nobody listens any more once the recording has failed or was interrupted.
+        if length == 0 || ahead.send(batch).is_err() {
+            return Ok(trajectory.open().copied().collect());
+        }
     }
 }

@@ -96,10 +96,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
     let azimuth = rng.f64() * PI;
     let apart = azimuth + 0.5 + rng.f64() * (PI - 1.0);
     let places = [place(rng, pair[0], azimuth), place(rng, pair[1], apart)];
-    let displacement = Isometry3::from_parts(
-        Translation3::from(vector(rng) * 2.0),
-        UnitQuaternion::from_axis_angle(&direction(rng), rng.f64() * PI),
-    );
+    let displacement = displacement(rng);
     let mut legs = Vec::new();
     let mut splits = Vec::new();
     for number in 1..=2 + rng.usize(..3) {
@@ -153,6 +150,64 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         task: TaskHints::default(),
     };
     (mechanism, decomposition)
+}
+
+/// A random rigid displacement.
+pub fn displacement(rng: &mut Rng) -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::from(vector(rng) * 2.0),
+        UnitQuaternion::from_axis_angle(&direction(rng), rng.f64() * PI),
+    )
+}
+
+/// A mechanism, rigidly displaced as a whole, with how its pose is measured.
+pub fn displace(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
+    let mut displaced = mechanism.clone();
+    for joint in displaced.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        (joint.axis, joint.point) = (g * joint.axis, g * joint.point);
+        if let JointKind::Universal { second } = &mut joint.kind {
+            *second = g * *second;
+        }
+    }
+    for label in displaced.legs.iter_mut().filter_map(|leg| leg.imaginary.as_mut()) {
+        label.positive = g * label.positive;
+    }
+    displaced.platform = g * mechanism.platform;
+    let task = &mut displaced.task;
+    let turned = |v: &mut Option<Vector3<f64>>| *v = v.map(|v| g * v);
+    turned(&mut task.axis);
+    for frame in [&mut task.lower, &mut task.upper] {
+        turned(&mut frame.x);
+        turned(&mut frame.w);
+        turned(&mut frame.normal);
+        frame.origin = frame.origin.map(|point| g * point);
+    }
+    displaced
+}
+
+/// The decomposition of the displaced mechanism.
+pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>) -> Decomposition {
+    let class = |class: &SubspaceClass| match *class {
+        SubspaceClass::Rotation { axis, point } => {
+            SubspaceClass::Rotation { axis: g * axis, point: g * point }
+        }
+        SubspaceClass::Translation { axis } => SubspaceClass::Translation { axis: g * axis },
+        SubspaceClass::Planar { normal } => SubspaceClass::Planar { normal: g * normal },
+        SubspaceClass::TranslationalPlane { normal } => {
+            SubspaceClass::TranslationalPlane { normal: g * normal }
+        }
+        SubspaceClass::Cylindrical { axis, point } => {
+            SubspaceClass::Cylindrical { axis: g * axis, point: g * point }
+        }
+        SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
+        other => panic!("{other}: not a subspace of these mechanisms"),
+    };
+    Decomposition {
+        lower: class(&decomposition.lower),
+        upper: class(&decomposition.upper),
+        intersection: class(&decomposition.intersection),
+        ..decomposition.clone()
+    }
 }
 
 fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {

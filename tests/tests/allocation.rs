@@ -55,6 +55,7 @@ fn velocities_do_not_allocate() {
             let (mut solution, mut motion) = (manipulator.solution(), manipulator.motion());
             let (mut jacobians, length) =
                 (manipulator.jacobians(), manipulator.characteristic_length());
+            let mut singularities = manipulator.singularities();
             let rates: Vec<f64> = manipulator.task().home().iter().map(|_| rng.f64()).collect();
             for _ in 0..50 {
                 let mut pose = manipulator.task().home();
@@ -64,6 +65,7 @@ fn velocities_do_not_allocate() {
                         manipulator.velocity(&solution, &rates, &rates, &mut motion).unwrap();
                         manipulator.differentiate(&solution, &mut jacobians).unwrap();
                         manipulator.conditioning(&jacobians, length);
+                        manipulator.measure_singularities(&jacobians, &mut singularities);
                         moved += 1;
                     }
                 });

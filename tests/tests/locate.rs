@@ -1,8 +1,9 @@
 //! From displacements of the platform to task coordinates and back.
 
 use fastrand::Rng;
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::{examples, file};
 use opm_core::subspace::SubspaceClass;
 use opm_tests::random::{Options, PAIRS, direction, mechanism};
 
@@ -65,5 +66,36 @@ fn outside_says_how_far_and_where() {
         let turn = (anywhere.rotation * nearest.rotation.inverse()).scaled_axis();
         assert!((turn - outside.rotation).norm() < 1e-9);
         assert!(outside.rotation.norm() + outside.translation.norm() > 1e-6);
+    }
+}
+
+/// The platform's place in SE(3) is its point and its orientation: for the paper's pair `(x, y, 0)`
+/// and `Rz(zeta) Ry(xi) Rz(psi)`, whatever they are at home; and it leads back to the pose.
+#[test]
+fn the_platforms_place_is_its_point_and_its_orientation() {
+    let text = examples::find("plano-spherical-5dof").unwrap().text;
+    let text = text.replace("zeta = 0, xi = 0, psi = 0", "zeta = 25, xi = 10, psi = -40");
+    let manipulator = Manipulator::new(file::read(&text).unwrap().mechanism).unwrap();
+    assert!(manipulator.task().home()[2] > 0.4, "home is turned");
+    let mut rng = Rng::with_seed(44);
+    for _ in 0..20 {
+        let home = manipulator.task().home();
+        let pose: Vec<f64> = home.iter().map(|q| q + rng.f64() - 0.5).collect();
+        let place = manipulator.platform_pose(&pose);
+        let [z, y] = [Vector3::z_axis(), Vector3::y_axis()];
+        let turn = UnitQuaternion::from_axis_angle(&z, pose[2])
+            * UnitQuaternion::from_axis_angle(&y, pose[3])
+            * UnitQuaternion::from_axis_angle(&z, pose[4]);
+        assert!(place.rotation.angle_to(&turn) < 1e-12);
+        assert!((place.translation.vector - Vector3::new(pose[0], pose[1], 0.0)).norm() < 1e-12);
+        let back = manipulator.locate_platform(&place).unwrap();
+        assert!(off(&manipulator.platform_pose(&back), &place) < 1e-8);
+    }
+    for pair in PAIRS {
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let home = manipulator.platform_pose(&manipulator.task().home());
+        assert!(home.rotation.angle() < 1e-12);
+        assert!((home.translation.vector - manipulator.mechanism().platform.coords).norm() < 1e-12);
     }
 }

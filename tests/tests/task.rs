@@ -9,10 +9,12 @@ use opm_core::leg::Leg;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::family::plano_spherical::Home;
 use opm_core::mechanism::family::{Family, PlanoSpherical};
-use opm_core::mechanism::{Mechanism, TaskHints, examples, file};
-use opm_core::subspace::SubspaceClass;
-use opm_core::task::TaskError;
-use opm_tests::random::{Options, PAIRS, direction, mechanism, vector};
+use opm_core::mechanism::{FrameHints, Mechanism, TaskHints, examples, file};
+use opm_core::subspace::{SubspaceClass, UP};
+use opm_core::task::{Subspace, SubspaceKind, TaskError};
+use opm_tests::random::{
+    Options, PAIRS, direction, displace, displace_decomposition, displacement, mechanism, vector,
+};
 
 /// Poses here are of the size of one; solutions near the rim of a leg's reach lose some digits.
 const AGREE: f64 = 1e-9;
@@ -44,6 +46,20 @@ fn in_plane(normal: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     [first, Unit::new_normalize(normal.cross(&first))]
 }
 
+/// The one of two opposite directions that points up.
+fn upward(v: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    if v.dot(&Vector3::from(UP)) < 0.0 { -v } else { v }
+}
+
+/// The normal for which it and the direction a quarter turn ahead of x together point up.
+fn standing(normal: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    let up = |n: &Unit<Vector3<f64>>| {
+        let [_, second] = in_plane(*n);
+        (n.into_inner() + second.into_inner()).dot(&Vector3::from(UP)) > 0.0
+    };
+    [normal, -normal].into_iter().find(up).unwrap()
+}
+
 /// From home, each coordinate alone moves the platform along one screw: the one that the table in
 /// the docs of the module names.
 #[test]
@@ -66,9 +82,16 @@ fn each_coordinate_moves_along_its_own_screw() {
             for (number, coordinate) in manipulator.task_coordinates().iter().enumerate() {
                 let lower = number < manipulator.task().lower_count;
                 let class = if lower { d.lower } else { d.upper };
+                let mut plane = None;
                 let (third, origin) = match class {
-                    SubspaceClass::Planar { normal } if line.is_none() => (normal, reference),
-                    SubspaceClass::TranslationalPlane { normal } => (normal, reference),
+                    SubspaceClass::Planar { normal } if line.is_none() => {
+                        plane = Some(normal);
+                        (standing(normal), reference)
+                    }
+                    SubspaceClass::TranslationalPlane { normal } => {
+                        plane = Some(normal);
+                        (standing(normal), reference)
+                    }
                     SubspaceClass::Cylindrical { point, .. } => {
                         (axis, point + axis.into_inner() * axis.dot(&(reference - point)))
                     }
@@ -77,7 +100,7 @@ fn each_coordinate_moves_along_its_own_screw() {
                 };
                 let [first, second] = in_plane(third);
                 let (amount, at_home) = (0.1 + 0.1 * rng.f64(), coordinate.home);
-                let square = Unit::new_normalize(third.cross(&axis));
+                let square = upward(Unit::new_normalize(plane.unwrap_or(third).cross(&axis)));
                 let (expected, measured) = match coordinate.name {
                     "x" => (along(first, amount), first.dot(&origin.coords)),
                     "y" => (along(second, amount), second.dot(&origin.coords)),
@@ -205,4 +228,210 @@ fn the_hint_chooses_the_positive_direction() {
     let error = Manipulator::new(mechanism).unwrap_err();
     assert!(matches!(error, CompileError::Task(TaskError::Axis { .. })), "{error}");
     assert!(error.to_string().contains("(1.000000, 0.000000, 0.000000)"), "{error}");
+}
+
+/// Directions whose angles are multiples of 15 degrees, measured about any axis of the base from any
+/// other, and those of the sides and diagonals of a cube.
+fn usual_directions() -> Vec<Vector3<f64>> {
+    let mut all = Vec::new();
+    let turns = |n: i32| f64::from(15 * n).to_radians();
+    for (azimuth, elevation) in (0..24).flat_map(|a| (-6..=6).map(move |e| (turns(a), turns(e)))) {
+        let (a, e) = (azimuth.sin_cos(), elevation.sin_cos());
+        let v = [e.1 * a.1, e.1 * a.0, e.0];
+        for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            all.push(vector![v[i], v[j], v[k]]);
+        }
+    }
+    for number in (0..125).filter(|&number| number != 62) {
+        let [x, y, z] = [number / 25, number / 5 % 5, number % 5].map(|n| f64::from(n - 2));
+        all.push(vector![x, y, z].normalize());
+    }
+    all
+}
+
+/// Usual directions are far from where the rule for "up" turns one round, and it takes them for what
+/// they are: positive along z, else y, else x.
+#[test]
+fn no_usual_direction_is_near_to_turning_round() {
+    let up = Vector3::from(UP).normalize();
+    let degrees_off = |v: &Vector3<f64>| v.dot(&up).asin().to_degrees();
+    for v in usual_directions() {
+        let flat = v.iter().any(|c| c.abs() < 1e-9);
+        let least = if flat { 2.8 } else { 0.7 };
+        assert!(degrees_off(&v).abs() > least, "{v:?} {}", degrees_off(&v));
+        let level = v.z.abs() < 1e-9;
+        let points_up = if level { v.y > 1e-9 || (v.y > -1e-9 && v.x > 0.0) } else { v.z > 0.0 };
+        if level || v.z.abs() > 0.5 {
+            assert_eq!(degrees_off(&v) > 0.0, points_up, "{v:?}");
+        }
+    }
+}
+
+fn axes_apart(a: &Subspace, b: &Subspace) -> f64 {
+    (a.axes - b.axes).amax()
+}
+
+/// Mechanisms stood up in every usual way, then turned by a little: the frames follow by as much, `w`
+/// and the intersection motion count upwards, and `x y` are the base's where the plane is level.
+#[test]
+fn a_small_turn_turns_no_coordinate_round() {
+    const LITTLE: f64 = 0.004;
+    let mut rng = Rng::with_seed(43);
+    let up = Vector3::from(UP);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+    let rotation = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+    let (mut compared, mut level) = (0, 0);
+    let stands = [
+        (rotation(axes[0], 0.0), axes[2]),
+        (rotation(axes[0], 0.0), axes[0]),
+        (rotation(axes[0], quarter), axes[2]),
+        (rotation(axes[1], quarter), axes[2]),
+    ];
+    for name in [
+        "translational-planar-4dof",
+        "planar-planar-5dof-joints",
+        "plano-cylindrical-4dof",
+        "schoenflies-4dof",
+        "translational-helical-3dof-joints",
+    ] {
+        let mut mechanism = file::read(examples::find(name).unwrap().text).unwrap().mechanism;
+        mechanism.task = TaskHints::default();
+        for (stand, axis) in stands {
+            for turns in 0..24 {
+                let turn = rotation(axis, f64::from(15 * turns).to_radians()) * stand;
+                let little = rotation(direction(&mut rng), LITTLE);
+                let of = |turn: UnitQuaternion<f64>| {
+                    let turn = Isometry3::from_parts(Translation3::identity(), turn);
+                    Manipulator::new(displace(&mechanism, &turn)).unwrap()
+                };
+                let (one, other) = (of(turn), of(little * turn));
+                let (task, turned) = (one.task(), other.task());
+                assert!(task.direction.dot(&up) > 0.0);
+                for (frame, after) in [(&task.lower, &turned.lower), (&task.upper, &turned.upper)] {
+                    // A direction laid into a plane moves by more than the plane: at most by the
+                    // inverse of the sine of 6 degrees, the steepest at which x is laid down.
+                    let off = axes_apart(frame, after);
+                    assert!(off < 11.0 * LITTLE, "{name}: {off} {frame:?} {after:?}");
+                    let normal = frame.axes.column(2).into_owned();
+                    if frame.kind != SubspaceKind::Cylindrical && normal.z > 1.0 - 1e-9 {
+                        let w = task.coordinates.iter().any(|c| c.name == "w");
+                        let upper = std::ptr::eq(frame, &task.upper);
+                        if !(w && upper) {
+                            assert!((frame.axes.column(0) - Vector3::x()).norm() < 1e-9);
+                            level += 1;
+                        }
+                    }
+                }
+                if task.coordinates.iter().any(|c| c.name == "w") {
+                    assert!(task.upper.axes.column(1).dot(&up) > 0.0);
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared == 480 && level > 100, "{compared} {level}");
+}
+
+/// What a file may say of the frame of a section.
+fn hints(frame: &Subspace, names: &[&str], rotation: bool) -> FrameHints {
+    let axis = |number: usize| Some(frame.axes.column(number).into_owned());
+    let plane = matches!(frame.kind, SubspaceKind::Planar | SubspaceKind::TranslationalPlane);
+    let has = |name| names.contains(&name);
+    FrameHints {
+        x: axis(0).filter(|_| has("x") || has("mu") || has("zeta")),
+        w: axis(1).filter(|_| has("w")),
+        normal: axis(2).filter(|_| plane && !rotation && names != ["w"]),
+        origin: Some(frame.measured_from).filter(|_| ["x", "w", "z"].iter().any(|name| has(name))),
+    }
+}
+
+/// The frames of a mechanism can be written down and displaced with it: its coordinates are the same
+/// numbers then, wherever it stands, and so are its joints.
+#[test]
+fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
+    let mut rng = Rng::with_seed(44);
+    let mut solved = 0;
+    for pair in PAIRS {
+        for _ in 0..40 {
+            // A ball's rotation vector is in the base's directions, which stay.
+            let options = Options { limited: 0.0, balls: false };
+            let (plain, decomposition) = mechanism(&mut rng, pair, options);
+            let here = Manipulator::with_decomposition(plain.clone(), decomposition.clone());
+            let here = here.unwrap();
+            let task = here.task();
+            let rotation = task.cut_point.is_some();
+            let names: Vec<&str> = task.coordinates.iter().map(|c| c.name).collect();
+            let (v, b) = names.split_at(task.lower_count);
+            let mut framed = plain.clone();
+            framed.task = TaskHints {
+                axis: Some(task.direction.into_inner()),
+                lower: hints(&task.lower, v, rotation),
+                upper: hints(&task.upper, b, rotation),
+                home: Vec::new(),
+            };
+            let g = displacement(&mut rng);
+            let there = Manipulator::with_decomposition(
+                displace(&framed, &g),
+                displace_decomposition(&decomposition, &g),
+            )
+            .unwrap();
+            for (c, other) in here.task_coordinates().iter().zip(there.task_coordinates()) {
+                assert_eq!(c.name, other.name);
+                assert!((c.home - other.home).abs() < AGREE, "{pair:?} {c:?} {other:?}");
+            }
+            let pose: Vec<f64> = task.home().iter().map(|q| q + rng.f64() - 0.5).collect();
+            for number in 0..here.choices() {
+                let signs = |i| if i == number { '-' } else { '+' };
+                let signs: String = (0..here.choices()).map(signs).collect();
+                let [mode, other] = [&here, &there].map(|m| m.parse_mode(&signs).unwrap());
+                let (mut one, mut two) = (here.solution(), there.solution());
+                let reached = here.inverse(&pose, mode, &mut one).unwrap();
+                assert_eq!(reached, there.inverse(&pose, other, &mut two).unwrap());
+                if reached {
+                    solved += 1;
+                    for (q, p) in one.joints.iter().zip(&two.joints) {
+                        assert!((q - p).abs() < 1e-6, "{pair:?}: {q} {p}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(solved > 300, "{solved} solutions");
+}
+
+/// A frame that a file gives is the frame that is used, and home's values are measured in it.
+#[test]
+fn given_frames_shift_home() {
+    let text = examples::find("translational-planar-4dof").unwrap().text;
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    let (x, y) = (vector![0.6, 0.8, 0.0], vector![0.8, -0.6, 0.0]);
+    mechanism.task = TaskHints {
+        axis: Some(-Vector3::y()),
+        lower: FrameHints {
+            x: Some(x * 3.0),
+            normal: Some(-Vector3::z()),
+            origin: Some(Point3::new(1.0, 2.0, 3.0)),
+            ..FrameHints::default()
+        },
+        upper: FrameHints {
+            w: Some(-Vector3::z()),
+            normal: Some(-Vector3::x()),
+            origin: Some(Point3::new(0.0, 0.0, 1.0)),
+            ..FrameHints::default()
+        },
+        home: Vec::new(),
+    };
+    let manipulator = Manipulator::new(mechanism.clone()).unwrap();
+    let home = manipulator.task().home();
+    let from = mechanism.platform - Point3::new(1.0, 2.0, 3.0);
+    let expected = [from.dot(&x), from.dot(&y), 1.0 - mechanism.platform.z, 0.0];
+    for (value, expected) in home.iter().zip(expected) {
+        assert!((value - expected).abs() < AGREE, "{home:?}");
+    }
+    let moved = manipulator.task().displacement(&[home[0], home[1], home[2] + 0.1, 0.2]);
+    let turn = UnitQuaternion::from_axis_angle(&-Vector3::x_axis(), 0.2);
+    assert!(moved.rotation.angle_to(&turn) < AGREE);
+    let expected = mechanism.platform - Vector3::z() * 0.1;
+    assert!((moved * mechanism.platform - expected).norm() < AGREE);
 }

@@ -170,8 +170,12 @@ impl Sweep<'_> {
         let write = |number: u32, position: &Position| {
             let time = u64::from(number) * ROUND / steps;
             let (joints, imaginary) = (&position.joints, &[position.imaginary]);
-            let platform = mechanism.legs[0].displacement(joints);
-            let frames = scene.frames(&core::Posture { joints, imaginary, platform });
+            let frames = if recorder.shows(time) {
+                let platform = mechanism.legs[0].displacement(joints);
+                scene.frames(&core::Posture { joints, imaginary, platform })
+            } else {
+                &[]
+            };
             let posture = Posture { joints, imaginary, rates: None, frames };
             let sample =
                 Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };

@@ -11,9 +11,6 @@ use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded,
 use opm_mcap::{Metadata, PartialFile, RecordError, Sink, TrajectoryRecorder};
 use std::path::Path;
 
-/// What `/condition` tells.
-const MEASURES: [&str; 1] = ["condition"];
-
 /// A recording under way.
 pub struct Player<W: Sink> {
     recorder: TrajectoryRecorder<W>,
@@ -21,6 +18,9 @@ pub struct Player<W: Sink> {
     place: String,
     /// Of the last message, nanoseconds.
     last: u64,
+    /// Whether the upper and the lower section have a parallel singularity measure.
+    parallel: [bool; 2],
+    measures: Vec<f64>,
 }
 
 impl Player<PartialFile> {
@@ -33,8 +33,10 @@ impl Player<PartialFile> {
         }
         let file = PartialFile::create(path).map_err(failed)?;
         let scene = Scene::of(run.manipulator);
-        let recorder = TrajectoryRecorder::new(file, &run.recorded(&scene)).map_err(failed)?;
-        Ok(Self { recorder, scene, place, last: 0 })
+        let parallel = parallel(run.manipulator);
+        let recorded = run.recorded(&scene, parallel);
+        let recorder = TrajectoryRecorder::new(file, &recorded).map_err(failed)?;
+        Ok(Self { recorder, scene, place, last: 0, parallel, measures: Vec::new() })
     }
 }
 
@@ -84,17 +86,30 @@ impl<W: Sink> Player<W> {
         });
         let (joints, imaginary) = (&solution.joints, &solution.imaginary);
         let posture = if sample.reached {
-            let platform = run.manipulator.task().displacement(&instant.pose);
-            let posture = skeleton::Posture { joints, imaginary, platform };
-            let frames = self.scene.frames(&posture);
+            let frames = if self.recorder.shows(now) {
+                let platform = run.manipulator.task().displacement(&instant.pose);
+                self.scene.frames(&skeleton::Posture { joints, imaginary, platform })
+            } else {
+                &[]
+            };
             Some(Posture { joints, imaginary, rates, frames })
         } else {
             None
         };
+        self.measures.clear();
+        self.measures.push(sample.condition);
+        for (parallel, measures) in self.parallel.into_iter().zip([sample.upper, sample.lower]) {
+            // Out of reach is beyond a singularity, and told like one.
+            let told = |measure: f64| if sample.reached { measure } else { 0.0 };
+            self.measures.push(told(measures.serial));
+            if parallel {
+                self.measures.push(told(measures.parallel.unwrap_or_default()));
+            }
+        }
         let recorded = Recorded {
             pose: &instant.pose,
             pose_velocities: &instant.velocity,
-            measures: &[sample.condition()],
+            measures: &self.measures,
             valid: sample.valid(),
             posture,
         };
@@ -130,14 +145,14 @@ impl<W: Sink> Player<W> {
 
 impl Run<'_> {
     /// What the recording is of.
-    fn recorded(&self, scene: &Scene) -> Trajectory<'_> {
+    fn recorded(&self, scene: &Scene, parallel: [bool; 2]) -> Trajectory<'_> {
         let Self { loaded, motion, manipulator, mode, rate } = self;
         Trajectory {
             pose: task_coordinates(manipulator),
             joints: joint_coordinates(manipulator.mechanism()),
             imaginary: imaginary_coordinates(manipulator.imaginary()),
             rates: true,
-            measures: MEASURES.map(String::from).into(),
+            measures: measures(parallel),
             bodies: scene.bodies(),
             files: vec![
                 (&loaded.file_name, loaded.text.as_bytes()),
@@ -157,6 +172,25 @@ impl Run<'_> {
             ]),
         }
     }
+}
+
+/// What `/condition` tells: what a [`Player`] gathers, by name.
+fn measures(parallel: [bool; 2]) -> Vec<String> {
+    let mut names = vec!["condition".to_owned()];
+    for (parallel, section) in parallel.into_iter().zip(["upper", "lower"]) {
+        names.push(format!("{section}_serial"));
+        if parallel {
+            names.push(format!("{section}_parallel"));
+        }
+    }
+    names
+}
+
+/// Which of the sections, upper and lower, have as many inputs as motions, or more.
+fn parallel(manipulator: &Manipulator) -> [bool; 2] {
+    let mut measured = manipulator.singularities();
+    manipulator.measure_singularities(&manipulator.jacobians(), &mut measured);
+    [measured.upper, measured.lower].map(|measures| measures.parallel.is_some())
 }
 
 fn task_coordinates(manipulator: &Manipulator) -> Vec<Coordinate> {

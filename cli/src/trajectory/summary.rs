@@ -4,7 +4,7 @@ use super::Run;
 use crate::text::{self, Table, count, short};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
-use opm_core::trajectory::{Bound, Gauge, Sample, Violation};
+use opm_core::trajectory::{Bound, Gauge, Part, Sample, Violation};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -69,7 +69,7 @@ impl Summary {
         if !sample.reached {
             return;
         }
-        let condition = sample.condition();
+        let condition = sample.condition;
         if self.condition.is_none_or(|[worst, _]| condition > worst) {
             self.condition = Some([condition, sample.time]);
         }
@@ -305,6 +305,7 @@ impl<'a> Told<'a> {
                 let (joint, bound) = (self.joint.unwrap_or_default(), self.bound());
                 format!("{leg}: {joint} past its {} value", bound.unwrap_or_default())
             }
+            Gauge::Parallel { part: Part::Whole } => "parallel singularity".to_owned(),
             Gauge::Parallel { .. } => format!("parallel singularity of the {section}section"),
         }
     }

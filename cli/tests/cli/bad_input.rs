@@ -27,6 +27,11 @@ fn wrong_usage_names_the_flag() {
         (&ik, &["--pose", "x=0", "--mode", "++"], &["--mode", "2 signs for 7", "++ ++ ++ +"]),
         (&ik, &["--pose", "x=0", "--mode", "-x ++ ++ +"], &["--mode", "`x` is not a sign"]),
         (&ik, &["--pose", "x=0", "--mode", "home", "--all-modes"], &["--mode", "--all-modes"]),
+        (&ik, &["--pose", "x=0", "--transform", "0,0,0,1,0,0,0"], &["--pose", "--transform"]),
+        (&ik, &["--transform", "0,0,0,1,0,0,0", "-o", "out.csv"], &["--output"]),
+        (&ik, &["--transform", "0,0,0"], &["--transform", "3 numbers", "X,Y,Z,QW,QX,QY,QZ"]),
+        (&ik, &["--transform", "0,0,0,1,1,0,0"], &["--transform", "length 1.4142, expected 1"]),
+        (&ik, &["--transform", "0,0,0deg,1,0,0,0"], &["--transform", "Z is a length"]),
         (&ik, &["--poses", "-", "--format", "json"], &["--format json", "--output"]),
         (&workspace, &["--grid", "x=0:1"], &["--grid", "AXIS=MIN:MAX:COUNT"]),
         (&workspace, &["--grid", "x=0:1:two"], &["--grid", "\"two\""]),
@@ -89,7 +94,7 @@ fn a_mechanism_that_cannot_be_had() {
     let empty = folder.write("empty.toml", "");
     opm(&["ik", &empty, "--pose", ""]).fails(1, &["empty.toml:1:1: `format`"]);
     opm(&["workspace", "bennett-double-spherical-6r"])
-        .fails_with_one_line(1, &["bennett-double-spherical-6r: leg leg1", "closed-form"]);
+        .fails_with_one_line(1, &["bennett-double-spherical-6r:21:1: leg leg1", "closed-form"]);
     opm(&["examples", "none"]).fails_with_one_line(2, &["\"none\"", PLANO]);
 }
 

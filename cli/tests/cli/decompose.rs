@@ -25,6 +25,7 @@ fn the_plano_spherical_manipulator() {
         "intersection",
         "task_coordinates",
         "legs",
+        "frames",
     ];
     assert_eq!(keys(&found), expected, "its decomposition is unique: no alternatives");
     assert_eq!(found["name"], PLANO);
@@ -122,4 +123,87 @@ fn a_divided_joint_goes_by_its_coordinates() {
     let first = &found["legs"][0];
     assert_eq!(first["lower"], json!(["SA", "CA.slide"]), "{found}");
     assert_eq!(first["upper"], json!(["CA.angle"]), "{found}");
+}
+
+/// A shipped mechanism with a `[task]`, and its frames as they are printed: the directions of the
+/// file, and home's values measured with them.
+#[test]
+fn frames_are_printed_and_can_be_set() {
+    let folder = Folder::new();
+    let shipped = opm(&["examples", "translational-planar-4dof"]).text().to_owned();
+    let task = "[task]\naxis = [0, -2, 0]\n\
+         lower = { x = [0, 1, 0], normal = [0, 0, -1], origin = [100, 0, 0] }\n\
+         upper = { w = [0, 0, -1], normal = [-3, 0, 0], origin = [0, 0, 50] }\n\n[platform]";
+    let file = folder.write("framed.toml", shipped.replacen("[platform]", task, 1));
+    let found = decompose(&file);
+    assert_eq!(found["intersection"]["axis"], json!([0.0, -1.0, 0.0]));
+    let numbers = |value: &Value| -> Vec<f64> {
+        let rows = value.as_array().unwrap().iter();
+        rows.flat_map(|row| row.as_array().unwrap()).map(number).collect()
+    };
+    let near = |value: &Value, expected: [[f64; 3]; 3]| {
+        let pairs = numbers(value).into_iter().zip(expected.concat());
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < EXACT
+    };
+    let frames = &found["frames"];
+    assert!(
+        near(&frames["lower"]["axes"], [[0., 1., 0.], [1., 0., 0.], [0., 0., -1.]]),
+        "{frames}"
+    );
+    assert!(near(&frames["upper"]["axes"], [[0., 1., 0.], [0., 0., -1.], [-1., 0., 0.]]));
+    assert_eq!(frames["lower"]["origin"], json!([0.1, 0.0, 0.0]));
+    assert_eq!(frames["upper"]["origin"], json!([0.0, 0.0, 0.05]));
+    assert_eq!(frames["lower"]["reference"], json!([0.0, 0.0, 0.3]));
+    let home: Vec<f64> = found["task_coordinates"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|coordinate| number(&coordinate["home"]))
+        .collect();
+    // The platform stands at (0, 0, 300): x is base y, y base x less 100, w down from 50.
+    for (home, expected) in home.iter().zip([0.0, -0.1, -0.25, 0.0]) {
+        assert!((home - expected).abs() < EXACT, "{home} {expected}");
+    }
+    let text = opm(&["decompose", &file, "--quiet"]).text().to_owned();
+    for part in ["lower  (100, 0, 0)", "(0, 0, 300)", "(0, 0, -1)", "origin, mm"] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+}
+
+/// What a `[task]` says is held against the geometry, and blamed at its line and column, whatever
+/// the subcommand.
+#[test]
+fn frames_that_do_not_fit_are_refused_where_they_stand() {
+    let folder = Folder::new();
+    let pairs = [
+        ("translational-planar-4dof", "upper = { ^w = [1, 0, 0] }", "expected (0.000000, 0.0000"),
+        ("translational-planar-4dof", "upper = { ^x = [0, 1, 0] }", "has w, normal, origin to"),
+        ("translational-planar-4dof", "lower = { ^x = [0, 1, 1] }", "square to (0.000000, 0.000"),
+        ("translational-planar-4dof", "lower = { ^normal = [0, 1, 0] }", "is (0.000000, 1.000000"),
+        ("translational-planar-4dof", "^axis = [1, 0, 0]", "square to the intersection motion"),
+        ("double-spherical-5dof", "lower = { ^x = [1, 0, 1] }", "[task] lower.x is (0.707107"),
+        (
+            "double-spherical-5dof",
+            "lower = { ^origin = [1, 0, 1] }",
+            "this spherical subspace has x",
+        ),
+        ("plano-cylindrical-4dof", "upper = { ^origin = [1, 0, 1] }", "has nothing to choose"),
+        ("schoenflies-4dof", "lower = { ^normal = [0, 0, 1] }", "has x, origin to choose"),
+        ("schoenflies-4dof", "upper = { ^x = [1, 0, 0] }", "this cylindrical subspace has origin"),
+    ];
+    for (name, task, message) in pairs {
+        let shipped = opm(&["examples", name]).text().to_owned();
+        // The mark is before the key; the place is that of its value.
+        let plain = task.replace('^', "");
+        let head = format!("[task]\n{plain}\n\n[platform]");
+        let text = shipped.replacen("[platform]", &head, 1);
+        let line = text[..text.find(&plain).unwrap()].matches('\n').count() + 1;
+        let key = task.find('^').unwrap();
+        let column = key + plain[key..].find("= ").unwrap() + 3;
+        let file = folder.write("bad.toml", text);
+        let place = format!("bad.toml:{line}:{column}: [task]");
+        for command in [&["decompose", &file][..], &["ik", &file, "--pose", ""]] {
+            opm(command).fails_with_one_line(1, &[&place, message]);
+        }
+    }
 }

@@ -46,7 +46,7 @@ fn imaginary_joints_are_the_published_ones() {
 #[test]
 fn one_solution_has_every_joint() {
     let found = ik(&[PLANO, "--pose", "x=10mm,xi=15deg"]);
-    assert_eq!(keys(&found), ["pose", "reachable", "solutions", "unreachable"]);
+    assert_eq!(keys(&found), ["pose", "reachable", "solutions", "unreachable", "transform"]);
     assert_eq!(keys(&found["pose"]), ["x", "y", "zeta", "xi", "psi"]);
     assert_eq!(number(&found["pose"]["x"]), 0.01);
     assert!((number(&found["pose"]["xi"]) - 15.0_f64.to_radians()).abs() < EXACT);
@@ -62,6 +62,70 @@ fn one_solution_has_every_joint() {
     for name in ["S1", "phi11", "theta33", "phi24", "s4.x", "s4.y", "s4.z"] {
         assert!(joints.contains(&name), "{name} in {joints:?}");
     }
+}
+
+/// The place of a pose in SE(3), given back, is that pose; here with R = Rz(zeta) Ry(xi) Rz(psi).
+#[test]
+fn a_transform_is_a_pose_and_back() {
+    for (file, pose) in [
+        (PLANO, "x=10mm,y=-20mm,zeta=30deg,xi=20deg,psi=-10deg"),
+        (HELICAL, "x=20mm,y=5mm,phi=40deg"),
+        ("planar-planar-5dof-joints", "x=20mm,theta=10deg,w=320mm,phi=-5deg"),
+        ("schoenflies-4dof", "x=20mm,phi=40deg,z=-170mm"),
+        ("translational-planar-4dof", "x=20mm,y=-10mm,w=310mm,phi=5deg"),
+    ] {
+        let by_pose = ik(&[file, "--pose", pose]);
+        let transform = &by_pose["transform"];
+        let parts = ["position", "quaternion"].map(|key| transform[key].as_array().unwrap());
+        let numbers: Vec<String> = parts.into_iter().flatten().map(Value::to_string).collect();
+        let by_transform = ik(&[file, "--transform", &numbers.join(",")]);
+        assert_eq!(keys(&by_transform), keys(&by_pose));
+        for (name, value) in by_pose["pose"].as_object().unwrap() {
+            let off = number(value) - number(&by_transform["pose"][name]);
+            assert!(off.abs() < 1e-8, "{file} {name} {off}");
+        }
+        let joints = |found: &Value| found["solutions"][0]["joints"].clone();
+        for (name, value) in joints(&by_pose).as_object().unwrap() {
+            let off = number(value) - number(&joints(&by_transform)[name]);
+            assert!(off.abs() < 1e-7, "{file} {name} {off}");
+        }
+    }
+    let found = ik(&[PLANO, "--pose", "x=10mm,y=-20mm,xi=60deg"]);
+    let quaternion = found["transform"]["quaternion"].as_array().unwrap();
+    // Half the angle about y.
+    for (part, expected) in quaternion.iter().zip([0.75_f64.sqrt(), 0.0, 0.5, 0.0]) {
+        assert!((number(part) - expected).abs() < EXACT);
+    }
+    for (part, expected) in
+        found["transform"]["position"].as_array().unwrap().iter().zip([0.01, -0.02, 0.0])
+    {
+        assert!((number(part) - expected).abs() < EXACT);
+    }
+}
+
+/// A transform off the plane of the lower section: by how much, and along what.
+#[test]
+fn a_transform_outside_the_motion_is_told_how_far() {
+    let transform = ["--transform", "10mm,0,20mm,0.8,0,0.6,0"];
+    let found = ik(&[PLANO, transform[0], transform[1]]);
+    assert_eq!(found["reachable"], false);
+    assert_eq!(found["solutions"], Value::Array(vec![]));
+    let translation = found["outside"]["translation"].as_array().unwrap();
+    for (found, expected) in translation.iter().zip([0.0, 0.0, 0.02]) {
+        assert!((number(found) - expected).abs() < 1e-9);
+    }
+    assert!((number(&found["pose"]["x"]) - 0.01).abs() < 1e-9, "the nearest pose");
+    let run = opm(&["ik", PLANO, transform[0], transform[1]]);
+    let text =
+        "outside the manipulator's motion by 20 mm along (0, 0, 1)\nnearest pose: x = 10.000";
+    assert!(run.text().contains(text), "{}", run.stdout);
+    // Three translations and a turn about z: a tilt is outside.
+    let tilted = "0,340mm,-150mm,0.996195,0.0871557,0,0";
+    let run = opm(&["ik", "schoenflies-4dof", "--transform", tilted]);
+    assert!(run.text().contains("motion by 9.99999 deg about (1, 0, 0)\n"), "{}", run.stdout);
+    // Six digits are as good as in the motion.
+    let rounded = "0,0,0,0.996195,0,0.0871557,0";
+    assert_eq!(ik(&[PLANO, "--transform", rounded])["reachable"], true);
 }
 
 /// The sliders of the helical manipulator by the paper's linear formula, corrected.

@@ -9,6 +9,7 @@ mod linkage;
 mod plot;
 mod run;
 mod small;
+mod trajectory;
 mod workspace;
 
 /// The paper's first manipulator, as it is shipped.

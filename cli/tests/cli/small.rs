@@ -22,6 +22,20 @@ fn examples_are_listed_and_printed() {
 }
 
 #[test]
+fn motions_are_listed_and_printed() {
+    let list = opm(&["examples", "--format", "json"]).json();
+    let motions = list["motions"].as_array().unwrap();
+    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/motions");
+    assert_eq!(motions.len(), std::fs::read_dir(files).unwrap().count());
+    for motion in motions {
+        assert_eq!(keys(motion), ["name", "mechanism", "description"]);
+        let name = motion["name"].as_str().unwrap();
+        assert!(opm(&["examples"]).text().contains(name));
+        assert!(opm(&["examples", name]).text().contains(&format!("name = \"{name}\"")));
+    }
+}
+
+#[test]
 fn a_printed_example_is_a_mechanism_file() {
     let folder = Folder::new();
     let file = folder.write("mine.toml", opm(&["examples", PLANO]).text());
@@ -53,8 +67,10 @@ fn completions_know_the_subcommands() {
 #[test]
 fn help_and_version_go_to_standard_output() {
     assert_eq!(opm(&["--version"]).text(), concat!("opm ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in
-        ["decompose", "ik", "linkage", "workspace", "plot", "inspect", "examples", "completions"]
+    for command in [
+        "decompose", "ik", "linkage", "trajectory", "workspace", "plot", "inspect", "examples",
+        "completions",
+    ]
     {
         let help = opm(&[command, "--help"]);
         assert!(help.text().contains("Examples:\n  opm "), "{}", help.stdout);
@@ -73,7 +89,7 @@ fn record_for_plots(folder: &Folder) {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "linkage", "workspace", "plot", "examples"] {
+    for command in ["decompose", "ik", "linkage", "trajectory", "workspace", "plot", "examples"] {
         if command == "plot" {
             record_for_plots(&folder);
         }
@@ -92,8 +108,8 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                let files = ["cloud.mcap", "cloud.svg", "joints.csv", "joints.svg", "tilted.png"];
-                if files.contains(&&**arg) || arg.starts_with("turn.") {
+                let written = [".mcap", ".svg", ".png"].iter().any(|ending| arg.ends_with(ending));
+                if written || *arg == "joints.csv" {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

@@ -14,6 +14,7 @@
 
 pub mod cylindrical;
 pub mod planar;
+pub mod region;
 pub mod spherical;
 pub mod translational;
 

@@ -3,6 +3,7 @@
 use crate::joint::{Joint, JointCoordinate};
 use crate::screw::Screw;
 use nalgebra::{Isometry3, Vector3};
+use std::fmt;
 
 /// How a leg's imaginary joint is reported, where the mechanism has a convention for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +62,24 @@ impl Leg {
             let (own, after) = rest.split_at(joint.freedoms());
             rest = after;
             g * joint.displacement(own)
+        })
+    }
+}
+
+/// One of the two sections of a leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Section {
+    /// Base side, inside `A`.
+    Lower,
+    /// Platform side, inside `B`.
+    Upper,
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
         })
     }
 }

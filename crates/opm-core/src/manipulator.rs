@@ -21,7 +21,7 @@ pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
-pub use reach::{Follow, Mark, Row};
+pub use reach::Follow;
 
 use crate::chain::{Amount, Chain};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};

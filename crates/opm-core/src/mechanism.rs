@@ -3,20 +3,13 @@
 pub mod examples;
 pub mod family;
 pub mod file;
+mod hints;
+
+pub use hints::{FrameHints, TaskHints, TaskKey};
 
 use crate::joint::{Joint, JointCoordinate};
 use crate::leg::Leg;
-use nalgebra::{Point3, Vector3};
-
-/// How the pose of the platform is to be measured, where the geometry alone does not say.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TaskHints {
-    /// The intersection motion's positive direction; without it, the one that points up (z, then
-    /// y, then x).
-    pub axis: Option<Vector3<f64>>,
-    /// Values of task coordinates at home, by name; the others follow from the geometry.
-    pub home: Vec<(String, f64)>,
-}
+use nalgebra::Point3;
 
 /// A parallel mechanism at an assembled home pose, in base coordinates: metres and radians.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,8 +9,8 @@ mod class;
 mod frame;
 
 pub(crate) use basis::Basis;
-pub use class::SubspaceClass;
-pub(crate) use class::{Fit, fit};
+pub(crate) use class::{Fit, fit, points_up, upward};
+pub use class::{SubspaceClass, UP};
 pub use frame::Frame;
 
 use crate::screw::Screw;

@@ -15,6 +15,31 @@
 //! `theta phi` turn about the normal or the axis, `zeta xi psi` are Euler angles
 //! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
+//!
+//! # Frames
+//!
+//! Each section has a frame, fixed in the base: three directions, the point that lengths are measured
+//! from, and the reference point at home, about which angles turn. They follow from the geometry of
+//! the two subspaces and the base's directions alone:
+//!
+//! * The axis `d` of `I`, where it is a rotation or along a cylinder, is the third direction of both
+//!   frames. It *points up*: positive z, of nearly level directions positive y, of those nearly along
+//!   x positive x ([`UP`](crate::subspace::UP) is what decides).
+//! * `x` is the base's x laid into the plane, or its y where x is within 6 degrees of the normal; in
+//!   a sphere likewise, into the plane square to `d`. `y` is a quarter turn ahead of it about the third
+//!   direction.
+//! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
+//!   is upright, `y` points up. In between, the sum of both does.
+//! * `w` points up.
+//! * The reference point is the platform's, moved to the axis of `I` where that is a rotation, to a
+//!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin.
+//!
+//! For a level plane, `x y` are the base's. No rule has a seam near the directions of usual designs:
+//! a mechanism that is turned a little has its frames turned a little.
+//!
+//! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can say otherwise: the sense of `d`,
+//! of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; home's
+//! values follow. A plane's normal is not free where `I` turns about it: `axis` decides it.
 
 mod displacement;
 mod subspace;
@@ -25,10 +50,13 @@ pub use subspace::{Subspace, SubspaceKind};
 use crate::chain::unit;
 use crate::decomposition::Decomposition;
 use crate::joint::Quantity;
-use crate::mechanism::Mechanism;
+use crate::leg::Section;
+use crate::mechanism::{Mechanism, TaskKey};
 use crate::subspace::{SubspaceClass, TOLERANCE};
 use displacement::{cylindrical, planar};
-use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, Vector3};
+use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use std::fmt;
+use subspace::Meeting;
 
 /// One coordinate of the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +93,14 @@ pub enum TaskError {
         /// The intersection motion's.
         along: [f64; 3],
     },
+    /// The mechanism's hint on a frame does not fit the geometry.
+    #[error("[task] {key} {problem}")]
+    Frame {
+        /// Which hint.
+        key: TaskKey,
+        /// Why it does not fit.
+        problem: FrameProblem,
+    },
     /// The mechanism names a coordinate that its subspaces do not have.
     #[error("home gives `{name}`, but the task coordinates are {expected}")]
     Unknown {
@@ -75,7 +111,67 @@ pub enum TaskError {
     },
 }
 
-fn triple([x, y, z]: &[f64; 3]) -> String {
+impl TaskError {
+    /// The hint that is to blame, if one is.
+    pub fn key(&self) -> Option<TaskKey> {
+        match self {
+            Self::Axis { .. } => Some(TaskKey::Axis),
+            Self::Frame { key, .. } => Some(*key),
+            Self::Subspace(_) | Self::Screw | Self::Unknown { .. } => None,
+        }
+    }
+}
+
+/// Why a hint on a frame does not fit the geometry. Directions have unit length.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FrameProblem {
+    /// The geometry, or another hint, leaves nothing to choose.
+    NotFree {
+        /// The subspace.
+        kind: SubspaceKind,
+        /// What can be chosen.
+        free: Vec<&'static str>,
+    },
+    /// It is not along the line that it is to choose a sense of.
+    NotAlong {
+        /// The direction given.
+        given: [f64; 3],
+        /// The line's.
+        line: [f64; 3],
+    },
+    /// It is not square to the normal or to the intersection motion.
+    NotSquare {
+        /// The direction given.
+        given: [f64; 3],
+        /// The normal's, or the intersection motion's.
+        to: [f64; 3],
+    },
+}
+
+impl fmt::Display for FrameProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFree { kind, free } => {
+                write!(f, "is not free: the frame of this {kind} subspace ")?;
+                match &**free {
+                    [] => write!(f, "has nothing to choose"),
+                    free => write!(f, "has {} to choose", free.join(", ")),
+                }
+            }
+            Self::NotAlong { given, line } => {
+                let (given, back) = (triple(given), triple(&line.map(|c| -c)));
+                write!(f, "is {given}, expected {} or {back}", triple(line))
+            }
+            Self::NotSquare { given, to } => {
+                write!(f, "is {}, expected a direction square to {}", triple(given), triple(to))
+            }
+        }
+    }
+}
+
+fn triple(v: &[f64; 3]) -> String {
+    // Adding zero turns -0 into 0.
+    let [x, y, z] = v.map(|c| (c * 1e6).round() / 1e6 + 0.0);
     format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
@@ -108,7 +204,8 @@ impl Task {
     ///
     /// # Errors
     /// A subspace or an intersection motion that no chain covers, a positive direction square to
-    /// that motion, or a home value for a coordinate that there is not.
+    /// that motion, a hint on a frame that does not fit the geometry, or a home value for a
+    /// coordinate that there is not.
     pub fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, TaskError> {
         let (axis, point) = match &decomposition.intersection {
             SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
@@ -120,11 +217,12 @@ impl Task {
         {
             return Err(TaskError::Axis { given: hint.into(), along: axis.into_inner().into() });
         }
-        let frame = |class: &SubspaceClass, along_axis: bool| {
-            Subspace::new(class, axis, point, &mechanism.platform, along_axis)
+        let meeting = Meeting { axis, point, platform: mechanism.platform };
+        let frame = |class: &SubspaceClass, section: Section| {
+            Subspace::new(class, section, &meeting, mechanism.task.frame(section))
         };
-        let lower = frame(&decomposition.lower, false)?;
-        let upper = frame(&decomposition.upper, true)?;
+        let lower = frame(&decomposition.lower, Section::Lower)?;
+        let upper = frame(&decomposition.upper, Section::Upper)?;
         let rotation = point.is_some();
         let mut coordinates = lower_coordinates(lower.kind, rotation, &lower);
         let lower_count = coordinates.len();
@@ -209,6 +307,16 @@ impl Task {
             * self.upper.isometry(&self.upper(&pose[self.lower_count..]))
     }
 
+    /// The platform's orientation at home, base coordinates: where Euler angles measure it that of
+    /// their home values about the upper frame's axes, else none.
+    pub fn home_orientation(&self) -> UnitQuaternion<f64> {
+        let Some(inverse) = self.home_orientation_inverse else {
+            return UnitQuaternion::identity();
+        };
+        let turn = self.upper.axes * inverse.transpose() * self.upper.axes.transpose();
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn))
+    }
+
     /// The pose at home.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
@@ -240,9 +348,9 @@ const fn angle(name: &'static str) -> TaskCoordinate {
     TaskCoordinate { name, quantity: Quantity::Angle, home: 0.0 }
 }
 
-/// Home values of lengths are those of the reference point, measured from the base's origin.
+/// Home values of lengths are those of the reference point.
 fn lower_coordinates(kind: SubspaceKind, rotation: bool, frame: &Subspace) -> Vec<TaskCoordinate> {
-    let at = frame.axes.tr_mul(&frame.origin.coords);
+    let at = frame.home();
     match (kind, rotation) {
         (SubspaceKind::Planar, true) | (SubspaceKind::TranslationalPlane, _) => {
             vec![length("x", at.x), length("y", at.y)]
@@ -257,7 +365,7 @@ fn lower_coordinates(kind: SubspaceKind, rotation: bool, frame: &Subspace) -> Ve
 }
 
 fn upper_coordinates(kind: SubspaceKind, rotation: bool, frame: &Subspace) -> Vec<TaskCoordinate> {
-    let at = frame.axes.tr_mul(&frame.origin.coords);
+    let at = frame.home();
     match (kind, rotation) {
         (SubspaceKind::Spherical, _) => vec![angle("zeta"), angle("xi"), angle("psi")],
         (SubspaceKind::Planar, true) => vec![length("x", at.x), length("y", at.y), angle("phi")],

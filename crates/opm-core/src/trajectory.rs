@@ -25,13 +25,14 @@
 mod gauge;
 mod watch;
 
-pub use gauge::{Bound, Gauge, Violation};
+pub use gauge::{Bound, Gauge, Part, Violation};
 pub use watch::Change;
 
+use crate::joint::Quantity;
 use crate::limits::Limits;
-use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
+use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
 use crate::motion::{Instant, Motion};
-use crate::velocity::{self, Jacobians, VelocityError};
+use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
 
 /// Times are found to this share of the step between two samples.
 pub const RESOLUTION: f64 = 1e-10;
@@ -87,8 +88,12 @@ pub struct Sample {
     pub regular: bool,
     /// Rates and accelerations of the joints.
     pub motion: velocity::Motion,
-    /// Singularity measures and condition number; see [`Sample::condition`].
-    condition: f64,
+    /// Condition number of the actuated joints' Jacobian; infinite in a singularity and out of reach.
+    pub condition: f64,
+    /// Singularity measures of the upper section.
+    pub upper: Measures,
+    /// Singularity measures of the lower section.
+    pub lower: Measures,
     /// Of every gauge; `None` where it says nothing.
     levels: Vec<Option<f64>>,
     /// Their derivatives by time, of which the signs are to be relied on.
@@ -96,9 +101,41 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Condition number of the actuated joints' Jacobian; infinite in a singularity and out of reach.
-    pub fn condition(&self) -> f64 {
-        self.condition
+    fn new(solver: &Solver<'_>) -> Self {
+        let manipulator = solver.manipulator;
+        Self {
+            time: solver.motion.start,
+            instant: Instant::new(manipulator.task_coordinates().len()),
+            reached: false,
+            solution: manipulator.solution(),
+            regular: false,
+            motion: manipulator.motion(),
+            condition: f64::INFINITY,
+            upper: Measures::default(),
+            lower: Measures::default(),
+            levels: vec![None; solver.gauges.len()],
+            slopes: vec![None; solver.gauges.len()],
+        }
+    }
+
+    /// Takes over what another sample of the same manipulator holds, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Instant { pose, velocity, acceleration } = &other.instant;
+        self.time = other.time;
+        self.instant.pose.clone_from(pose);
+        self.instant.velocity.clone_from(velocity);
+        self.instant.acceleration.clone_from(acceleration);
+        (self.reached, self.regular) = (other.reached, other.regular);
+        self.solution.copy_from(&other.solution);
+        self.motion.joint_rates.clone_from(&other.motion.joint_rates);
+        self.motion.joint_accelerations.clone_from(&other.motion.joint_accelerations);
+        self.motion.imaginary_rates.clone_from(&other.motion.imaginary_rates);
+        self.motion.imaginary_accelerations.clone_from(&other.motion.imaginary_accelerations);
+        self.motion.singular.clone_from(&other.motion.singular);
+        self.condition = other.condition;
+        (self.upper, self.lower) = (other.upper, other.lower);
+        self.levels.clone_from(&other.levels);
+        self.slopes.clone_from(&other.slopes);
     }
 
     /// The pose is in reach and within all limits.
@@ -109,22 +146,30 @@ impl Sample {
 
 /// A motion as a manipulator follows it, sample by sample.
 pub struct Trajectory<'a> {
+    solver: Solver<'a>,
+    samples: u64,
+    next: u64,
+    previous: Sample,
+    current: Sample,
+    /// Room for what is looked at beside a sample.
+    probe: Sample,
+    open: Vec<Option<Violation>>,
+    changes: Vec<Change>,
+}
+
+/// What solves one instant.
+struct Solver<'a> {
     manipulator: &'a Manipulator,
     motion: &'a Motion,
     mode: Mode,
     rate: f64,
-    samples: u64,
     gauges: Vec<Gauge>,
     /// The leg of every joint coordinate.
     legs: Vec<usize>,
     /// For the condition number, metres.
     length: f64,
-    next: u64,
-    previous: Sample,
-    current: Sample,
     jacobians: Jacobians,
-    open: Vec<Option<Violation>>,
-    changes: Vec<Change>,
+    measured: Singularities,
 }
 
 /// Which way a slope is looked for: a motion has nothing beyond its ends.
@@ -132,6 +177,15 @@ pub struct Trajectory<'a> {
 enum Look {
     Ahead,
     Back,
+}
+
+/// Where the angles of a solution start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turns {
+    /// From home.
+    Home,
+    /// From what the solution held before.
+    Held,
 }
 
 impl<'a> Trajectory<'a> {
@@ -158,36 +212,31 @@ impl<'a> Trajectory<'a> {
         // A whole number of steps that rounding has left a little short is whole.
         let whole = (steps * (1.0 + 1e-12)).floor();
         let samples = whole as u64 + 1 + u64::from(steps - whole > 1e-6);
-        let gauges = gauge::gauges(manipulator);
-        let sample = Sample {
-            time: motion.start,
-            instant: Instant::new(manipulator.task_coordinates().len()),
-            reached: false,
-            solution: manipulator.solution(),
-            regular: false,
-            motion: manipulator.motion(),
-            condition: f64::INFINITY,
-            levels: vec![None; gauges.len()],
-            slopes: vec![None; gauges.len()],
-        };
-        let legs = &manipulator.mechanism().legs;
-        Ok(Self {
+        let measured = manipulator.singularities();
+        let legs = manipulator.mechanism().legs.iter().enumerate();
+        let solver = Solver {
             manipulator,
             motion,
             mode,
             rate,
-            samples,
-            open: vec![None; gauges.len()],
-            gauges,
-            legs: (legs.iter().enumerate())
+            gauges: gauge::gauges(manipulator),
+            legs: legs
                 .flat_map(|(number, leg)| leg.coordinates().map(move |_| number))
                 .collect(),
             length: manipulator.characteristic_length(),
+            jacobians: manipulator.jacobians(),
+            measured,
+        };
+        let sample = Sample::new(&solver);
+        Ok(Self {
+            samples,
             next: 0,
             previous: sample.clone(),
-            current: sample,
-            jacobians: manipulator.jacobians(),
+            current: sample.clone(),
+            probe: sample,
+            open: vec![None; solver.gauges.len()],
             changes: Vec::new(),
+            solver,
         })
     }
 
@@ -198,17 +247,18 @@ impl<'a> Trajectory<'a> {
 
     /// What is watched.
     pub fn gauges(&self) -> &[Gauge] {
-        &self.gauges
+        &self.solver.gauges
     }
 
     /// When the sample of this number is, seconds.
     pub fn time(&self, number: u64) -> f64 {
-        let time = self.motion.start + number as f64 / self.rate;
-        if number + 1 >= self.samples { self.motion.end() } else { time }
+        let motion = self.solver.motion;
+        let time = motion.start + number as f64 / self.solver.rate;
+        if number + 1 >= self.samples { motion.end() } else { time }
     }
 
-    /// Goes on to the next sample, [`Trajectory::sample`]; `false` after the last. What happened since the
-    /// one before it, and at it, is in [`Trajectory::changes`].
+    /// Goes on to the next sample, [`Trajectory::sample`]; `false` after the last. What happened since
+    /// the one before it, and at it, is in [`Trajectory::changes`].
     ///
     /// # Errors
     /// Poses or velocities that cannot be computed with.
@@ -217,18 +267,19 @@ impl<'a> Trajectory<'a> {
         if self.next >= self.samples {
             return Ok(false);
         }
-        let number = self.next;
+        let (number, time) = (self.next, self.time(self.next));
         self.next += 1;
+        let last = self.next == self.samples;
         std::mem::swap(&mut self.previous, &mut self.current);
-        let look = if self.next == self.samples { Look::Back } else { Look::Ahead };
-        let time = self.time(number);
-        let mut sample = std::mem::replace(&mut self.current, self.previous.clone());
-        self.take(time, number == 0, &mut sample)?;
-        self.slope(&mut sample, look)?;
-        self.current = sample;
+        self.current.solution.copy_from(&self.previous.solution);
+        let turns = if number == 0 { Turns::Home } else { Turns::Held };
+        self.solver.solve(time, turns, &mut self.current)?;
+        self.solver.rates(&mut self.current)?;
+        let look = if last { Look::Back } else { Look::Ahead };
+        self.solver.slope(&mut self.current, look, &mut self.probe)?;
         if number == 0 {
             self.begin();
-        } else {
+        } else if self.eventful() {
             let (from, to) = (self.previous.clone(), self.current.clone());
             self.watch(&from, &to)?;
         }
@@ -251,50 +302,53 @@ impl<'a> Trajectory<'a> {
     pub fn open(&self) -> impl Iterator<Item = &Violation> {
         self.open.iter().flatten()
     }
+}
 
-    /// Solves everything at one time: joints near those that `out` holds, but for the first.
-    fn take(&mut self, time: f64, first: bool, out: &mut Sample) -> Result<(), TrajectoryError> {
-        self.solve(time, first, out)?;
-        out.regular = false;
-        out.condition = f64::INFINITY;
+impl Solver<'_> {
+    /// The joints, how near to singular they are, and the gauges, at one time.
+    fn solve(&mut self, time: f64, turns: Turns, out: &mut Sample) -> Result<(), TrajectoryError> {
+        let manipulator = self.manipulator;
+        out.time = time;
+        self.motion.at(time, &mut out.instant);
+        let (pose, solution) = (&out.instant.pose, &mut out.solution);
+        let reached = match turns {
+            Turns::Home => manipulator.inverse(pose, self.mode, solution),
+            Turns::Held => manipulator.inverse_near(pose, self.mode, solution),
+        };
+        out.reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
+        if out.reached {
+            let differentiated = manipulator.differentiate(&out.solution, &mut self.jacobians);
+            differentiated.map_err(|source| TrajectoryError::Velocity { time, source })?;
+            manipulator.measure_singularities(&self.jacobians, &mut self.measured);
+            (out.upper, out.lower) = (self.measured.upper, self.measured.lower);
+        }
+        for (&gauge, level) in self.gauges.iter().zip(&mut out.levels) {
+            *level = self.level(gauge, &out.solution);
+        }
+        Ok(())
+    }
+
+    /// Rates of the joints and the condition number at the solution that was found last.
+    fn rates(&mut self, out: &mut Sample) -> Result<(), TrajectoryError> {
+        (out.regular, out.condition) = (false, f64::INFINITY);
         if out.reached {
             let Instant { velocity, acceleration, .. } = &out.instant;
-            let rates =
-                self.manipulator.velocity(&out.solution, velocity, acceleration, &mut out.motion);
+            let (solution, motion) = (&out.solution, &mut out.motion);
+            let rates = self.manipulator.velocity(solution, velocity, acceleration, motion);
             out.regular = match rates {
                 Ok(regular) => regular,
                 Err(VelocityError::Overflow { .. }) => false,
-                Err(source) => return Err(TrajectoryError::Velocity { time, source }),
+                Err(source) => return Err(TrajectoryError::Velocity { time: out.time, source }),
             };
             out.condition = self.manipulator.conditioning(&self.jacobians, self.length).condition;
         }
         Ok(())
     }
 
-    /// The joints and the gauges at one time.
-    fn solve(&mut self, time: f64, first: bool, out: &mut Sample) -> Result<(), TrajectoryError> {
-        out.time = time;
-        self.motion.at(time, &mut out.instant);
-        let (pose, solution) = (&out.instant.pose, &mut out.solution);
-        let reached = if first {
-            self.manipulator.inverse(pose, self.mode, solution)
-        } else {
-            self.manipulator.inverse_near(pose, self.mode, solution)
-        };
-        out.reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
-        if out.reached {
-            let differentiated = self.manipulator.differentiate(&out.solution, &mut self.jacobians);
-            differentiated.map_err(|source| TrajectoryError::Velocity { time, source })?;
-        }
-        for number in 0..self.gauges.len() {
-            out.levels[number] = self.level(self.gauges[number], &out.solution);
-        }
-        Ok(())
-    }
-
-    /// What a gauge says of a solution, whose Jacobians are there if it is in reach.
+    /// What a gauge says of a solution, whose measures are there if it is in reach.
     fn level(&self, gauge: Gauge, solution: &Solution) -> Option<f64> {
         let gap = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
+        let reached = solution.unreachable.is_empty();
         match gauge {
             Gauge::Reach { leg } => Some(match gap(leg) {
                 Some(unreachable) => -self.depth(unreachable),
@@ -314,9 +368,15 @@ impl<'a> Trajectory<'a> {
                     Bound::Highest => high - value,
                 })
             }
-            Gauge::Parallel { section } => {
-                let all = solution.unreachable.is_empty();
-                let _ = section; all.then_some(1.0)
+            Gauge::Parallel { part } => {
+                let Singularities { upper, lower, whole, .. } = &self.measured;
+                let both = upper.parallel.is_some() && lower.parallel.is_some();
+                let measure = match part {
+                    Part::Section(Section::Upper) => upper.parallel,
+                    Part::Section(Section::Lower) => lower.parallel,
+                    Part::Whole => whole.parallel.filter(|_| !both),
+                };
+                measure.filter(|_| reached)
             }
         }
     }
@@ -324,17 +384,23 @@ impl<'a> Trajectory<'a> {
     /// A gap without a unit.
     fn depth(&self, unreachable: &Unreachable) -> f64 {
         let scale = match unreachable.gap.quantity {
-            crate::joint::Quantity::Angle => 1.0,
-            crate::joint::Quantity::Length => self.length,
+            Quantity::Angle => 1.0,
+            Quantity::Length => self.length,
         };
         unreachable.gap.excess / scale
     }
 
     /// Finds the slopes of the gauges of a sample.
-    fn slope(&mut self, sample: &mut Sample, look: Look) -> Result<(), TrajectoryError> {
-        let step = SLOPE_STEP / self.rate * if look == Look::Ahead { 1.0 } else { -1.0 };
-        let mut probe = sample.clone();
-        self.solve(sample.time + step, false, &mut probe)?;
+    fn slope(
+        &mut self,
+        sample: &mut Sample,
+        look: Look,
+        probe: &mut Sample,
+    ) -> Result<(), TrajectoryError> {
+        let step = SLOPE_STEP / self.rate;
+        let time = if look == Look::Ahead { sample.time + step } else { sample.time - step };
+        probe.solution.copy_from(&sample.solution);
+        self.solve(time, Turns::Held, probe)?;
         // As far as doubles have gone.
         let step = probe.time - sample.time;
         for (number, slope) in sample.slopes.iter_mut().enumerate() {

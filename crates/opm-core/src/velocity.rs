@@ -24,10 +24,12 @@ mod rotation_vector;
 mod screws;
 mod section;
 mod serial;
+mod singularity;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
 pub(crate) use section::determinant_scale;
+pub use singularity::{Cause, Measures, Singularities};
 
 use crate::chain::Amount;
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
@@ -72,13 +74,26 @@ pub enum VelocityError {
     },
 }
 
-/// A leg that has no rates: a section of it is singular.
+/// A leg with joints that have no rates; [`Manipulator::rateless`] says which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularLeg {
     /// Number of the leg.
     pub leg: usize,
-    /// Which of its sections: a serial singularity of that.
+    /// Where in it.
     pub section: Section,
+    /// Why.
+    pub cause: SingularCause,
+}
+
+/// Why joints have no rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SingularCause {
+    /// The screws of the section's joints are dependent: a serial singularity, where the platform
+    /// cannot go every way and the joints of the section would have to be infinitely fast to go the others.
+    Serial,
+    /// A spherical joint has made a whole turn, where its rotation vector has no derivative. The
+    /// mechanism is not singular there.
+    RotationVector,
 }
 
 /// Rates and accelerations of every joint; made by [`Manipulator::motion`].
@@ -92,7 +107,7 @@ pub struct Motion {
     pub imaginary_rates: Vec<f64>,
     /// Acceleration of every imaginary joint, in the same order.
     pub imaginary_accelerations: Vec<f64>,
-    /// The legs that have no rates. The numbers of their joints are zeros that mean nothing.
+    /// The legs with joints that have no rates: for these the numbers are zeros that mean nothing.
     pub singular: Vec<SingularLeg>,
 }
 
@@ -118,11 +133,12 @@ struct LegDifferential {
 }
 
 impl LegDifferential {
-    /// The section that has no rates, if one has none.
     #[inline]
-    fn singular(&self) -> Option<Section> {
-        let sections = [(&self.lower, Section::Lower), (&self.upper, Section::Upper)];
-        sections.into_iter().find(|(differential, _)| differential.is_singular()).map(|(_, s)| s)
+    fn section(&self, section: Section) -> &Differential {
+        match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        }
     }
 }
 
@@ -140,8 +156,8 @@ impl Manipulator {
     }
 
     /// Rates and accelerations of every joint at a solved pose, for first and second time derivatives
-    /// of the task coordinates: in rad/s, m/s and their like. `false` where a leg is singular and has
-    /// none (`out.singular` says which); the other legs have theirs. Nothing is allocated.
+    /// of the task coordinates: in rad/s, m/s and their like. `false` where a joint has none: `out.singular`
+    /// says in which legs; the others have theirs. Nothing is allocated.
     ///
     /// `at` is what [`Manipulator::inverse`] and its kind made of a pose; a new
     /// [`Manipulator::solution`] is home.
@@ -165,12 +181,10 @@ impl Manipulator {
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);
-            let motion = match leg.singular() {
-                Some(section) => {
-                    out.singular.push(SingularLeg { leg: number, section });
-                    LegMotion::NONE
-                }
-                None => self.leg_motion(at, number, &leg, &drive),
+            let motion = if self.note_singular(number, &leg, &mut out.singular) {
+                self.leg_motion(at, number, &leg, &drive)
+            } else {
+                LegMotion::NONE
             };
             if !motion.is_finite() {
                 return Err(VelocityError::Overflow { leg: number });
@@ -207,6 +221,45 @@ impl Manipulator {
             v: of(&task.lower_screws(pose), |all, count| &all[..count]),
             b: of(&task.upper_screws(pose), |all, count| &all[count..]),
         }
+    }
+
+    /// Notes where a leg has no rates; `false` where it has none at all, since the section that is
+    /// solved first has none.
+    #[inline]
+    fn note_singular(
+        &self,
+        leg: usize,
+        differential: &LegDifferential,
+        singular: &mut Vec<SingularLeg>,
+    ) -> bool {
+        for (turn, section) in self.legs[leg].order().into_iter().enumerate() {
+            let Some(cause) = differential.section(section).singular() else { continue };
+            singular.push(SingularLeg { leg, section, cause });
+            if turn == 0 && cause == SingularCause::Serial {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Numbers of the joint coordinates that have no rates: those of the singular section and, where
+    /// that is solved first, of the other; of a spherical joint at a whole turn its own.
+    pub fn rateless(&self, singular: &SingularLeg) -> impl Iterator<Item = usize> + '_ {
+        let leg = &self.legs[singular.leg];
+        let whole = singular.cause == SingularCause::Serial && leg.cut == singular.section;
+        let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
+        let section = singular.section;
+        sections
+            .into_iter()
+            .filter(move |(_, other)| whole || *other == section)
+            .flat_map(|(section, _)| section.slots.iter().flatten().map(|slot| slot.coordinate))
+    }
+
+    /// The number of the imaginary joint that has no rate either.
+    pub fn rateless_imaginary(&self, singular: &SingularLeg) -> Option<usize> {
+        let leg = &self.legs[singular.leg];
+        let lost = singular.cause == SingularCause::Serial && leg.cut == singular.section;
+        leg.imaginary.filter(|_| lost)
     }
 
     #[inline]

@@ -6,8 +6,8 @@
 //! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: a double a joint coordinate |
 //! | `/imaginary_joints`, `/imaginary_velocities` | a double an imaginary joint |
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
-//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know it |
-//! | `/tf` | `foxglove.FrameTransforms`: where every body is |
+//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know it; at most 200 a second |
+//! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 200 a second |
 //! | `/scene` | one `foxglove.SceneUpdate`: what the bodies look like, each in its own frame |
 //! | `/bodies/NAME` | one `foxglove.PointCloud` a body, for viewers without scenes: its surface |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
@@ -62,6 +62,10 @@ pub const SCENE_TOPIC: &str = "/scene";
 pub const VIOLATIONS_TOPIC: &str = "/violations";
 /// What the names of the bodies' clouds begin with.
 pub const BODIES_TOPIC: &str = "/bodies/";
+
+/// What is looked at, `/tf` and `/joint_states`, comes at most every so many nanoseconds: three times
+/// as often as screens show pictures. All values of all samples are on the other topics.
+pub const PICTURE_PERIOD: u64 = 5_000_000;
 
 /// The field of `/condition` that says whether the mechanism can be there.
 pub const VALID: &str = "valid";
@@ -147,7 +151,8 @@ pub struct Posture<'a> {
     pub imaginary: &'a [f64],
     /// How they move; `None` in a singularity, where that is not known.
     pub rates: Option<Rates<'a>>,
-    /// The frame of every body in its parent's, the base's left out.
+    /// The frame of every body in its parent's, the base's left out. Only read where
+    /// [`TrajectoryRecorder::shows`] says so.
     pub frames: &'a [Frame],
 }
 
@@ -189,6 +194,8 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     judged: Vec<f64>,
     message: Vec<u8>,
     time: u64,
+    /// When the next picture is due.
+    picture: u64,
 }
 
 impl TrajectoryRecorder {
@@ -282,6 +289,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
             judged: Vec::with_capacity(judged.len()),
             message: Vec::new(),
             time: 0,
+            picture: 0,
         };
         if !bodies.is_empty() {
             recorder.show(bodies)?;
@@ -314,6 +322,11 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(())
     }
 
+    /// Whether an instant so many nanoseconds after the start will be on `/tf` and `/joint_states`.
+    pub fn shows(&self, time: u64) -> bool {
+        time >= self.picture
+    }
+
     /// Writes one instant, `time` nanoseconds after the start.
     ///
     /// # Errors
@@ -327,6 +340,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
     }
 
     fn try_push(&mut self, time: u64, sample: &Sample<'_>) -> Result<(), RecordError> {
+        let shows = self.shows(time);
+        let next = time.saturating_add(PICTURE_PERIOD);
         let time = self.advance(time)?;
         let log = &mut self.log;
         let mut write = |topic: &mut Option<JointsTopic>, values: &[f64]| match topic {
@@ -350,6 +365,10 @@ impl<W: Sink> TrajectoryRecorder<W> {
             write(&mut self.imaginary_velocities, rates.imaginary)?;
             write(&mut self.accelerations, rates.accelerations)?;
         }
+        if !shows {
+            return Ok(());
+        }
+        self.picture = next;
         if let Some((topic, states)) = &mut self.states {
             states.timestamp = Some(stamp(time));
             for (i, state) in states.joints.iter_mut().enumerate() {

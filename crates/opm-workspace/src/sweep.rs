@@ -1,11 +1,22 @@
 //! The sweep: which poses of a grid are in reach and within the limits.
+//!
+//! The poses that share the upper section's coordinates are a slice: it is solved once, and leaves
+//! each leg a set of poses. Where that is a region of the plane, it is cut by whole rows at a time
+//! ([`cuts`]), else asked for pose by pose.
 
-use crate::grid::{Grid, fill};
+mod cuts;
+mod runs;
+mod scratch;
+
+use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
-use opm_core::manipulator::{Follow, Manipulator, Mark, Mode, Row};
+use cuts::ROWS;
+use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
+use runs::Run;
+use scratch::Scratch;
 
-/// Poses of a row that are decided together: long enough to vectorise, short enough for the cache.
+/// Poses of a row that are decided together, of which a block has room for several.
 const SEGMENT: u64 = 1024;
 
 /// Poses of a block, the unit of work: some 0.1 ms, so that threads share evenly and a request to
@@ -78,10 +89,10 @@ impl<'a> Sweep<'a> {
         let tally = (0..self.blocks())
             .into_par_iter()
             .map_init(
-                || Scratch::new(self.manipulator),
+                || Scratch::new(self),
                 |scratch, block| {
                     let mut tally = nothing();
-                    let poses = self.block(block, scratch, &mut tally, |_| {});
+                    let poses = self.block(block, scratch, &mut tally, None);
                     progress.advance(poses)?;
                     Ok(tally)
                 },
@@ -113,12 +124,12 @@ impl<'a> Sweep<'a> {
                 .collect::<Vec<_>>()
                 .into_par_iter()
                 .map_init(
-                    || Scratch::new(self.manipulator),
+                    || Scratch::new(self),
                     |scratch, block| {
                         let mut made = empty();
                         let mut tally = Tally::new(self.manipulator);
-                        let poses =
-                            self.block(block, scratch, &mut tally, |hits| make(hits, &mut made));
+                        let mut make = |hits: &Hits<'_>| make(hits, &mut made);
+                        let poses = self.block(block, scratch, &mut tally, Some(&mut make));
                         progress.advance(poses)?;
                         Ok(made)
                     },
@@ -147,40 +158,39 @@ impl<'a> Sweep<'a> {
         self.grid.poses() / self.grid.axes()[0].count
     }
 
-    /// Decides the poses of one block and returns how many they are.
+    /// Decides the poses of one block and returns how many they are. Without anybody to `hit`, they
+    /// are just counted.
     fn block(
         &self,
         block: u64,
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<'_>,
         tally: &mut Tally,
-        mut hit: impl FnMut(&Hits<'_>),
+        mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
     ) -> u64 {
         let axes = self.grid.axes();
         let lower = self.grid.lower();
-        let row_slices: u64 = axes[1..lower].iter().map(|axis| axis.count).product();
+        let along = axes[0].count;
+        // Rows that differ in the second coordinate alone, where that belongs to the lower section.
+        let side = if lower > 1 { axes[1].count } else { 1 };
+        let sheets: u64 = axes[1..lower].iter().skip(1).map(|axis| axis.count).product();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
+        let mut next = block * self.stride;
         let mut poses = 0;
-        for segment in block * self.stride..end {
-            let (row, part) = (segment / self.segments, segment % self.segments);
-            let (slice, in_slice) = (row / row_slices, row % row_slices);
-            scratch.enter_slice(self, slice);
+        while next < end {
+            let (row, part) = (next / self.segments, next % self.segments);
+            let (sheet, start) = (row / side, row % side);
+            let together = if self.segments == 1 {
+                (side - start).min(end - next).min(ROWS as u64)
+            } else {
+                1
+            };
             let from = part * SEGMENT;
-            let to = (from + SEGMENT).min(axes[0].count);
-            poses += to - from;
-            if !scratch.alive {
-                continue;
-            }
-            scratch.enter_segment(&axes[0], from, to);
-            let (lower_others, upper) = scratch.others.split_at_mut(lower - 1);
-            fill(&axes[1..lower], in_slice, lower_others);
-            debug_assert_eq!(upper.len(), axes.len() - lower);
-            let count = scratch.decide(self.manipulator, lower, tally);
-            tally.reachable += count;
-            if count > 0 {
-                scratch.hits.clear();
-                let reached = scratch.first.iter().zip(&scratch.mask);
-                scratch.hits.extend(reached.filter_map(|(&x, &hit)| (hit == 1).then_some(x)));
-                hit(&Hits { slice, first: &scratch.hits, others: &scratch.others });
+            let window = Run { from, to: (from + SEGMENT).min(along) };
+            poses += together * (window.to - window.from);
+            next += together;
+            scratch.enter_sheet(sheet / sheets, sheet % sheets);
+            if scratch.alive {
+                scratch.decide(start..start + together, window, tally, &mut hit);
             }
         }
         poses
@@ -210,125 +220,15 @@ impl Tally {
         self
     }
 
+    /// Takes the imaginary joint of a leg that follows in this way.
+    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
+        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
+            self.widen(imaginary, value);
+        }
+    }
+
     fn widen(&mut self, imaginary: usize, value: f64) {
         let range = self.imaginary[imaginary].get_or_insert([value; 2]);
         *range = [range[0].min(value), range[1].max(value)];
-    }
-}
-
-/// One way of a leg in the present slice.
-#[derive(Clone, Debug)]
-struct Way {
-    follow: Follow,
-    /// Its imaginary joint, until a reachable pose has used it.
-    pending: Option<(usize, f64)>,
-}
-
-/// A thread's working memory.
-struct Scratch {
-    slice: Option<u64>,
-    /// Every leg's upper section closes in this slice.
-    alive: bool,
-    legs: Vec<Vec<Way>>,
-    found: Vec<Follow>,
-    /// Bounds of the segment whose values `first` holds.
-    segment: [u64; 2],
-    first: Vec<f64>,
-    others: Vec<f64>,
-    mask: Vec<Mark>,
-    leg_mask: Vec<Mark>,
-    hits: Vec<f64>,
-}
-
-impl Scratch {
-    fn new(manipulator: &Manipulator) -> Self {
-        Self {
-            slice: None,
-            alive: false,
-            legs: vec![Vec::new(); manipulator.legs()],
-            found: Vec::new(),
-            segment: [0; 2],
-            first: Vec::new(),
-            others: vec![0.0; manipulator.task_coordinates().len() - 1],
-            mask: Vec::new(),
-            leg_mask: Vec::new(),
-            hits: Vec::new(),
-        }
-    }
-
-    /// Solves the upper section for a slice, unless it is the present one.
-    fn enter_slice(&mut self, sweep: &Sweep<'_>, slice: u64) {
-        if self.slice == Some(slice) {
-            return;
-        }
-        self.slice = Some(slice);
-        let lower = sweep.grid.lower();
-        let upper = &mut self.others[lower - 1..];
-        fill(&sweep.grid.axes()[lower..], slice, upper);
-        let manipulator = sweep.manipulator;
-        let b = manipulator.task().upper(upper);
-        let mode = match sweep.modes {
-            Modes::One(mode) => Some(mode),
-            Modes::Any => None,
-        };
-        self.alive = true;
-        for (leg, ways) in self.legs.iter_mut().enumerate() {
-            self.found.clear();
-            manipulator.follow(leg, &b, mode, &mut self.found);
-            ways.clear();
-            ways.extend(
-                self.found
-                    .iter()
-                    .map(|&follow| Way { follow, pending: manipulator.imaginary_value(&follow) }),
-            );
-            self.alive &= !ways.is_empty();
-        }
-    }
-
-    fn enter_segment(&mut self, axis: &crate::Axis, from: u64, to: u64) {
-        if self.segment != [from, to] {
-            self.segment = [from, to];
-            self.first.clear();
-            self.first.extend((from..to).map(|i| axis.value(i)));
-            self.mask.resize(self.first.len(), 0);
-            self.leg_mask.resize(self.first.len(), 0);
-        }
-    }
-
-    /// Marks the segment's reachable poses and counts them.
-    fn decide(&mut self, manipulator: &Manipulator, lower: usize, tally: &mut Tally) -> u64 {
-        let row = Row { first: &self.first, others: &self.others[..lower - 1] };
-        self.mask.fill(1);
-        let mut count = 0;
-        for ways in &self.legs {
-            self.leg_mask.fill(0);
-            for way in ways {
-                manipulator.mark(&way.follow, &row, &mut self.leg_mask);
-            }
-            count = 0;
-            for (mask, leg) in self.mask.iter_mut().zip(&self.leg_mask) {
-                *mask &= leg;
-                count += *mask;
-            }
-            if count == 0 {
-                return 0;
-            }
-        }
-        for ways in &mut self.legs {
-            let alone = ways.len() == 1;
-            for way in ways {
-                let Some((imaginary, value)) = way.pending else { continue };
-                let used = alone || {
-                    self.leg_mask.fill(0);
-                    manipulator.mark(&way.follow, &row, &mut self.leg_mask);
-                    self.leg_mask.iter().zip(&self.mask).any(|(leg, all)| leg & all == 1)
-                };
-                if used {
-                    tally.widen(imaginary, value);
-                    way.pending = None;
-                }
-            }
-        }
-        count
     }
 }

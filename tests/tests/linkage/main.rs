@@ -66,7 +66,7 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
         panic!("{class:?}");
     };
     // Without a label, the direction that points up counts as positive.
-    let up = |v: &Vector3<f64>| [v.z, v.y, v.x].into_iter().find(|c| c.abs() > 1e-6).unwrap();
+    let up = |v: &Vector3<f64>| v.dot(&Vector3::from(opm_core::subspace::UP));
     let positive = match label {
         Some(label) => label.positive.dot(axis).signum(),
         None => up(&axis.into_inner()).signum(),

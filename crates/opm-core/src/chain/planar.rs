@@ -19,7 +19,9 @@ pub use rpr::Rpr;
 pub use rrp::Rrp;
 pub use rrr::Rrr;
 
+use super::region::Region;
 use super::{Amount, Branch, ChainError, Gap};
+use crate::limits::Limits;
 use nalgebra::Complex;
 
 /// A displacement of the plane: `z ↦ rotation · z + translation`.
@@ -193,6 +195,45 @@ impl PlanarChain {
             Self::Ppr(chain) => Ok(chain.inverse(target)),
             Self::Prp(chain) => chain.inverse(target),
         }
+    }
+
+    /// The translations at which the chain closes within its limits on a target that is turned by
+    /// `rotation`; `None` where limits on its angles make that more than a convex set less another,
+    /// or its sliders are all but parallel.
+    pub fn region(
+        &self,
+        rotation: Complex<f64>,
+        branch: Branch,
+        limits: [&Limits; 3],
+    ) -> Option<Region> {
+        let free = |turns: &[usize]| turns.iter().all(|&i| *limits[i] == Limits::Free);
+        let range = |slider: usize| {
+            let (low, high) = limits[slider].range();
+            [low, high]
+        };
+        // Of chains with two sliders the rotation fixes the angle.
+        let target = PlanarDisplacement { rotation, translation: Complex::new(0.0, 0.0) };
+        let within = |turn: usize, amounts: [Amount; 3]| limits[turn].admits(amounts[turn]);
+        let if_within = |within, region| if within { region } else { Region::NOTHING };
+        Some(match self {
+            Self::Rrr(chain) if free(&[0, 1, 2]) => chain.region(rotation),
+            Self::Prr(chain) if free(&[1, 2]) => chain.region(rotation, branch, range(0)),
+            Self::Rrp(chain) if free(&[0, 1]) => chain.region(rotation, branch, range(2)),
+            Self::Rpr(chain) if free(&[0, 2]) => chain.region(rotation, branch, range(1)),
+            Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_) => return None,
+            Self::Rpp(chain) => if_within(
+                within(0, chain.inverse(&target)),
+                chain.region(rotation, [range(1), range(2)]),
+            ),
+            Self::Ppr(chain) => if_within(
+                within(2, chain.inverse(&target)),
+                chain.region(rotation, [range(0), range(1)]),
+            ),
+            Self::Prp(chain) => {
+                let region = chain.region(rotation, [range(0), range(2)])?;
+                if_within(limits[1].admits(chain.turn(rotation)), region)
+            }
+        })
     }
 }
 

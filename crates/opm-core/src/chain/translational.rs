@@ -1,6 +1,7 @@
 //! Chains of two prismatic joints in a plane.
 
 use super::planar::{along, cross};
+use super::region::{Region, parallelogram};
 use super::{Amount, ChainError, DEGENERATE};
 use nalgebra::Complex;
 
@@ -21,6 +22,11 @@ impl TranslationalChain {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
         Ok(Self { slides })
+    }
+
+    /// The translations at which the sliders are in their ranges.
+    pub fn region(&self, ranges: [[f64; 2]; 2]) -> Region {
+        parallelogram(self.slides, Complex::new(0.0, 0.0), ranges)
     }
 
     /// The sliders' amounts that translate the outer link by `target`.

@@ -331,7 +331,9 @@ fn difference(a: &SubspaceClass, b: &SubspaceClass, size: f64) -> f64 {
         | (Planar { normal: a }, Planar { normal: b }) => axes(a, b),
         (Rotation { axis: a, point: p }, Rotation { axis: b, point: q })
         | (Cylindrical { axis: a, point: p }, Cylindrical { axis: b, point: q }) => {
-            axes(a, b).max(points(p, q))
+            // Points of one line, each nearest to its base's origin.
+            let apart = p - q;
+            axes(a, b).max(points(p, &(q + a.into_inner() * a.dot(&apart))))
         }
         (Spherical { centre: p }, Spherical { centre: q }) => points(p, q),
         _ => f64::INFINITY,

@@ -4,29 +4,11 @@ use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
 use crate::decomposition::{Freedom, LegSplit};
 use crate::joint::JointKind;
 use crate::leg::Leg;
+pub use crate::leg::Section;
 use crate::limits::Limits;
 use crate::task::{Displacement, Subspace, SubspaceKind, Task};
 use crate::velocity::determinant_scale;
 use nalgebra::{Unit, Vector3};
-use std::fmt;
-
-/// One of the two sections of a leg.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Section {
-    /// Base side, inside `A`.
-    Lower,
-    /// Platform side, inside `B`.
-    Upper,
-}
-
-impl fmt::Display for Section {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Lower => "lower",
-            Self::Upper => "upper",
-        })
-    }
-}
 
 /// Why a leg has no closed form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

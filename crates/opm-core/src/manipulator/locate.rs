@@ -8,13 +8,18 @@
 use super::Manipulator;
 use crate::joint::Quantity;
 use crate::mobility::frame;
-use nalgebra::{DMatrix, DVector, Isometry3, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// A rotation, radians, or a distance over the mechanism's size: a displacement that is off the
 /// motion by less is on it. Far above the rounding of the solution, far below any tolerance of a
 /// machine.
 const ON: f64 = 1e-9;
+
+/// A rotation in radians beside a translation in metres, or the other way round, that is no more
+/// than what the least squares leave of it: machines are not a million times as large as they turn.
+const BESIDE: f64 = 1e-6;
 
 /// Starts: home, then poses spread over the angles.
 const STARTS: u32 = 24;
@@ -24,13 +29,9 @@ const STARTS: u32 = 24;
 const STEPS: usize = 200;
 
 /// A displacement of the platform that the manipulator's motion does not hold.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "outside the manipulator's motion: off by {:.3e} rad about {:.3?} and by {:.3e} m along {:.3?}",
-    rotation.norm(), direction(rotation), translation.norm(), direction(translation)
-)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutsideMotion {
-    /// The nearest pose that is in the motion.
+    /// The nearest pose that is in the motion: rotation counts by the mechanism's size.
     pub nearest: Vec<f64>,
     /// Rotation vector from that pose's orientation to the one given, base coordinates, radians.
     pub rotation: Vector3<f64>,
@@ -38,11 +39,59 @@ pub struct OutsideMotion {
     pub translation: Vector3<f64>,
 }
 
-fn direction(v: &Vector3<f64>) -> [f64; 3] {
-    v.try_normalize(0.0).unwrap_or_default().into()
+impl OutsideMotion {
+    /// What it is outside by: a translation, a rotation, or both. A part that is rounding beside the
+    /// other is left out.
+    pub fn parts(&self) -> impl Iterator<Item = (Quantity, Vector3<f64>)> + use<> {
+        let parts = [(Quantity::Length, self.translation), (Quantity::Angle, self.rotation)];
+        let least = BESIDE * self.translation.norm().max(self.rotation.norm());
+        parts.into_iter().filter(move |(_, v)| v.norm() > least)
+    }
+}
+
+impl std::error::Error for OutsideMotion {}
+
+impl fmt::Display for OutsideMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "outside the manipulator's motion")?;
+        for (number, (quantity, v)) in self.parts().enumerate() {
+            let unit = match quantity {
+                Quantity::Length => "m along",
+                Quantity::Angle => "rad about",
+            };
+            // Adding zero turns a rounded -0 into 0.
+            let [x, y, z] = <[f64; 3]>::from(v.normalize()).map(|c| (c * 1e4).round() / 1e4 + 0.0);
+            let by = if number == 0 { "by" } else { "and" };
+            write!(f, " {by} {:.3e} {unit} ({x}, {y}, {z})", v.norm())?;
+        }
+        Ok(())
+    }
 }
 
 impl Manipulator {
+    /// Where the platform is at a pose, in SE(3): its reference point's position, metres, and its
+    /// orientation, in base coordinates.
+    ///
+    /// The orientation is the turn from the base's directions that the platform has made, which at home
+    /// is none; where `zeta xi psi` measure it, it is theirs, and home's values are home's orientation.
+    pub fn platform_pose(&self, pose: &[f64]) -> Isometry3<f64> {
+        self.task.displacement(pose) * self.home_placement()
+    }
+
+    /// The task coordinates at which the platform is there: the inverse of
+    /// [`Manipulator::platform_pose`].
+    ///
+    /// # Errors
+    /// As [`Manipulator::locate`].
+    pub fn locate_platform(&self, platform: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
+        self.locate(&(platform * self.home_placement().inverse()))
+    }
+
+    fn home_placement(&self) -> Isometry3<f64> {
+        let place = Translation3::from(self.mechanism.platform.coords);
+        Isometry3::from_parts(place, self.task.home_orientation())
+    }
+
     /// The pose whose displacement of the platform from home is `displacement` (base coordinates);
     /// angles within half a turn of home. The inverse of `task().displacement(pose)`.
     ///

@@ -1,15 +1,15 @@
-//! Which poses of a row are in reach: the inner loop of a sweep.
+//! Which poses are in reach, for those that share `b`: a slice of a sweep.
 //!
-//! `b` decides, once for a whole slice of a grid, each leg's imaginary joint; what is left per pose
-//! is whether the leg's lower chain closes on `v · exp(I τ)` within its limits. Along a row of `v`
-//! that differ in their first coordinate, that is a square root a leg.
+//! `b` decides each leg's imaginary joint, once for the whole slice. What is left is whether the leg's
+//! lower chain closes on `v · exp(I τ)` within its limits: a fixed shape in the plane of `v`, or a
+//! question a pose.
 
 use super::leg::{LegBranches, Section};
 use super::{Manipulator, Mode};
-use crate::chain::planar::{PlanarChain, Rrr};
+use crate::chain::region::Region;
 use crate::chain::{Amount, Chain};
 use crate::limits::Limits;
-use crate::task::{Cut, Displacement, SubspaceKind};
+use crate::task::Displacement;
 use nalgebra::Complex;
 
 /// One way in which a leg can follow a slice of poses that share `b`.
@@ -20,19 +20,6 @@ pub struct Follow {
     b: Displacement,
     /// Found from `b`, where the leg's upper section takes the cut.
     tau: Option<Amount>,
-}
-
-/// One where a pose is marked, else zero: as wide as the numbers that decide it, so that the loop over
-/// a row is vectorised without packing.
-pub type Mark = u64;
-
-/// Poses of a slice that differ in their first coordinate.
-#[derive(Clone, Copy, Debug)]
-pub struct Row<'a> {
-    /// Values of the first coordinate.
-    pub first: &'a [f64],
-    /// The other coordinates of `v`.
-    pub others: &'a [f64],
 }
 
 impl Manipulator {
@@ -103,81 +90,45 @@ impl Manipulator {
         }
     }
 
-    /// Marks pose `i` in `mask[i]` where the leg follows to it: the same answer as
-    /// [`Manipulator::follows`], bit for bit.
-    ///
-    /// # Panics
-    /// If the mask is not as long as the row.
-    pub fn mark(&self, way: &Follow, row: &Row<'_>, mask: &mut [Mark]) {
-        assert_eq!(mask.len(), row.first.len(), "mask and row");
-        if let Some(chain) = self.plain_planar(way) {
-            return self.mark_planar(way, chain, row, mask);
-        }
-        let mut pose = [0.0; 3];
-        pose[1..=row.others.len()].copy_from_slice(row.others);
-        for (marked, &first) in mask.iter_mut().zip(row.first) {
-            if *marked == 0 {
-                pose[0] = first;
-                *marked = Mark::from(self.follows(way, &self.task.lower(&pose)));
-            }
-        }
-    }
-
-    /// The lower chain, where nothing but it decides: `v` is a translation in a plane, and no limit
-    /// on an angle nor the upper section has a say.
-    fn plain_planar(&self, way: &Follow) -> Option<&PlanarChain> {
+    /// Where the leg follows to, as a region of the first two coordinates of `v`, when those after
+    /// them are `others`: the same answer as [`Manipulator::follows`] gives, rounding apart. The
+    /// first two are counted from `origin`, in units of `1 / scale`. `None` where `v` does not move a
+    /// plane or the leg's limits leave no region of that shape.
+    pub fn region(
+        &self,
+        way: &Follow,
+        others: &[f64],
+        origin: Complex<f64>,
+        scale: f64,
+    ) -> Option<Region> {
         let leg = &self.legs[way.leg];
-        let Chain::Planar(chain) = &leg.lower.chain else { return None };
-        let translation =
-            self.task.lower.kind == SubspaceKind::Planar && self.task.lower_cut == Cut::Turn;
-        let upper_decides = way.tau.is_none() && leg.upper_decides;
-        let free = |slot: usize| {
-            leg.lower.slots[slot].is_none_or(|s| self.limits[s.coordinate] == Limits::Free)
-        };
-        let plain = match chain {
-            PlanarChain::Rrr(_) => free(0) && free(1) && free(2),
-            PlanarChain::Prr(_) => free(1) && free(2),
-            _ => false,
-        };
-        (translation && !upper_decides && plain).then_some(chain)
-    }
-
-    fn mark_planar(&self, way: &Follow, chain: &PlanarChain, row: &Row<'_>, mask: &mut [Mark]) {
-        let leg = &self.legs[way.leg];
-        let rotation = way.tau.map_or(Complex::new(1.0, 0.0), Amount::turn);
-        let home = self.task.coordinates[0].home;
-        let y = row.others[0] - self.task.coordinates[1].home;
-        // The arithmetic of PlanarDisplacement::apply, its constant half taken out of the loop.
-        let moved = |point: Complex<f64>| {
-            let turned = rotation * point;
-            move |x: f64| turned + Complex::new(x - home, y)
-        };
-        match chain {
-            PlanarChain::Rrr(chain) => {
-                let wrist = moved(chain.wrist());
-                set(mask, row, |x| Rrr::closes(chain.elbow_cosine(wrist(x))));
-            }
-            PlanarChain::Prr(chain) => {
-                let outer = moved(chain.outer());
-                let sign = way.branches.lower.sign();
-                let limits =
-                    leg.lower.slots[0].map_or(&Limits::Free, |s| &self.limits[s.coordinate]);
-                let (low, high) = limits.range();
-                set(mask, row, |x| {
-                    let (along, square) = chain.triangle(outer(x));
-                    let slider = along + sign * square.max(0.0).sqrt();
-                    chain.closes(square) & (slider >= low) & (slider <= high)
-                });
-            }
-            _ => unreachable!("plain_planar gives only RRR and PRR"),
+        if way.tau.is_none() && leg.upper_decides {
+            return None;
         }
-    }
-}
-
-/// Sets `mask` where the predicate holds; free of branches, so that it is vectorised.
-#[inline]
-fn set(mask: &mut [Mark], row: &Row<'_>, predicate: impl Fn(f64) -> bool) {
-    for (marked, &x) in mask.iter_mut().zip(row.first) {
-        *marked |= Mark::from(predicate(x));
+        let limits = leg.lower.slots.map(|slot| match slot {
+            Some(slot) => &self.limits[slot.coordinate],
+            None => &Limits::Free,
+        });
+        // The first two coordinates of v translate it; home has none of that.
+        let home = |i: usize| self.task.coordinates[i].home;
+        let mut v = [0.0; 3];
+        v[..2].copy_from_slice(&[home(0), home(1)]);
+        v[2..2 + others.len()].copy_from_slice(others);
+        let v = self.task.lower(&v);
+        let target = match way.tau {
+            Some(tau) => self.task.lower_cut.after(&v, tau),
+            None => v,
+        };
+        let (region, at_home) = match (&leg.lower.chain, target) {
+            (Chain::Planar(chain), Displacement::Planar(g)) => {
+                (chain.region(g.rotation, way.branches.lower, limits)?, g.translation)
+            }
+            (Chain::Translational(chain), Displacement::Translational(t)) => {
+                let range = |slider: usize| <[f64; 2]>::from(limits[slider].range());
+                (chain.region([range(0), range(1)]), t)
+            }
+            _ => return None,
+        };
+        Some(region.placed(Complex::new(home(0), home(1)) - at_home - origin, scale))
     }
 }

@@ -18,8 +18,27 @@
 //! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
 //!
 //! `home` (default zero) is a number and `limits` a pair `[lowest, highest]`; a joint of several
-//! coordinates has an array of as many. `[task]` may give the `axis` along which the intersection
-//! motion counts as positive.
+//! coordinates has an array of as many.
+//!
+//! `[task]` may say how the pose is to be measured, where the [geometry](crate::task) leaves that
+//! free:
+//!
+//! ```toml
+//! [task]
+//! axis = [0, 0, 1]
+//! lower = { x = [0, 1, 0], normal = [0, 0, -1], origin = [100, 0, 0] }
+//! upper = { w = [0, 0, 1], normal = [1, 0, 0], origin = [0, 0, 50] }
+//! ```
+//!
+//! | key | says | of |
+//! |---|---|---|
+//! | `axis` | which direction of the intersection motion is positive: the one on its side | both |
+//! | `x` | the direction of coordinate `x`, in the plane; of a sphere's first axis, square to the intersection motion | planes with `x y`, spheres |
+//! | `w` | which direction of coordinate `w` is positive | upper planes with `w` |
+//! | `normal` | which of a plane's two normals `y` and the angle turn about | planes that share a translation, where they turn or have `y` |
+//! | `origin` | the point that lengths are measured from | all with a length among their coordinates |
+//!
+//! Each may be left out. `opm decompose` prints the frames as they are.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Whatever a file does not need to have
@@ -33,7 +52,7 @@ mod units;
 #[cfg(test)]
 pub(super) mod writer;
 
-pub use problem::{FileErrors, Problem};
+pub use problem::{FileErrors, Place, Places, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 
 pub(crate) use reader::{LARGEST, Reader, Table, Value};
@@ -60,6 +79,8 @@ pub struct MechanismFile {
     pub family: Option<Family>,
     /// The working mode of home, where the family knows it; else it follows from the joints.
     pub mode: Option<String>,
+    /// Where it says what may not fit together.
+    pub places: Places,
 }
 
 /// Reads the text of a mechanism file.
@@ -67,7 +88,8 @@ pub struct MechanismFile {
 /// # Errors
 /// Every problem of the file. Where the text is not TOML: the parser's problems only.
 pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
-    document(text, "mechanism", read_document)
+    let (file, places) = document(text, "mechanism", read_document)?;
+    Ok(MechanismFile { places: places.in_text(text), ..file })
 }
 
 /// Reads a TOML text that should be a file of this kind, with `read` for what is in it.
@@ -116,12 +138,14 @@ pub(crate) fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
     Some(name)
 }
 
-fn read_document(root: &Table<'_>) -> Option<MechanismFile> {
+/// The file, its places still to be told, and these as byte offsets.
+fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
     let name = head(root, "mechanism")?;
     let units = root.reader.units();
     let Some(family) = root.get("family") else {
-        let mechanism = joints::read(root, name);
-        return Some(MechanismFile { mechanism, units, family: None, mode: None });
+        let (mechanism, noted) = joints::read(root, name);
+        let places = Places::default();
+        return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
     type Read = fn(&Table<'_>, &str) -> Option<(Family, Mechanism)>;
     let read = family.word::<Read>(&[
@@ -130,7 +154,8 @@ fn read_document(root: &Table<'_>) -> Option<MechanismFile> {
         ("planar-planar", planar_planar::read),
     ])?;
     let (family, mechanism) = read(root, name)?;
-    Some(MechanismFile { mechanism, units, mode: Some(family.mode()), family: Some(family) })
+    let (mode, family, places) = (Some(family.mode()), Some(family), Places::default());
+    Some((MechanismFile { mechanism, units, mode, family, places }, Places::default()))
 }
 
 /// The file's units; where they are not understood, SI, so that the rest can be checked.

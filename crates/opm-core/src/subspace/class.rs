@@ -8,8 +8,8 @@ use std::fmt;
 
 /// Class of a connected Lie subgroup of SE(3), with its geometry in base coordinates.
 ///
-/// An axis or a normal points up: positive z, where that is zero positive y, then positive x. The
-/// point of an axis is the one nearest to the middle of the mechanism it was found in.
+/// An axis or a normal points up ([`UP`]). The point of an axis is the one nearest to the base's
+/// origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SubspaceClass {
     /// No motion.
@@ -143,27 +143,29 @@ impl SubspaceClass {
     /// A class found in a normalised frame, in base coordinates and metres, its axis pointing up.
     pub(crate) fn restored(&self, frame: &Frame) -> Self {
         let metres = |pitch: f64| pitch * frame.length;
-        let place = |point: &Point3<f64>| frame.restored_point(point);
-        match self {
+        let place = |axis, point: &Point3<f64>| nearest_origin(axis, frame.restored_point(point));
+        match *self {
             Self::Rotation { axis, point } => {
-                Self::Rotation { axis: upward(*axis), point: place(point) }
+                Self::Rotation { axis: upward(axis), point: place(axis, &point) }
             }
-            Self::Translation { axis } => Self::Translation { axis: upward(*axis) },
-            Self::Helical { axis, point, pitch } => {
-                Self::Helical { axis: upward(*axis), point: place(point), pitch: metres(*pitch) }
-            }
+            Self::Translation { axis } => Self::Translation { axis: upward(axis) },
+            Self::Helical { axis, point, pitch } => Self::Helical {
+                axis: upward(axis),
+                point: place(axis, &point),
+                pitch: metres(pitch),
+            },
             Self::TranslationalPlane { normal } => {
-                Self::TranslationalPlane { normal: upward(*normal) }
+                Self::TranslationalPlane { normal: upward(normal) }
             }
             Self::Cylindrical { axis, point } => {
-                Self::Cylindrical { axis: upward(*axis), point: place(point) }
+                Self::Cylindrical { axis: upward(axis), point: place(axis, &point) }
             }
-            Self::Planar { normal } => Self::Planar { normal: upward(*normal) },
-            Self::Spherical { centre } => Self::Spherical { centre: place(centre) },
+            Self::Planar { normal } => Self::Planar { normal: upward(normal) },
+            Self::Spherical { centre } => Self::Spherical { centre: frame.restored_point(&centre) },
             Self::PlanarHelical { axis, pitch } => {
-                Self::PlanarHelical { axis: upward(*axis), pitch: metres(*pitch) }
+                Self::PlanarHelical { axis: upward(axis), pitch: metres(pitch) }
             }
-            Self::Schoenflies { axis } => Self::Schoenflies { axis: upward(*axis) },
+            Self::Schoenflies { axis } => Self::Schoenflies { axis: upward(axis) },
             Self::Identity | Self::TranslationalSpace | Self::Full => *self,
         }
     }
@@ -221,10 +223,29 @@ fn across(axis: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     [u, Unit::new_normalize(axis.cross(&u))]
 }
 
-/// The one of two opposite directions that points up: z, then y, then x.
-fn upward(axis: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    let decisive = [axis.z, axis.y, axis.x].into_iter().find(|c| c.abs() > TOLERANCE);
-    if decisive.is_some_and(|c| c < 0.0) { -axis } else { axis }
+/// What decides which of two opposite directions points up: the one on this vector's side.
+///
+/// That is the one with positive z, of nearly level directions the one with positive y, and of those
+/// nearly along x the one with positive x. "Nearly" so that a small turn of a mechanism turns none of
+/// its directions round: along y they do 22 degrees below the level, along x 3 degrees, and level
+/// ones 8 degrees from x. Of the directions of usual designs, with all angles multiples of 15 degrees,
+/// none is nearer than 0.7 degrees to where that happens, and none in a coordinate plane nearer than
+/// 2.8.
+pub const UP: [f64; 3] = [0.055, 0.41, 1.0];
+
+/// Whether a direction points up.
+pub(crate) fn points_up(direction: &Vector3<f64>) -> bool {
+    direction.dot(&Vector3::from(UP)) >= 0.0
+}
+
+/// The one of two opposite directions that points up.
+pub(crate) fn upward(axis: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    if points_up(&axis) { axis } else { -axis }
+}
+
+/// The point of a line nearest to the base's origin.
+fn nearest_origin(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Point3<f64> {
+    point - axis.into_inner() * axis.dot(&point.coords)
 }
 
 /// A group that screws generate, in the normalised frame of the screws.

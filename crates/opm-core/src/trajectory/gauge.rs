@@ -28,11 +28,20 @@ pub enum Gauge {
         /// Which limit.
         bound: Bound,
     },
-    /// The parallel singularity measure of a section: either sign is good, zero is not.
+    /// A parallel singularity measure: either sign is good, zero is not.
     Parallel {
-        /// Which.
-        section: Section,
+        /// Of which part of the mechanism.
+        part: Part,
     },
+}
+
+/// What has a parallel singularity measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// One section.
+    Section(Section),
+    /// The whole mechanism: watched where a section alone has no measure.
+    Whole,
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
@@ -70,6 +79,7 @@ pub(super) fn gauges(manipulator: &Manipulator) -> Vec<Gauge> {
     let limits = limits.flat_map(|(coordinate, _)| {
         [Bound::Lowest, Bound::Highest].map(|bound| Gauge::Limit { coordinate, bound })
     });
-    let parallel = [Section::Upper, Section::Lower].map(|section| Gauge::Parallel { section });
+    let parts = [Part::Section(Section::Upper), Part::Section(Section::Lower), Part::Whole];
+    let parallel = parts.into_iter().map(|part| Gauge::Parallel { part });
     reach.chain(limits).chain(parallel).collect()
 }

@@ -1,6 +1,6 @@
 //! Between two samples: where gauges cross zero.
 
-use super::{Gauge, Look, RESOLUTION, Sample, Trajectory, TrajectoryError, Violation};
+use super::{Gauge, Look, Part, RESOLUTION, Sample, Trajectory, TrajectoryError, Turns, Violation};
 use crate::velocity::SINGULAR;
 
 /// Steps of a golden-section search: the interval shrinks to 1e-8 of itself, where the lowest value
@@ -51,7 +51,7 @@ impl Trajectory<'_> {
     /// At the first sample: what is violated there has begun.
     pub(super) fn begin(&mut self) {
         let sample = self.current.clone();
-        for number in 0..self.gauges.len() {
+        for number in 0..self.solver.gauges.len() {
             if self.violated(number, &sample) {
                 self.begins(number, sample.time, &sample);
             } else if self.is_zero(number, &sample) {
@@ -60,40 +60,55 @@ impl Trajectory<'_> {
         }
     }
 
+    /// Whether anything may have happened between the last two samples. Mostly nothing has.
+    pub(super) fn eventful(&self) -> bool {
+        let (from, to) = (&self.previous, &self.current);
+        let differ = |a: Option<f64>, b: Option<f64>| {
+            a.is_some() != b.is_some() || matches!((a, b), (Some(a), Some(b)) if a * b <= 0.0)
+        };
+        (0..self.solver.gauges.len()).any(|number| {
+            differ(from.levels[number], to.levels[number])
+                || differ(from.slopes[number], to.slopes[number])
+                || self.is_zero(number, to)
+        })
+    }
+
     /// From one sample to the next.
     pub(super) fn watch(&mut self, from: &Sample, to: &Sample) -> Result<(), TrajectoryError> {
         let step = to.time - from.time;
         // Where a leg comes to the end of its reach, all else changes: first up to there.
         if !self.same_legs(from, to) {
             let [mut before, mut after] = [from.clone(), to.clone()];
-            while after.time - before.time > RESOLUTION / self.rate {
+            while after.time - before.time > RESOLUTION / self.solver.rate {
                 let middle = self.between(&before, &after, 0.5)?;
                 if middle.time <= before.time || middle.time >= after.time {
                     break;
                 }
                 if self.same_legs(from, &middle) { before = middle } else { after = middle }
             }
-            self.slope(&mut before, Look::Back)?;
-            self.slope(&mut after, Look::Ahead)?;
+            self.solver.slope(&mut before, Look::Back, &mut self.probe)?;
+            self.solver.slope(&mut after, Look::Ahead, &mut self.probe)?;
             if before.time > from.time {
                 self.stretch(from, &before)?;
             }
-            for number in 0..self.gauges.len() {
+            for number in 0..self.solver.gauges.len() {
+                self.worse(number, &before);
                 self.switch(number, &before, &after);
             }
             return if after.time < to.time { self.watch(&after, to) } else { Ok(()) };
         }
         // A leg may have gone out of reach and come back.
-        for number in 0..self.gauges.len() {
-            if !matches!(self.gauges[number], Gauge::Reach { .. }) {
+        for number in 0..self.solver.gauges.len() {
+            if !matches!(self.solver.gauges[number], Gauge::Reach { .. }) {
                 continue;
             }
             let stretch = Stretch { number, from, to };
             let reached = stretch.levels().is_some_and(|[a, b]| a > 0.0 && b > 0.0);
-            if reached && stretch.turns(1.0) && step > RESOLUTION / self.rate {
+            if reached && stretch.turns(1.0) && step > RESOLUTION / self.solver.rate {
                 let lowest = self.extreme(&stretch, |level| level)?;
                 if lowest.levels[number].is_some_and(|level| level < 0.0) {
                     self.watch(from, &lowest)?;
+                    self.worse(number, &lowest);
                     return self.watch(&lowest, to);
                 }
                 if self.is_zero(number, &lowest) {
@@ -106,16 +121,20 @@ impl Trajectory<'_> {
 
     /// Limits and parallel singularities where the legs that reach are the same all along.
     fn stretch(&mut self, from: &Sample, to: &Sample) -> Result<(), TrajectoryError> {
-        for number in 0..self.gauges.len() {
+        for number in 0..self.solver.gauges.len() {
             let stretch = Stretch { number, from, to };
             let Some(levels) = stretch.levels() else { continue };
-            match self.gauges[number] {
-                Gauge::Reach { .. } => {}
+            match self.solver.gauges[number] {
+                Gauge::Reach { .. } => {
+                    if levels.iter().all(|&level| level < 0.0) && stretch.turns(1.0) {
+                        let worst = self.extreme(&stretch, |level| level)?;
+                        self.worse(number, &worst);
+                    }
+                }
                 Gauge::Limit { .. } => {
                     let out = levels.map(|level| level < 0.0);
                     if out[0] != out[1] {
-                        let [before, after] = self.crossing(&stretch, |level| level < 0.0)?;
-                        self.switch(number, &before, &after);
+                        self.switch_once(&stretch, out[0])?;
                         continue;
                     }
                     // Past the limit and back, or, from past it, within it for a while.
@@ -154,6 +173,25 @@ impl Trajectory<'_> {
         Ok(())
     }
 
+    /// A limit is passed between two samples, outwards or, from `out`, inwards; on the way the joint may
+    /// be farther out than at either.
+    fn switch_once(&mut self, stretch: &Stretch<'_>, out: bool) -> Result<(), TrajectoryError> {
+        let number = stretch.number;
+        let deeper = stretch.turns(1.0);
+        let worst = if deeper { Some(self.extreme(stretch, |level| level)?) } else { None };
+        let [before, after] = self.crossing(stretch, |level| level < 0.0)?;
+        if !out {
+            self.switch(number, &before, &after);
+        }
+        if let Some(worst) = worst {
+            self.worse(number, &worst);
+        }
+        if out {
+            self.switch(number, &before, &after);
+        }
+        Ok(())
+    }
+
     /// A limit is passed at a turning point between two samples, if it is.
     fn switch_twice(&mut self, stretch: &Stretch<'_>, at: &Sample) -> Result<(), TrajectoryError> {
         let number = stretch.number;
@@ -162,10 +200,10 @@ impl Trajectory<'_> {
             return Ok(());
         }
         for (from, to) in [(stretch.from, at), (at, stretch.to)] {
+            self.worse(number, at);
             let part = Stretch { number, from, to };
             let [before, after] = self.crossing(&part, |level| level < 0.0)?;
             self.switch(number, &before, &after);
-            self.worse(number, at);
         }
         Ok(())
     }
@@ -179,7 +217,7 @@ impl Trajectory<'_> {
         let number = stretch.number;
         let [mut before, mut after] = [stretch.from.clone(), stretch.to.clone()];
         let first = before.levels[number].map(&side);
-        while after.time - before.time > RESOLUTION / self.rate {
+        while after.time - before.time > RESOLUTION / self.solver.rate {
             let middle = self.between(&before, &after, 0.5)?;
             if middle.time <= before.time || middle.time >= after.time {
                 break;
@@ -189,7 +227,7 @@ impl Trajectory<'_> {
         Ok([before, after])
     }
 
-    /// Where `value` of a gauge's level is lowest; as soon as it is below zero, there.
+    /// Where `value` of a gauge's level is lowest.
     fn extreme(
         &mut self,
         stretch: &Stretch<'_>,
@@ -197,15 +235,10 @@ impl Trajectory<'_> {
     ) -> Result<Sample, TrajectoryError> {
         let Stretch { number, from, to } = *stretch;
         let height = |sample: &Sample| sample.levels[number].map_or(f64::INFINITY, &value);
-        let was_below = height(from) < 0.0;
         let [mut low, mut high] = [0.0, 1.0];
         let mut left = self.between(from, to, 1.0 - GOLDEN)?;
         let mut right = self.between(from, to, GOLDEN)?;
         for _ in 0..SEARCH {
-            let lower = if height(&left) < height(&right) { &left } else { &right };
-            if !was_below && height(lower) < 0.0 {
-                break;
-            }
             if height(&left) < height(&right) {
                 high = low + GOLDEN * (high - low);
                 right = left;
@@ -223,7 +256,7 @@ impl Trajectory<'_> {
     fn between(&mut self, from: &Sample, to: &Sample, share: f64) -> Result<Sample, TrajectoryError> {
         let mut sample = from.clone();
         let time = from.time + share * (to.time - from.time);
-        self.solve(time, false, &mut sample)?;
+        self.solver.solve(time, Turns::Held, &mut sample)?;
         sample.slopes.fill(None);
         Ok(sample)
     }
@@ -231,12 +264,12 @@ impl Trajectory<'_> {
     fn same_legs(&self, a: &Sample, b: &Sample) -> bool {
         let out = |sample: &Sample, leg| sample.solution.unreachable.iter().any(|u| u.leg == leg);
         a.reached && b.reached
-            || (0..self.manipulator.mechanism().legs.len()).all(|leg| out(a, leg) == out(b, leg))
+            || (0..self.solver.manipulator.mechanism().legs.len()).all(|leg| out(a, leg) == out(b, leg))
     }
 
     /// Whether a stretch of violation is under way.
     fn violated(&self, number: usize, sample: &Sample) -> bool {
-        match self.gauges[number] {
+        match self.solver.gauges[number] {
             Gauge::Reach { .. } | Gauge::Limit { .. } => {
                 sample.levels[number].is_some_and(|level| level < 0.0)
             }
@@ -246,7 +279,7 @@ impl Trajectory<'_> {
 
     /// Whether a singularity measure is zero as far as it can be known.
     fn is_zero(&self, number: usize, sample: &Sample) -> bool {
-        match self.gauges[number] {
+        match self.solver.gauges[number] {
             Gauge::Limit { .. } => false,
             Gauge::Reach { .. } | Gauge::Parallel { .. } => {
                 sample.levels[number].is_some_and(|level| level.abs() < SINGULAR)
@@ -286,8 +319,11 @@ impl Trajectory<'_> {
 
     /// Open violations get to know the last sample.
     pub(super) fn worsen(&mut self) {
+        if self.open.iter().all(Option::is_none) {
+            return;
+        }
         let sample = self.current.clone();
-        for number in 0..self.gauges.len() {
+        for number in 0..self.solver.gauges.len() {
             if let Some(violation) = &mut self.open[number] {
                 violation.end = sample.time;
                 self.worse(number, &sample);
@@ -310,22 +346,23 @@ impl Trajectory<'_> {
     /// What a gauge says at one sample.
     fn violation(&self, number: usize, sample: &Sample) -> Violation {
         let time = sample.time;
-        let gauge = self.gauges[number];
+        let gauge = self.solver.gauges[number];
         let level = sample.levels[number].unwrap_or_default().abs();
         let (amount, quantity, section) = match gauge {
             Gauge::Reach { leg } => {
                 match sample.solution.unreachable.iter().find(|u| u.leg == leg) {
                     Some(u) => (u.gap.excess, Some(u.gap.quantity), Some(u.section)),
                     None => {
-                        let section = self.manipulator.serial(&sample.solution, leg).1;
+                        let section = self.solver.manipulator.serial(&sample.solution, leg).1;
                         (level, None, Some(section))
                     }
                 }
             }
             Gauge::Limit { coordinate, .. } => {
-                (level, Some(self.manipulator.coordinates()[coordinate].quantity), None)
+                (level, Some(self.solver.manipulator.coordinates()[coordinate].quantity), None)
             }
-            Gauge::Parallel { section } => (level, None, Some(section)),
+            Gauge::Parallel { part: Part::Section(section) } => (level, None, Some(section)),
+            Gauge::Parallel { part: Part::Whole } => (level, None, None),
         };
         Violation { gauge, start: time, end: time, worst: time, amount, quantity, section }
     }

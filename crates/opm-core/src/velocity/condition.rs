@@ -1,6 +1,6 @@
 //! How far a pose is from singular: condition number and manipulability.
 
-use super::Jacobians;
+use super::{Jacobians, SingularCause, SingularLeg};
 use crate::joint::Quantity;
 use crate::manipulator::Manipulator;
 use nalgebra::SMatrix;
@@ -48,7 +48,13 @@ impl Manipulator {
     /// If the length is not a positive number.
     pub fn conditioning(&self, jacobians: &Jacobians, length: f64) -> Conditioning {
         assert!(length > 0.0 && length.is_finite(), "characteristic length {length}");
-        if !jacobians.singular.is_empty() {
+        // A spherical joint at a whole turn is measured badly, which is nothing to the platform unless
+        // the joint drives it.
+        let serial = |singular: &SingularLeg| {
+            singular.cause == SingularCause::Serial
+                || self.rateless(singular).any(|c| self.actuated().contains(&c))
+        };
+        if jacobians.singular.iter().any(serial) {
             return Conditioning::SERIAL;
         }
         let n = jacobians.platform.ncols();

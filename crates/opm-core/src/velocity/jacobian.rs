@@ -2,8 +2,9 @@
 
 use super::local::{Local, planar, quarter};
 use super::{LegDifferential, SingularLeg, VelocityError};
+use crate::chain::Amount;
 use crate::manipulator::{Manipulator, Section, Solution};
-use crate::task::{Cut, Subspace, SubspaceKind, Task};
+use crate::task::{Cut, Displacement, Subspace, SubspaceKind, Task};
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 
 /// The Jacobians at one solved pose; made by [`Manipulator::jacobians`].
@@ -39,7 +40,7 @@ pub struct Jacobians {
     /// The platform's twist `(ω; v)` from the section twist: `v` is the velocity of the platform's
     /// reference point; axes are the base's as they have moved with `v`.
     pub platform: Matrix6xX<f64>,
-    /// Legs without rates: their rows are zeros that mean nothing.
+    /// Legs with joints without rates: the rows of these are zeros that mean nothing.
     pub singular: Vec<SingularLeg>,
     /// Numbers of the legs that are cut in their upper section: the rows of [`Jacobians::upper`].
     pub bridged: Vec<usize>,
@@ -51,6 +52,10 @@ pub struct Jacobians {
     driven: Vec<Option<usize>>,
     basis: Basis,
     pub(super) legs: Vec<LegDifferential>,
+    /// Where the lower section is.
+    pub(super) v: Displacement,
+    /// Every leg's displacement along the intersection motion.
+    pub(super) cuts: Vec<Amount>,
 }
 
 /// The directions that the section twist is measured along.
@@ -80,7 +85,7 @@ impl Basis {
 }
 
 /// All directions of a subspace.
-fn whole(kind: SubspaceKind) -> Vec<Local> {
+pub(super) fn whole(kind: SubspaceKind) -> Vec<Local> {
     match kind {
         SubspaceKind::Planar | SubspaceKind::Spherical => vec![Local::x(), Local::y(), Local::z()],
         SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
@@ -90,7 +95,7 @@ fn whole(kind: SubspaceKind) -> Vec<Local> {
 }
 
 /// All but the intersection motion.
-fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
+pub(super) fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
     match (cut, kind) {
         (Cut::Turn, SubspaceKind::Spherical) => vec![Local::x(), Local::y()],
         (Cut::Turn, SubspaceKind::Planar) => vec![Local::y(), Local::z()],
@@ -107,7 +112,7 @@ fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
 }
 
 impl Manipulator {
-    /// A buffer for [`Manipulator::differentiate`].
+    /// A buffer for [`Manipulator::differentiate`]. Its matrices are zeros before that.
     pub fn jacobians(&self) -> Jacobians {
         let task = self.task();
         let basis = Basis::new(task, &self.mechanism().platform);
@@ -144,11 +149,13 @@ impl Manipulator {
             driven,
             basis,
             legs: (0..self.legs.len()).map(|number| self.leg_differential(&home, number)).collect(),
+            v: home.place.v,
+            cuts: home.legs.iter().map(|leg| leg.tau).collect(),
         }
     }
 
-    /// The Jacobians at a solved pose; `false` where a leg is singular and has none (`out.singular`
-    /// says which), the other legs have theirs. Nothing is allocated.
+    /// The Jacobians at a solved pose; `false` where a joint has no rates: `out.singular` says in which
+    /// legs; the others have theirs. Nothing is allocated.
     ///
     /// # Errors
     /// A solution that is out of reach.
@@ -157,6 +164,7 @@ impl Manipulator {
             return Err(VelocityError::OutOfReach);
         }
         out.singular.clear();
+        out.v = at.place.v;
         let task = self.task();
         let along = at.place.v.carried(&task.lower_cut.twist(task.lower.kind));
         let mut lower = [Local::zeros(); 3];
@@ -167,12 +175,11 @@ impl Manipulator {
         for number in 0..self.legs.len() {
             let differential = self.leg_differential(at, number);
             out.legs[number] = differential;
-            match differential.singular() {
-                Some(section) => {
-                    out.singular.push(SingularLeg { leg: number, section });
-                    self.clear_rows(number, out);
-                }
-                None => self.leg_rows(at, number, lower, &along, out),
+            out.cuts[number] = at.legs[number].tau;
+            if self.note_singular(number, &differential, &mut out.singular) {
+                self.leg_rows(at, number, lower, &along, out);
+            } else {
+                self.clear_rows(number, out);
             }
         }
         self.pose_columns(at, out);

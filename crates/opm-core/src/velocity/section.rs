@@ -1,9 +1,9 @@
 //! One section of a leg at one configuration: from the twist of its outer link to its joints' rates.
 
-use super::SINGULAR;
 use super::local::{Local, linear, quarter};
 use super::rotation_vector::RotationVector;
 use super::screws::Screws;
+use super::{SINGULAR, SingularCause};
 use crate::chain::{Amount, Chain};
 use crate::manipulator::CompiledSection;
 use crate::task::SubspaceKind;
@@ -13,6 +13,8 @@ use nalgebra::Matrix3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Differential {
     pub screws: Screws,
+    /// The reciprocal screws times the determinant: as regular as the screws.
+    pub crosses: [Local; 3],
     /// Rows that give the rates; zeros where there are none.
     pub reciprocal: [Local; 3],
     /// The determinant over what it is measured in: dimensionless.
@@ -35,9 +37,15 @@ impl Differential {
             let first = section.slots[0].map_or(0, |slot| slot.coordinate);
             let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
             let rows = ball.axes * vector.rates_of_spin();
+            let reciprocal = if vector.is_singular() {
+                [Local::zeros(); 3]
+            } else {
+                [0, 1, 2].map(|i| rows.row(i).transpose())
+            };
             return Self {
                 screws: Screws { kind, moved: section.screws },
-                reciprocal: [0, 1, 2].map(|i| rows.row(i).transpose()),
+                crosses: section.screws,
+                reciprocal,
                 measure: 1.0,
                 ball: Some(vector),
             };
@@ -50,13 +58,17 @@ impl Differential {
         } else {
             crosses.map(|row| row / determinant)
         };
-        Self { screws, reciprocal, measure, ball: None }
+        Self { screws, crosses, reciprocal, measure, ball: None }
     }
 
     /// Why there are no rates for a twist, if there are none.
     #[inline]
-    pub fn is_singular(&self) -> bool {
-        self.measure.abs() < SINGULAR || self.ball.is_some_and(|vector| vector.is_singular())
+    pub fn singular(&self) -> Option<SingularCause> {
+        if self.measure.abs() < SINGULAR {
+            return Some(SingularCause::Serial);
+        }
+        let whole_turn = self.ball.is_some_and(|vector| vector.is_singular());
+        whole_turn.then_some(SingularCause::RotationVector)
     }
 
     /// The rates of its joints, base first, for a twist of its outer link.

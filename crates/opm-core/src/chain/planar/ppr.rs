@@ -1,6 +1,7 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
 use super::{Amount, ChainError, Pivot, PlanarDisplacement, Rpp};
+use crate::chain::region::Region;
 use nalgebra::Complex;
 
 /// Two sliders, then a pivot: one solution.
@@ -14,6 +15,13 @@ impl Ppr {
         pivot: Pivot,
     ) -> Result<Self, ChainError> {
         Rpp::new(pivot, d2, d1).map(Self)
+    }
+
+    /// The region of the RPP, for targets backwards: `t ↦ -conj(r) t`.
+    pub(super) fn region(&self, rotation: Complex<f64>, [first, second]: [[f64; 2]; 2]) -> Region {
+        let backwards = |[low, high]: [f64; 2]| [-high, -low];
+        let region = self.0.region(rotation.conj(), [backwards(second), backwards(first)]);
+        region.turned(-rotation)
     }
 
     /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.

@@ -1,7 +1,8 @@
 //! PRP: a pivot between two sliders. The target's rotation is the pivot's.
 
 use super::{Amount, Gap, Pivot, PlanarDisplacement, along, cross};
-use crate::chain::RIM;
+use crate::chain::region::{Region, parallelogram};
+use crate::chain::{DEGENERATE, RIM};
 use nalgebra::Complex;
 
 /// A slider, a pivot and a slider: one solution, none where the two slides come to be parallel.
@@ -14,6 +15,19 @@ pub struct Prp {
 impl Prp {
     pub(super) fn new(d1: Complex<f64>, pivot: Pivot, d3: Complex<f64>) -> Self {
         Self { slides: [d1, d3], pivot }
+    }
+
+    /// A parallelogram; `None` where the slides come to be all but parallel.
+    pub(super) fn region(&self, rotation: Complex<f64>, ranges: [[f64; 2]; 2]) -> Option<Region> {
+        let slides = [self.slides[0], rotation * self.slides[1]];
+        let offset = rotation * self.pivot.at - self.pivot.at;
+        let crossing = cross(slides[0], slides[1]).abs() > DEGENERATE;
+        crossing.then(|| parallelogram(slides, offset, ranges))
+    }
+
+    /// The pivot's amount for a target that is turned by `rotation`.
+    pub(super) fn turn(&self, rotation: Complex<f64>) -> Amount {
+        self.pivot.amount(rotation)
     }
 
     #[inline]

@@ -3,6 +3,7 @@
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
 use crate::chain::RIM;
+use crate::chain::region::{Band, Convex, Region, Stadium};
 use nalgebra::Complex;
 
 /// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
@@ -28,21 +29,47 @@ impl Prr {
     /// home, and the square of what the link has left along the slide. Within reach where that is
     /// not negative; the slider is then at the sum or difference of the first and the root.
     #[inline]
-    pub fn triangle(&self, outer: Complex<f64>) -> (f64, f64) {
+    fn triangle(&self, outer: Complex<f64>) -> (f64, f64) {
         let local = (outer - self.pivots[0].at) * self.slide.conj();
         (local.re, self.link_square - local.im * local.im)
     }
 
     /// Whether the link can leave this square along the slide, the rim included.
     #[inline]
-    pub fn closes(&self, square: f64) -> bool {
+    fn closes(&self, square: f64) -> bool {
         square >= -2.0 * RIM * self.link_square
     }
 
     /// The home position of the outer pivot, which a target displaces.
     #[inline]
-    pub fn outer(&self) -> Complex<f64> {
+    fn outer(&self) -> Complex<f64> {
         self.pivots[1].at
+    }
+
+    /// What half the circle about the inner pivot sweeps, as the slider goes through its range: what
+    /// it sweeps from the one end on, without what it sweeps beyond the other.
+    pub(super) fn region(
+        &self,
+        rotation: Complex<f64>,
+        branch: Branch,
+        [low, high]: [f64; 2],
+    ) -> Region {
+        // Targets that leave the outer pivot where the inner one is at home.
+        let home = self.pivots[0].at - rotation * self.outer();
+        // The slider is ahead of the outer pivot by the root, or behind: sweep towards that side.
+        let (along, start, end) = match branch {
+            Branch::Plus => (self.slide, low, high),
+            Branch::Minus => (-self.slide, -high, -low),
+        };
+        let stadium = |at: f64| Stadium::new(home + along * at, along, self.link_square, RIM);
+        let whole = if start == f64::NEG_INFINITY {
+            let (across, radius) = (along * Complex::i(), self.link_square.sqrt() * (1.0 + RIM));
+            let middle = across.re * home.re + across.im * home.im;
+            Convex::Bands([Band::new(across, [middle - radius, middle + radius]); 2])
+        } else {
+            Convex::Stadium(stadium(start))
+        };
+        Region { whole, hole: (end < f64::INFINITY).then(|| Convex::Stadium(stadium(end))) }
     }
 
     #[inline]

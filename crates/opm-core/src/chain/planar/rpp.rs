@@ -2,6 +2,7 @@
 
 use super::{Amount, ChainError, Pivot, PlanarDisplacement, along, cross};
 use crate::chain::DEGENERATE;
+use crate::chain::region::{Region, parallelogram};
 use nalgebra::Complex;
 
 /// A pivot, then two sliders: one solution.
@@ -21,6 +22,12 @@ impl Rpp {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
         Ok(Self { pivot, slides: [d2, d3] })
+    }
+
+    /// A parallelogram, turned with the target.
+    pub(super) fn region(&self, rotation: Complex<f64>, ranges: [[f64; 2]; 2]) -> Region {
+        let offset = rotation * self.pivot.at - self.pivot.at;
+        parallelogram(self.slides.map(|slide| rotation * slide), offset, ranges)
     }
 
     #[inline]

@@ -1,6 +1,7 @@
 //! RPR: a telescope between two pivots.
 
 use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement};
+use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::{RIM, direction};
 use nalgebra::Complex;
 
@@ -17,6 +18,28 @@ pub struct Rpr {
 impl Rpr {
     pub(super) fn new(p1: Pivot, slide: Complex<f64>, p3: Pivot) -> Self {
         Self { pivots: [p1, p3], slide, offset: (p3.at - p1.at) * slide.conj() }
+    }
+
+    /// A ring about the first pivot, between the lengths that the slider allows.
+    pub(super) fn region(
+        &self,
+        rotation: Complex<f64>,
+        branch: Branch,
+        [low, high]: [f64; 2],
+    ) -> Region {
+        let centre = self.pivots[0].at - rotation * self.pivots[1].at;
+        let [low, high] = [low + self.offset.re, high + self.offset.re];
+        let [low, high] = match branch {
+            Branch::Plus => [low, high],
+            Branch::Minus => [-high, -low],
+        };
+        if high < 0.0 {
+            return Region::NOTHING;
+        }
+        let aside = self.offset.im * self.offset.im;
+        let disc = |square: f64| Convex::Disc(Disc::new(centre, square));
+        let inner = if low > 0.0 { aside + low * low } else { aside * (1.0 - 2.0 * RIM) };
+        Region { whole: disc(aside + high * high), hole: (inner > 0.0).then(|| disc(inner)) }
     }
 
     #[inline]

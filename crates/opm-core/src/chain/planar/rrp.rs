@@ -1,6 +1,7 @@
 //! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, Prr};
+use crate::chain::region::Region;
 use nalgebra::Complex;
 
 /// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
@@ -10,6 +11,17 @@ pub struct Rrp(Prr);
 impl Rrp {
     pub(super) fn new(p1: Pivot, p2: Pivot, slide: Complex<f64>) -> Result<Self, ChainError> {
         Prr::new(slide, p2, p1).map(Self)
+    }
+
+    /// The region of the PRR, for targets backwards: `t ↦ -conj(r) t`.
+    pub(super) fn region(
+        &self,
+        rotation: Complex<f64>,
+        branch: Branch,
+        [low, high]: [f64; 2],
+    ) -> Region {
+        let backwards = self.0.region(rotation.conj(), branch, [-high, -low]);
+        backwards.turned(-rotation)
     }
 
     /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.

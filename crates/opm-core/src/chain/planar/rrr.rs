@@ -1,6 +1,7 @@
 //! RRR: a two-link arm from a fixed pivot, with a wrist.
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
+use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::{DEGENERATE, RIM, direction};
 use nalgebra::Complex;
 
@@ -38,19 +39,28 @@ impl Rrr {
     /// Cosine of the angle from the first link to the second when the wrist is at `wrist`; within
     /// reach where it lies in `[-1, 1]`.
     #[inline]
-    pub fn elbow_cosine(&self, wrist: Complex<f64>) -> f64 {
+    fn elbow_cosine(&self, wrist: Complex<f64>) -> f64 {
         ((wrist - self.pivots[0].at).norm_sqr() / 2.0 - self.mean_square) / self.product
     }
 
     /// Whether the elbow can take this cosine, the rim included.
     #[inline]
-    pub fn closes(cosine: f64) -> bool {
+    fn closes(cosine: f64) -> bool {
         cosine.abs() <= 1.0 + RIM
+    }
+
+    /// A ring about the first pivot.
+    pub(super) fn region(&self, rotation: Complex<f64>) -> Region {
+        let centre = self.pivots[0].at - rotation * self.wrist();
+        let swing = self.product * (1.0 + RIM);
+        let disc = |half_square: f64| Convex::Disc(Disc::new(centre, 2.0 * half_square));
+        let inner = self.mean_square - swing;
+        Region { whole: disc(self.mean_square + swing), hole: (inner > 0.0).then(|| disc(inner)) }
     }
 
     /// The home position of the wrist, which a target displaces.
     #[inline]
-    pub fn wrist(&self) -> Complex<f64> {
+    fn wrist(&self) -> Complex<f64> {
         self.pivots[2].at
     }
 

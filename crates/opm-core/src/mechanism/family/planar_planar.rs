@@ -183,6 +183,7 @@ impl PlanarPlanar {
                 home: [("x", x), ("y", y), ("theta", 0.0), ("w", w), ("phi", phi)]
                     .map(|(name, value)| (name.to_owned(), value))
                     .into(),
+                ..TaskHints::default()
             },
         })
     }

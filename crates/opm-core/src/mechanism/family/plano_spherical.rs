@@ -153,6 +153,7 @@ impl PlanoSpherical {
                 home: [("x", x), ("y", y), ("zeta", zeta), ("xi", xi), ("psi", psi)]
                     .map(|(name, value)| (name.to_owned(), value))
                     .into(),
+                ..TaskHints::default()
             },
         })
     }

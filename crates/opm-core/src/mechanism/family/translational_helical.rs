@@ -122,6 +122,7 @@ impl TranslationalHelical {
             task: TaskHints {
                 axis: Some(-in_plane(unit(direction)).into_inner()),
                 home: vec![("x".into(), x), ("y".into(), y), ("phi".into(), phi)],
+                ..TaskHints::default()
             },
         })
     }

@@ -1,10 +1,11 @@
 //! The form of a mechanism file that lists the joints at the assembled home pose.
 
 use super::leg_name;
+use super::problem::Places;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::joint::{Joint, JointKind, Quantity};
-use crate::leg::Leg;
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::leg::{Leg, Section};
+use crate::mechanism::{FrameHints, Mechanism, TaskHints, TaskKey};
 use nalgebra::{Point3, Unit, Vector3};
 
 const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
@@ -48,7 +49,7 @@ impl Type {
 
 /// The mechanism. What cannot be read is reported, and stands for something harmless, so that the
 /// rest is checked too.
-pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
+pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Places<usize>) {
     root.allow(KEYS);
     let point = "the platform's reference point [x, y, z] at home";
     let platform = root
@@ -56,10 +57,11 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
         .and_then(|value| value.table(&["point"]))
         .and_then(|table| table.require("point", point)?.point())
         .map_or_else(Point3::origin, Point3::from);
-    let axis = root
+    let mut places = Places::default();
+    let task = root
         .get("task")
-        .and_then(|value| value.table(&["axis"]))
-        .and_then(|task| task.get("axis")?.direction());
+        .and_then(|value| value.table(&["axis", "lower", "upper"]))
+        .map_or_else(TaskHints::default, |task| read_task(&task, &mut places));
 
     let tables = root.tables("leg", LEG_KEYS);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
@@ -68,6 +70,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
     for (index, table) in tables.iter().enumerate() {
         let name = leg_name(table, index);
         leg_names.add(&name, root.reader, table.place_of("name"));
+        places.legs.push(table.at);
         let joints = read_joints(table, platform, &mut joint_names);
         complete &= joints.is_some();
         legs.push(Leg::new(name, joints.unwrap_or_default()));
@@ -80,8 +83,53 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> Mechanism {
     if complete && !legs.iter().flat_map(|leg| &leg.joints).any(|joint| joint.actuated) {
         root.reader.report(at, "no joint is actuated, expected `actuated = true` in at least one");
     }
-    let task = TaskHints { axis: axis.map(Unit::into_inner), home: Vec::new() };
-    Mechanism { name: name.to_owned(), legs, platform, task }
+    (Mechanism { name: name.to_owned(), legs, platform, task }, places)
+}
+
+/// `[task]`: how the pose is to be measured. Whether it fits the geometry turns out later.
+fn read_task(task: &Table<'_>, places: &mut Places<usize>) -> TaskHints {
+    TaskHints {
+        axis: task_direction(task, TaskKey::Axis, places),
+        lower: read_frame(task, Section::Lower, places),
+        upper: read_frame(task, Section::Upper, places),
+        home: Vec::new(),
+    }
+}
+
+fn read_frame(task: &Table<'_>, section: Section, places: &mut Places<usize>) -> FrameHints {
+    let value = match section {
+        Section::Lower => task.get("lower"),
+        Section::Upper => task.get("upper"),
+    };
+    let Some(frame) = value.and_then(|value| value.table(&["x", "w", "normal", "origin"])) else {
+        return FrameHints::default();
+    };
+    let origin = task_value(&frame, TaskKey::Origin(section), places);
+    FrameHints {
+        x: task_direction(&frame, TaskKey::X(section), places),
+        w: task_direction(&frame, TaskKey::W(section), places),
+        normal: task_direction(&frame, TaskKey::Normal(section), places),
+        origin: origin.and_then(|value| value.point()).map(Point3::from),
+    }
+}
+
+fn task_direction(
+    table: &Table<'_>,
+    key: TaskKey,
+    places: &mut Places<usize>,
+) -> Option<Vector3<f64>> {
+    task_value(table, key, places)?.direction().map(Unit::into_inner)
+}
+
+/// A value of `[task]`, its place noted.
+fn task_value<'a>(
+    table: &Table<'a>,
+    key: TaskKey,
+    places: &mut Places<usize>,
+) -> Option<Value<'a>> {
+    let value = table.get(key.name())?;
+    places.task.push((key, value.at));
+    Some(value)
 }
 
 /// The joints of a leg; `None` where one of them has no known type.

@@ -1,5 +1,6 @@
 //! What is wrong with a file, and where.
 
+use crate::mechanism::TaskKey;
 use std::fmt;
 
 /// One problem of a file.
@@ -40,6 +41,42 @@ fn lines(problems: &[Problem], prefix: &str) -> String {
     problems.iter().map(|p| format!("{prefix}{p}")).collect::<Vec<_>>().join("\n")
 }
 
+/// A line and a column in characters, both from 1.
+pub type Place = (usize, usize);
+
+/// Where a file that lists joints says what may turn out not to fit together; as [`Place`]s, or as
+/// byte offsets while it is read. Families have their own checks: of them nothing is noted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places<T = Place> {
+    /// Each leg, in order.
+    pub legs: Vec<T>,
+    /// What `[task]` gives.
+    pub task: Vec<(TaskKey, T)>,
+}
+
+impl<T> Default for Places<T> {
+    fn default() -> Self {
+        Self { legs: Vec::new(), task: Vec::new() }
+    }
+}
+
+impl<T: Copy> Places<T> {
+    /// The place of a value in `[task]`, if the file gives it.
+    pub fn of_task(&self, key: TaskKey) -> Option<T> {
+        self.task.iter().find(|(known, _)| *known == key).map(|&(_, place)| place)
+    }
+}
+
+impl Places<usize> {
+    pub(super) fn in_text(&self, text: &str) -> Places {
+        let lines = Lines::new(text);
+        Places {
+            legs: self.legs.iter().map(|&at| lines.place(at)).collect(),
+            task: self.task.iter().map(|&(key, at)| (key, lines.place(at))).collect(),
+        }
+    }
+}
+
 /// Where the lines of a text start, to name the place of a byte offset.
 pub(super) struct Lines<'t> {
     text: &'t str,
@@ -53,7 +90,7 @@ impl<'t> Lines<'t> {
     }
 
     /// Line and column, both from 1, of a byte offset.
-    pub(super) fn place(&self, offset: usize) -> (usize, usize) {
+    pub(super) fn place(&self, offset: usize) -> Place {
         let mut end = offset.min(self.text.len());
         while !self.text.is_char_boundary(end) {
             end -= 1;

@@ -3,7 +3,7 @@
 
 use super::FileUnits;
 use crate::joint::{Joint, JointKind, Quantity};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::Vector3;
 use std::fmt::Write;
 
@@ -26,9 +26,7 @@ pub(in crate::mechanism) fn write(mechanism: &Mechanism, units: FileUnits) -> St
     let length = |v: f64| v / units.length.factor();
     let platform = mechanism.platform.coords.map(length);
     let _ = write!(text, "\n[platform]\npoint = {}\n", array(platform.as_slice()));
-    if let Some(axis) = mechanism.task.axis {
-        let _ = write!(text, "\n[task]\naxis = {}\n", direction(&axis));
-    }
+    text.push_str(&task(&mechanism.task, units));
     for leg in &mechanism.legs {
         let _ = write!(text, "\n[[leg]]\nname = {}\njoints = [\n", quoted(&leg.name));
         for joint in &leg.joints {
@@ -37,6 +35,29 @@ pub(in crate::mechanism) fn write(mechanism: &Mechanism, units: FileUnits) -> St
         text.push_str("]\n");
     }
     text
+}
+
+/// `[task]`, if it says anything.
+fn task(hints: &TaskHints, units: FileUnits) -> String {
+    let mut lines = Vec::new();
+    if let Some(axis) = hints.axis {
+        lines.push(format!("axis = {}", direction(&axis)));
+    }
+    for (name, frame) in [("lower", &hints.lower), ("upper", &hints.upper)] {
+        let directions = [("x", frame.x), ("w", frame.w), ("normal", frame.normal)];
+        let mut keys: Vec<_> = directions
+            .into_iter()
+            .filter_map(|(key, given)| Some(format!("{key} = {}", direction(&given?))))
+            .collect();
+        if let Some(origin) = frame.origin {
+            let origin = origin.coords / units.factor(Quantity::Length);
+            keys.push(format!("origin = {}", array(origin.as_slice())));
+        }
+        if !keys.is_empty() {
+            lines.push(format!("{name} = {{ {} }}", keys.join(", ")));
+        }
+    }
+    if lines.is_empty() { String::new() } else { format!("\n[task]\n{}\n", lines.join("\n")) }
 }
 
 fn entries(joint: &Joint, units: FileUnits) -> Vec<String> {

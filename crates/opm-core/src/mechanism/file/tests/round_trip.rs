@@ -3,7 +3,7 @@
 use crate::joint::{Joint, JointKind};
 use crate::leg::Leg;
 use crate::mechanism::file::{AngleUnit, FileUnits, LengthUnit, read, writer};
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::mechanism::{FrameHints, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
 
@@ -57,6 +57,30 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    fn frame()(
+        x in proptest::option::of(direction()), w in proptest::option::of(direction()),
+        normal in proptest::option::of(direction()), origin in proptest::option::of(point()),
+    ) -> FrameHints {
+        let [x, w, normal] = [x, w, normal].map(|given| given.map(Unit::into_inner));
+        FrameHints { x, w, normal, origin }
+    }
+}
+
+prop_compose! {
+    fn task()(
+        axis in proptest::option::of(direction()), lower in frame(), upper in frame(),
+    ) -> TaskHints {
+        TaskHints { axis: axis.map(Unit::into_inner), lower, upper, home: Vec::new() }
+    }
+}
+
+/// Every vector of a `[task]`.
+fn vectors(task: &TaskHints) -> Vec<Option<Vector3<f64>>> {
+    let frame = |f: &FrameHints| [f.x, f.w, f.normal, f.origin.map(|p| p.coords)];
+    [task.axis].into_iter().chain(frame(&task.lower)).chain(frame(&task.upper)).collect()
+}
+
 fn mechanism() -> impl Strategy<Value = Mechanism> {
     let legs = prop::collection::vec(prop::collection::vec(joint(), 1..6), 2..6);
     // Names from all letters that a name may have.
@@ -64,8 +88,7 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
     let names = names.unwrap().prop_filter("a name", |name| {
         !name.contains(|c: char| c.is_control() || ",=\"".contains(c))
     });
-    let axis = proptest::option::of(direction());
-    (names, legs, point(), axis).prop_map(|(name, legs, platform, axis)| {
+    (names, legs, point(), task()).prop_map(|(name, legs, platform, task)| {
         let mut number = 0;
         let mut legs: Vec<Leg> = legs
             .into_iter()
@@ -85,7 +108,6 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             })
             .collect();
         legs[0].joints[0].actuated = true;
-        let task = TaskHints { axis: axis.map(Unit::into_inner), home: Vec::new() };
         Mechanism { name, legs, platform, task }
     })
 }
@@ -128,7 +150,11 @@ proptest! {
         let read = file.mechanism;
         prop_assert_eq!(&read.name, &mechanism.name);
         prop_assert!((read.platform - mechanism.platform).norm() < WRITTEN);
-        prop_assert_eq!(read.task.axis.is_some(), mechanism.task.axis.is_some());
+        for (read, written) in vectors(&read.task).iter().zip(vectors(&mechanism.task)) {
+            prop_assert_eq!(read.is_some(), written.is_some());
+            let off = read.unwrap_or_default() - written.unwrap_or_default();
+            prop_assert!(off.norm() < WRITTEN, "{text}");
+        }
         let names = |m: &Mechanism| -> Vec<_> {
             m.legs.iter().map(|leg| (leg.name.clone(), leg.joints.len())).collect()
         };

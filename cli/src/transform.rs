@@ -1,0 +1,130 @@
+//! The platform's place in SE(3), as it is written on the command line:
+//! `0,0,300mm,0.966,0.259,0,0`.
+
+use crate::pose::{Misread, Number};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use opm_core::joint::Quantity;
+use opm_core::manipulator::{Manipulator, OutsideMotion};
+use opm_core::mobility::frame;
+use serde_json::{Value, json};
+use std::str::FromStr;
+
+/// A quaternion whose length is off one by more has a wrong number in it: three digits do.
+const UNIT: f64 = 2e-3;
+
+/// Numbers of six digits are off the motion by less, in radians or sizes of the mechanism.
+const WRITTEN: f64 = 1e-5;
+
+const NAMES: [&str; 7] = ["X", "Y", "Z", "QW", "QX", "QY", "QZ"];
+
+/// Position of the platform's reference point, and its orientation; base coordinates, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform(Isometry3<f64>);
+
+impl FromStr for Transform {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let parts: Vec<&str> = text.split(',').collect();
+        if parts.len() != NAMES.len() {
+            return Err(Misread(format!(
+                "{} numbers in {text:?}, expected seven: {}",
+                if text.trim().is_empty() { 0 } else { parts.len() },
+                NAMES.join(",")
+            )));
+        }
+        let mut values = [0.0; 7];
+        for ((value, part), (number, name)) in
+            values.iter_mut().zip(parts).zip(NAMES.into_iter().enumerate())
+        {
+            let given: Number = part.parse()?;
+            *value = match number {
+                0..3 => given.value_of(name, Quantity::Length)?,
+                _ => given.bare(name)?,
+            };
+        }
+        let [x, y, z, qw, qx, qy, qz] = values;
+        let quaternion = Quaternion::new(qw, qx, qy, qz);
+        let length = quaternion.norm();
+        if (length - 1.0).abs() > UNIT {
+            return Err(Misread(format!(
+                "the quaternion {qw},{qx},{qy},{qz} has length {length:.4}, expected 1"
+            )));
+        }
+        let rotation = UnitQuaternion::new_normalize(quaternion);
+        Ok(Self(Isometry3::from_parts(Translation3::new(x, y, z), rotation)))
+    }
+}
+
+/// Where a transform is among a manipulator's poses.
+pub enum Located {
+    /// In the motion, but for the rounding of what was written.
+    Pose(Vec<f64>),
+    /// Outside it.
+    Outside(OutsideMotion),
+}
+
+impl Transform {
+    pub fn locate(&self, manipulator: &Manipulator) -> Located {
+        match manipulator.locate_platform(&self.0) {
+            Ok(pose) => Located::Pose(pose),
+            Err(outside) => {
+                let size = frame(manipulator.mechanism()).length;
+                let rotation = outside.rotation.norm();
+                if rotation.max(outside.translation.norm() / size) < WRITTEN {
+                    Located::Pose(outside.nearest)
+                } else {
+                    Located::Outside(outside)
+                }
+            }
+        }
+    }
+}
+
+/// Where the platform is at a pose, SI; the quaternion with its scalar first, which is not negative.
+pub fn json(manipulator: &Manipulator, pose: &[f64]) -> Value {
+    let platform = manipulator.platform_pose(pose);
+    let q = platform.rotation;
+    let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
+    let quaternion = [q.w, q.i, q.j, q.k].map(|part| sign * part + 0.0);
+    json!({ "position": triple(&platform.translation.vector), "quaternion": quaternion })
+}
+
+/// How far a transform is outside, SI.
+pub fn outside_json(outside: &OutsideMotion) -> Value {
+    json!({
+        "rotation": triple(&outside.rotation),
+        "translation": triple(&outside.translation),
+    })
+}
+
+fn triple(v: &Vector3<f64>) -> [f64; 3] {
+    [v.x, v.y, v.z].map(|c| c + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_transform_is_seven_numbers() {
+        let read = |text: &str| text.parse::<Transform>();
+        let Transform(found) = read("10mm, -0.2,1in, 0.8,0,-0.6,0").unwrap();
+        assert_eq!(found.translation.vector, Vector3::new(0.01, -0.2, 0.0254));
+        assert!((found * Vector3::x() - Vector3::new(0.28, 0.0, 0.96)).norm() < 1e-12);
+        for (text, expected) in [
+            ("", "0 numbers in \"\", expected seven: X,Y,Z,QW"),
+            ("0,0,0,1,0,0", "6 numbers"),
+            ("0,0,0,1,0,0,0,0", "8 numbers"),
+            ("0,0,30deg,1,0,0,0", "Z is a length"),
+            ("0,0,0,1mm,0,0,0", "QW has a unit, expected a number alone"),
+            ("0,0,0,1,0,0,x", "not a number"),
+            ("0,0,0,1,0,0,nan", "not a number"),
+            ("0,0,0,0,0,0,0", "has length 0.0000, expected 1"),
+            ("0,0,0,1,0.1,0,0", "has length 1.0050, expected 1"),
+        ] {
+            let message = read(text).expect_err(text).to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! Where in a plane a chain closes, the rotation of its target fixed: one fixed shape, which the rows
+//! of a sweep cut.
+//!
+//! A chain of the plane whose only limits are on its sliders reaches a convex set less another: a
+//! ring, a parallelogram, or what half a disc sweeps as it slides along. A row, a line along the
+//! plane's first direction, cuts a convex set in an interval, which takes a square root at most.
+//!
+//! The chain itself has the last word on which targets it reaches, and ends of intervals are
+//! rounded. So a section says whether it is sure, for an end that is right to within a given
+//! tolerance ([`Precision`]).
+
+use nalgebra::Complex;
+
+/// A direction's part along the rows that is smaller than this counts as none.
+const LEVEL: f64 = 1e-12;
+
+/// Rounding of a coordinate, as a share of the largest number that it is computed from: that of
+/// some fifty operations.
+const ROUNDING: f64 = 1e-14;
+
+/// In place of the inverse of zero: what it multiplies is beyond any grid, and zero stays zero.
+const HUGE: f64 = 1e300;
+
+/// The translations at which a chain closes: those of a convex set that are not inside the `hole`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// The convex set.
+    pub whole: Convex,
+    /// What is missing of it; its rim is not.
+    pub hole: Option<Convex>,
+}
+
+/// A convex set of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Convex {
+    /// The points that two bands have in common.
+    Bands([Band; 2]),
+    /// A circle and its inside.
+    Disc(Disc),
+    /// The points that are no farther than a radius from a ray.
+    Stadium(Stadium),
+}
+
+/// The points whose coordinate along a direction lies in a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Unit.
+    across: Complex<f64>,
+    range: [f64; 2],
+    /// The ends in the order in which a row meets them, and the inverse of the direction's part
+    /// along the row.
+    met: [f64; 2],
+    inverse: f64,
+}
+
+/// The points whose squared distance from the centre is at most `square`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    centre: Complex<f64>,
+    square: f64,
+}
+
+/// The points no farther than a radius from a ray: half a band, and the disc about its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stadium {
+    band: Band,
+    half: Band,
+    tip: Disc,
+}
+
+/// What a row cuts from a convex set: nothing where `to < from`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// First coordinate of the near end.
+    pub from: f64,
+    /// First coordinate of the far end.
+    pub to: f64,
+    /// The ends are right to within the tolerance.
+    pub sure: bool,
+}
+
+/// From where on the ends of a section are right to within a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// How far from the edge of a band along the rows.
+    level: f64,
+    /// Least square that a root is taken of.
+    square: f64,
+    /// Largest inverse of a direction's part along the rows.
+    inverse: f64,
+}
+
+impl Precision {
+    /// For ends that are right to within `tolerance`, where no number is larger than `size`.
+    pub fn new(size: f64, tolerance: f64) -> Self {
+        let rounding = ROUNDING * size;
+        // The root of s, which is off by d, is off by d / (2 root).
+        let root = rounding * size / tolerance;
+        Self {
+            level: rounding + LEVEL * size,
+            square: (root * root).max(rounding * size),
+            inverse: tolerance / rounding,
+        }
+    }
+}
+
+impl Region {
+    /// No translation at all.
+    pub const NOTHING: Self = Self { whole: Convex::NOTHING, hole: None };
+
+    /// The region turned about the origin by a unit vector.
+    #[must_use]
+    pub fn turned(&self, turn: Complex<f64>) -> Self {
+        Self { whole: self.whole.turned(turn), hole: self.hole.map(|hole| hole.turned(turn)) }
+    }
+
+    /// The region after every one of its points `z` has moved to `scale · (z + shift)`.
+    #[must_use]
+    pub fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
+        Self {
+            whole: self.whole.placed(shift, scale),
+            hole: self.hole.map(|hole| hole.placed(shift, scale)),
+        }
+    }
+
+    /// Whether every section that says so is right: no edge is so close to the rows' direction that
+    /// rounding moves it by more than the tolerance.
+    pub fn suits(&self, precision: &Precision) -> bool {
+        let suits = |set: &Convex| match set {
+            Convex::Bands(bands) => bands.iter().all(|band| band.suits(precision)),
+            Convex::Disc(_) => true,
+            Convex::Stadium(stadium) => stadium.band.suits(precision),
+        };
+        suits(&self.whole) && self.hole.as_ref().is_none_or(suits)
+    }
+
+    /// The largest finite number in it, which decides how far its sections are rounded.
+    pub fn size(&self) -> f64 {
+        let size = |set: &Convex| match set {
+            Convex::Bands(bands) => bands[0].size().max(bands[1].size()),
+            Convex::Disc(disc) => disc.size(),
+            Convex::Stadium(stadium) => stadium.tip.size().max(stadium.band.size()),
+        };
+        size(&self.whole).max(self.hole.as_ref().map_or(0.0, size))
+    }
+}
+
+impl Convex {
+    /// The empty set.
+    const NOTHING: Self = {
+        let band = Band {
+            across: Complex::new(1.0, 0.0),
+            range: [f64::INFINITY, f64::NEG_INFINITY],
+            met: [f64::INFINITY, f64::NEG_INFINITY],
+            inverse: 1.0,
+        };
+        Self::Bands([band; 2])
+    };
+
+    fn turned(&self, turn: Complex<f64>) -> Self {
+        match self {
+            Self::Bands(bands) => Self::Bands(bands.map(|band| band.turned(turn))),
+            Self::Disc(disc) => Self::Disc(disc.turned(turn)),
+            Self::Stadium(Stadium { band, half, tip }) => Self::Stadium(Stadium {
+                band: band.turned(turn),
+                half: half.turned(turn),
+                tip: tip.turned(turn),
+            }),
+        }
+    }
+
+    fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
+        match self {
+            Self::Bands(bands) => Self::Bands(bands.map(|band| band.placed(shift, scale))),
+            Self::Disc(disc) => Self::Disc(disc.placed(shift, scale)),
+            Self::Stadium(Stadium { band, half, tip }) => Self::Stadium(Stadium {
+                band: band.placed(shift, scale),
+                half: half.placed(shift, scale),
+                tip: tip.placed(shift, scale),
+            }),
+        }
+    }
+}
+
+impl Band {
+    /// The points `z` with `range[0] <= Re(conj(across) z) <= range[1]`.
+    pub fn new(across: Complex<f64>, range: [f64; 2]) -> Self {
+        let along = across.re;
+        let inverse = if along.abs() > LEVEL { 1.0 / along } else { HUGE.copysign(along) };
+        let met = if inverse > 0.0 { range } else { [range[1], range[0]] };
+        Self { across, range, met, inverse }
+    }
+
+    fn turned(&self, turn: Complex<f64>) -> Self {
+        Self::new(turn * self.across, self.range)
+    }
+
+    fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
+        let offset = self.across.re * shift.re + self.across.im * shift.im;
+        let placed = |end: f64| scale * (end + offset);
+        Self { range: self.range.map(placed), met: self.met.map(placed), ..*self }
+    }
+
+    fn is_level(&self) -> bool {
+        self.inverse.abs() == HUGE
+    }
+
+    fn suits(&self, precision: &Precision) -> bool {
+        self.is_level() || self.inverse.abs() <= precision.inverse || self.is_everything()
+    }
+
+    fn is_everything(&self) -> bool {
+        self.range == [f64::NEG_INFINITY, f64::INFINITY]
+    }
+
+    fn size(&self) -> f64 {
+        let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
+        finite(self.range[0]).max(finite(self.range[1]))
+    }
+
+    /// What the row at the second coordinate `y` cuts from it.
+    #[inline(always)]
+    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+        let up = self.across.im * y;
+        let [near, far] = self.met.map(|end| end - up);
+        Section {
+            from: near * self.inverse,
+            to: far * self.inverse,
+            sure: !self.is_level() | (near.abs().min(far.abs()) > precision.level),
+        }
+    }
+}
+
+impl Disc {
+    /// The points whose squared distance from the centre is at most `square`; none where it is
+    /// negative.
+    pub fn new(centre: Complex<f64>, square: f64) -> Self {
+        Self { centre, square }
+    }
+
+    fn turned(&self, turn: Complex<f64>) -> Self {
+        Self::new(turn * self.centre, self.square)
+    }
+
+    fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
+        Self::new((self.centre + shift) * scale, self.square * scale * scale)
+    }
+
+    fn size(&self) -> f64 {
+        let radius = self.square.max(0.0).sqrt();
+        self.centre.l1_norm() + if radius.is_finite() { radius } else { 0.0 }
+    }
+
+    /// What the row at the second coordinate `y` cuts from it.
+    #[inline(always)]
+    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+        let up = y - self.centre.im;
+        let square = self.square - up * up;
+        let half = larger(square, 0.0).sqrt();
+        let gap = missed(square >= 0.0);
+        Section {
+            from: self.centre.re - half + gap,
+            to: self.centre.re + half - gap,
+            sure: square.abs() > precision.square,
+        }
+    }
+}
+
+impl Stadium {
+    /// The points no farther than the root of `square` from the ray from `tip` in the direction
+    /// `along`; the band on both sides of the ray is `rim` wider, as a share.
+    pub fn new(tip: Complex<f64>, along: Complex<f64>, square: f64, rim: f64) -> Self {
+        let across = along * Complex::i();
+        let radius = square.sqrt() * (1.0 + rim);
+        let at = |d: Complex<f64>| d.re * tip.re + d.im * tip.im;
+        let middle = at(across);
+        Self {
+            band: Band::new(across, [middle - radius, middle + radius]),
+            half: Band::new(along, [at(along), f64::INFINITY]),
+            tip: Disc::new(tip, square),
+        }
+    }
+
+    /// What the row at the second coordinate `y` cuts from it: the ends that half a band and the disc
+    /// have together, since the disc covers the band's blunt end. Where the row runs along the band,
+    /// it is near to the band's edge when it is near to touching the disc.
+    #[inline(always)]
+    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+        let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));
+        let tip = self.tip.section(y, precision);
+        let (from, to) = (larger(band.from, half.from), smaller(band.to, half.to));
+        let gap = missed(from <= to);
+        Section {
+            from: smaller(from + gap, tip.from),
+            to: larger(to - gap, tip.to),
+            sure: tip.sure,
+        }
+    }
+}
+
+/// What the row at the second coordinate `y` cuts from two bands.
+#[inline(always)]
+pub fn common(bands: &[Band; 2], y: f64, precision: &Precision) -> Section {
+    let [a, b] = [bands[0].section(y, precision), bands[1].section(y, precision)];
+    Section { from: larger(a.from, b.from), to: smaller(a.to, b.to), sure: a.sure & b.sure }
+}
+
+/// What moves the ends of a section apart the wrong way, where the row misses the set: a sum, since the
+/// compiler takes a root out of a choice, and then no longer takes several at once.
+#[inline(always)]
+fn missed(met: bool) -> f64 {
+    if met { 0.0 } else { f64::INFINITY }
+}
+
+/// The smaller of two numbers, one instruction where neither is a NaN.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The targets `z` for which two sliders along `u` and `v`, whose displacements are in the ranges,
+/// make up `z + offset`.
+pub(super) fn parallelogram(
+    [u, v]: [Complex<f64>; 2],
+    offset: Complex<f64>,
+    ranges: [[f64; 2]; 2],
+) -> Region {
+    // m u + n v, taken across v, is m cross(v, u) in the direction i v; and the like for n.
+    let band = |kept: Complex<f64>, other: Complex<f64>, [low, high]: [f64; 2]| {
+        let across = other * Complex::i();
+        let scale = kept.re * across.re + kept.im * across.im;
+        let (across, scale) = if scale > 0.0 { (across, scale) } else { (-across, -scale) };
+        let at = across.re * offset.re + across.im * offset.im;
+        Band::new(across, [scale * low - at, scale * high - at])
+    };
+    Region { whole: Convex::Bands([band(u, v, ranges[0]), band(v, u, ranges[1])]), hole: None }
+}

@@ -1,0 +1,53 @@
+//! Poses of a row as runs of their numbers, ascending and apart.
+
+/// Numbers from `from` on, before `to`; never empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    pub from: u64,
+    pub to: u64,
+}
+
+/// Every number of some runs.
+pub fn poses(runs: &[Run]) -> impl Iterator<Item = u64> {
+    runs.iter().flat_map(|run| run.from..run.to)
+}
+
+/// Adds a number that is greater than all.
+pub fn push(runs: &mut Vec<Run>, pose: u64) {
+    match runs.last_mut() {
+        Some(run) if run.to == pose => run.to += 1,
+        _ => runs.push(Run { from: pose, to: pose + 1 }),
+    }
+}
+
+/// Whether any number of `run` is among `runs`.
+pub fn meet(runs: &[Run], run: Run) -> bool {
+    runs.iter().any(|other| other.from < run.to && run.from < other.to)
+}
+
+/// What is in any of `parts`, which come in any order and may overlap.
+pub fn union(parts: impl Iterator<Item = Run>, out: &mut Vec<Run>) {
+    out.clear();
+    out.extend(parts);
+    out.sort_unstable_by_key(|run| run.from);
+    out.dedup_by(|next, run| {
+        let joined = next.from <= run.to;
+        if joined {
+            run.to = run.to.max(next.to);
+        }
+        joined
+    });
+}
+
+/// What is in both.
+pub fn intersection(a: &[Run], b: &[Run], out: &mut Vec<Run>) {
+    out.clear();
+    let (mut i, mut j) = (0, 0);
+    while i < a.len() && j < b.len() {
+        let (from, to) = (a[i].from.max(b[j].from), a[i].to.min(b[j].to));
+        if from < to {
+            out.push(Run { from, to });
+        }
+        if a[i].to < b[j].to { i += 1 } else { j += 1 }
+    }
+}

@@ -1,0 +1,304 @@
+//! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
+
+use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
+use super::runs::{self, Run};
+use super::{Hits, Modes, Sweep, Tally};
+use crate::grid::fill;
+use nalgebra::Complex;
+use opm_core::manipulator::Follow;
+use opm_core::task::Displacement;
+use pulp::Arch;
+use std::ops::Range;
+
+/// One way in which a leg can follow the present sheet.
+#[derive(Clone, Debug)]
+struct Way {
+    follow: Follow,
+    /// Where it does, if that is a region of the plane.
+    region: Option<RowRegion>,
+    /// No reachable pose has used it yet.
+    pending: bool,
+}
+
+/// A thread's working memory. A sheet is a set of poses that share all coordinates but the lower
+/// section's first two; a slice consists of sheets.
+pub struct Scratch<'a> {
+    sweep: &'a Sweep<'a>,
+    slice: Option<u64>,
+    sheet: u64,
+    /// Every leg's upper section closes in this slice.
+    pub alive: bool,
+    legs: Vec<Vec<Way>>,
+    found: Vec<Follow>,
+    /// Every leg has one way, and that a region.
+    plain: bool,
+    /// A row's step, and the largest number of the grid, in steps.
+    step: f64,
+    extent: f64,
+    /// Second coordinate of the first row, and its increase a row, in steps.
+    first_row: f64,
+    row_step: f64,
+    /// Second coordinates of the rows that are being decided, in steps.
+    rows: Vec<f64>,
+    /// A cut a way of every leg, in their order.
+    cuts: Vec<Cuts>,
+    /// All coordinates but the first.
+    others: Vec<f64>,
+    /// `v` of every pose of a window, once a row asks for it.
+    displacements: Vec<Displacement>,
+    /// Reachable poses of the present row, and what they are made from.
+    runs: Vec<Run>,
+    union: Vec<Run>,
+    next_runs: Vec<Run>,
+    hits: Vec<f64>,
+    arch: Arch,
+}
+
+impl<'a> Scratch<'a> {
+    pub fn new(sweep: &'a Sweep<'a>) -> Self {
+        let manipulator = sweep.manipulator;
+        let axes = sweep.grid.axes();
+        let reach = |i: usize| axes[i].min.abs().max(axes[i].max.abs());
+        let planar = sweep.grid.lower() > 1;
+        let plane = if planar { reach(0).max(reach(1)) } else { reach(0) };
+        let step = match axes[0].count {
+            // A row of one pose: any step will do that is no smaller than the numbers.
+            1 if plane > 0.0 => plane,
+            1 => 1.0,
+            count => (axes[0].max - axes[0].min) / (count - 1) as f64,
+        };
+        let rows = match &axes[1..] {
+            [axis, ..] if planar => {
+                [axis.min, (axis.max - axis.min) / (axis.count.max(2) - 1) as f64]
+            }
+            _ => [0.0; 2],
+        };
+        Self {
+            sweep,
+            slice: None,
+            sheet: 0,
+            alive: false,
+            legs: vec![Vec::new(); manipulator.legs()],
+            found: Vec::new(),
+            plain: false,
+            step,
+            extent: plane / step,
+            first_row: rows[0] / step,
+            row_step: rows[1] / step,
+            rows: Vec::with_capacity(ROWS),
+            cuts: Vec::new(),
+            others: vec![0.0; axes.len() - 1],
+            displacements: Vec::new(),
+            runs: Vec::new(),
+            union: Vec::new(),
+            next_runs: Vec::new(),
+            hits: Vec::new(),
+            arch: Arch::new(),
+        }
+    }
+
+    /// Solves the upper section for a slice, and takes what it leaves the legs in one of its sheets.
+    pub fn enter_sheet(&mut self, slice: u64, sheet: u64) {
+        let sweep = self.sweep;
+        if self.slice != Some(slice) {
+            self.slice = Some(slice);
+            self.enter_slice(slice);
+        } else if self.sheet == sheet {
+            return;
+        }
+        self.sheet = sheet;
+        if !self.alive {
+            return;
+        }
+        let (axes, lower) = (sweep.grid.axes(), sweep.grid.lower());
+        let rest = if lower > 2 { 1..lower - 1 } else { 0..0 };
+        if lower > 2 {
+            fill(&axes[2..lower], sheet, &mut self.others[rest.clone()]);
+        }
+        let origin = Complex::new(axes[0].min, 0.0);
+        let scale = self.step.recip();
+        self.plain = true;
+        for ways in &mut self.legs {
+            for way in ways.iter_mut() {
+                let others = &self.others[rest.clone()];
+                let region = sweep.manipulator.region(&way.follow, others, origin, scale);
+                way.region = region.and_then(|region| RowRegion::new(region, self.extent));
+                self.plain &= way.region.is_some();
+            }
+            self.plain &= ways.len() == 1;
+        }
+    }
+
+    fn enter_slice(&mut self, slice: u64) {
+        let sweep = self.sweep;
+        let lower = sweep.grid.lower();
+        let upper = &mut self.others[lower - 1..];
+        fill(&sweep.grid.axes()[lower..], slice, upper);
+        let manipulator = sweep.manipulator;
+        let b = manipulator.task().upper(upper);
+        let mode = match sweep.modes {
+            Modes::One(mode) => Some(mode),
+            Modes::Any => None,
+        };
+        self.alive = true;
+        for (leg, ways) in self.legs.iter_mut().enumerate() {
+            self.found.clear();
+            manipulator.follow(leg, &b, mode, &mut self.found);
+            ways.clear();
+            ways.extend(self.found.iter().map(|&follow| Way {
+                follow,
+                region: None,
+                pending: true,
+            }));
+            self.alive &= !ways.is_empty();
+        }
+    }
+
+    /// Decides the poses of a window of some of the sheet's rows.
+    pub fn decide(
+        &mut self,
+        mut rows: Range<u64>,
+        window: Run,
+        tally: &mut Tally,
+        hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
+    ) {
+        let sweep = self.sweep;
+        let axes = sweep.grid.axes();
+        let planar = sweep.grid.lower() > 1;
+        self.rows.clear();
+        // To within the rounding that the cuts allow for.
+        let height = |row: u64| self.first_row + self.row_step * row as f64;
+        self.rows.extend(rows.clone().map(height));
+        let mut doubts = [0; ROWS];
+        let mut counts = Counts::default();
+        let plain = self.plain && hit.is_none();
+        self.cuts.resize_with(self.legs.iter().map(Vec::len).sum(), Cuts::new);
+        let (heights, doubts) = (&self.rows[..], &mut doubts);
+        for (cuts, way) in self.cuts.iter_mut().zip(self.legs.iter().flatten()) {
+            if let Some(region) = &way.region {
+                self.arch.dispatch(Cut { cuts, region, rows: heights, window, doubts });
+            }
+        }
+        if plain {
+            let (legs, rows) = (&self.cuts[..], heights.len());
+            self.arch.dispatch(Common { legs, rows, doubts, counts: &mut counts });
+        }
+        let mut reachable = counts.total;
+        if plain && !counts.unsure {
+            rows.end = rows.start;
+        }
+        for (i, row) in rows.enumerate() {
+            if plain && counts.rows[i] >= 0.0 {
+                continue;
+            }
+            if planar {
+                self.others[0] = axes[1].value(row);
+            }
+            let doubt = doubts[i] != 0;
+            let count = self.decide_row(i, window, doubt);
+            if count == 0 {
+                continue;
+            }
+            reachable += count;
+            self.settle(i, window, doubt, tally);
+            if let Some(hit) = hit {
+                self.hits.clear();
+                self.hits.extend(runs::poses(&self.runs).map(|pose| axes[0].value(pose)));
+                let slice = self.slice.unwrap_or_default();
+                hit(&Hits { slice, first: &self.hits, others: &self.others });
+            }
+        }
+        if plain && reachable > 0 {
+            for way in self.legs.iter_mut().flatten() {
+                if std::mem::take(&mut way.pending) {
+                    tally.used(sweep.manipulator, &way.follow);
+                }
+            }
+        }
+        tally.reachable += reachable;
+    }
+
+    /// The reachable poses of row number `i`, in `runs`; returns how many they are. A doubtful row is
+    /// decided pose by pose, and so are legs that have a way without a region, where the others
+    /// leave any poses.
+    fn decide_row(&mut self, i: usize, window: Run, doubt: bool) -> u64 {
+        self.runs.clear();
+        self.runs.push(window);
+        self.displacements.clear();
+        let regional = |ways: &[Way]| !doubt && ways.iter().all(|way| way.region.is_some());
+        let mut first = 0;
+        for ways in &self.legs {
+            let cuts = &self.cuts[first..first + ways.len()];
+            first += ways.len();
+            if regional(ways) {
+                let all = cuts.iter().flat_map(|cuts| cuts.runs(i));
+                runs::union(all, &mut self.union);
+                runs::intersection(&self.runs, &self.union, &mut self.next_runs);
+                std::mem::swap(&mut self.runs, &mut self.next_runs);
+            }
+        }
+        for number in 0..self.legs.len() {
+            if !regional(&self.legs[number]) && !self.runs.is_empty() {
+                self.take_displacements(window);
+                let ways = &self.legs[number];
+                let manipulator = self.sweep.manipulator;
+                self.next_runs.clear();
+                for pose in runs::poses(&self.runs) {
+                    let v = &self.displacements[(pose - window.from) as usize];
+                    if ways.iter().any(|way| manipulator.follows(&way.follow, v)) {
+                        runs::push(&mut self.next_runs, pose);
+                    }
+                }
+                std::mem::swap(&mut self.runs, &mut self.next_runs);
+            }
+        }
+        self.runs.iter().map(|run| run.to - run.from).sum()
+    }
+
+    /// `v` of every pose of the present row's window, unless they are there.
+    fn take_displacements(&mut self, window: Run) {
+        if !self.displacements.is_empty() {
+            return;
+        }
+        let (sweep, lower) = (self.sweep, self.sweep.grid.lower());
+        let axis = &sweep.grid.axes()[0];
+        let mut pose = [0.0; 3];
+        pose[1..lower].copy_from_slice(&self.others[..lower - 1]);
+        self.displacements.extend((window.from..window.to).map(|i| {
+            pose[0] = axis.value(i);
+            sweep.manipulator.task().lower(&pose)
+        }));
+    }
+
+    /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
+    fn settle(&mut self, i: usize, window: Run, doubt: bool, tally: &mut Tally) {
+        let mut first = 0;
+        for number in 0..self.legs.len() {
+            let alone = self.legs[number].len() == 1;
+            for way in 0..self.legs[number].len() {
+                let Way { follow, region, pending } = &self.legs[number][way];
+                if !pending {
+                    continue;
+                }
+                let (follow, regional) = (*follow, region.is_some());
+                let used = if alone {
+                    true
+                } else if regional && !doubt {
+                    let mut of_way = self.cuts[first + way].runs(i);
+                    of_way.any(|run| runs::meet(&self.runs, run))
+                } else {
+                    self.take_displacements(window);
+                    runs::poses(&self.runs).any(|pose| {
+                        let v = &self.displacements[(pose - window.from) as usize];
+                        self.sweep.manipulator.follows(&follow, v)
+                    })
+                };
+                if used {
+                    tally.used(self.sweep.manipulator, &follow);
+                    self.legs[number][way].pending = false;
+                }
+            }
+            first += self.legs[number].len();
+        }
+    }
+}
