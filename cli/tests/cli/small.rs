@@ -68,10 +68,16 @@ fn completions_know_the_subcommands() {
 fn help_and_version_go_to_standard_output() {
     assert_eq!(opm(&["--version"]).text(), concat!("opm ", env!("CARGO_PKG_VERSION"), "\n"));
     for command in [
-        "decompose", "ik", "linkage", "trajectory", "workspace", "plot", "inspect", "examples",
+        "decompose",
+        "ik",
+        "linkage",
+        "trajectory",
+        "workspace",
+        "plot",
+        "inspect",
+        "examples",
         "completions",
-    ]
-    {
+    ] {
         let help = opm(&[command, "--help"]);
         assert!(help.text().contains("Examples:\n  opm "), "{}", help.stdout);
     }

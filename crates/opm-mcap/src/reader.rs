@@ -18,7 +18,7 @@ use crate::{Metadata, ReadError};
 /// Longest record or chunk that is taken for real. Ours are a quarter of it; a length beyond it
 /// in a damaged file must not become an allocation.
 const RECORD_LIMIT: usize = 512 << 20;
-/// Longest attachment whose content is kept: longer than any mechanism file.
+/// How much of the attachments is kept, in the order of the file: more than any mechanism file.
 const ATTACHMENT_LIMIT: usize = 16 << 20;
 
 /// What a recording holds.
@@ -84,7 +84,7 @@ pub struct AttachmentInfo {
     pub media_type: String,
     /// Its size in bytes.
     pub size: u64,
-    /// The file itself, up to 16 MiB; `None` of a longer one.
+    /// The file itself; `None` where it and the ones before it are more than 16 MiB.
     pub content: Option<Vec<u8>>,
 }
 
@@ -213,7 +213,11 @@ impl Contents {
         visit: &mut impl FnMut(&Message<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         match opcode {
-            op::ATTACHMENT => self.attachments.push(attachment(data)?),
+            op::ATTACHMENT => {
+                let kept = self.attachments.iter().filter_map(|a| a.content.as_ref());
+                let room = ATTACHMENT_LIMIT - kept.map(Vec::len).sum::<usize>();
+                self.attachments.push(attachment(data, room)?);
+            }
             op::SCHEMA | op::CHANNEL | op::METADATA | op::MESSAGE => match parse(opcode, data)? {
                 Record::Schema { header, data } => {
                     let flat = (header.encoding == Flat::ENCODING)
@@ -319,9 +323,9 @@ fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
     })
 }
 
-/// What an attachment record holds. (The parser of `mcap` takes for granted that the record is long
+/// What an attachment record holds, and its content if that is no longer than `room`. (The parser of `mcap` takes for granted that the record is long
 /// enough.)
-fn attachment(record: &[u8]) -> Result<AttachmentInfo, ReadError> {
+fn attachment(record: &[u8], room: usize) -> Result<AttachmentInfo, ReadError> {
     /// Log time and creation time.
     const TIMES: usize = 16;
     fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
@@ -336,7 +340,7 @@ fn attachment(record: &[u8]) -> Result<AttachmentInfo, ReadError> {
         let (size, rest) = rest.split_first_chunk()?;
         let size = u64::from_le_bytes(*size);
         let content = rest.get(..usize::try_from(size).ok()?)?;
-        let content = (content.len() <= ATTACHMENT_LIMIT).then(|| content.to_vec());
+        let content = (content.len() <= room).then(|| content.to_vec());
         Some(AttachmentInfo { name, media_type, size, content })
     };
     record.get(TIMES..).and_then(parts).ok_or_else(|| ReadError::Malformed {
