@@ -6,6 +6,7 @@ PYTHON ?= python3
 
 TESTS_VENV := target/venv
 FIGURES_VENV := target/venv-figures
+PEERS_VENV := target/venv-peers
 
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
@@ -26,12 +27,13 @@ lint: ## Check format, lints and documentation, warnings being errors
 test-rust: ## Run the Rust tests, build the examples
 	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
 
-test-python: $(TESTS_VENV)/made ## Check the program and its recordings with public decoders
-	$(TESTS_VENV)/bin/python -m pytest -q tests/python
+test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
+	$(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
+	$(TESTS_VENV)/bin/python -m pytest -q tests/python py/tests
 
-bench: ## Measure, and write BENCHMARKS.md
-	@mkdir -p target
-	CARGO="$(CARGO)" benches/report.sh > target/BENCHMARKS.md
+bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
+	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
+	CARGO="$(CARGO)" PEERS_PYTHON=$(PEERS_VENV)/bin/python benches/report.sh > target/BENCHMARKS.md
 	mv target/BENCHMARKS.md BENCHMARKS.md
 	cat BENCHMARKS.md
 
@@ -47,6 +49,7 @@ python:
 
 $(TESTS_VENV)/made: tests/python/requirements.txt
 $(FIGURES_VENV)/made: docs/figures/requirements.txt
+$(PEERS_VENV)/made: benches/peers/requirements.txt
 
 # Made anew whenever the requirements change; half an environment is not marked as made.
 %/made: | python

@@ -2,7 +2,7 @@
 
 use crate::linkage::InputValue;
 use crate::plot::{PanelName, PictureSize};
-use crate::pose::{GridAxis, Pose, SliceValue};
+use crate::pose::{GridAxis, Number, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -32,6 +32,9 @@ Examples:
   opm examples                                         what comes with opm
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
+  opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
+  opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
+                                                       poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
@@ -64,6 +67,8 @@ pub enum Format {
 pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
+    Velocity(VelocityArgs),
+    Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
@@ -143,6 +148,71 @@ pub struct IkArgs {
     pub output: Option<PathBuf>,
 }
 
+/// Velocities: the rates of every joint for rates of the task coordinates, at a pose
+///
+/// Also the Jacobian of the actuated joints, and how near the pose is to a singularity of each section:
+/// signed measures that are zero at one, with the legs that come nearest. Serial: a leg is stretched,
+/// folded or flat, and its joints have no rates there (null). Parallel: the platform is loose with the
+/// inputs locked; null where the inputs are too few to hold the section at all.
+///
+/// The condition number is that of the actuated joints by the platform's twist, lengths over --length;
+/// null is infinite: a singularity, or fewer actuators than freedoms. Singular Euler angles are none of
+/// it: `coordinates` is zero there. Out of reach is an answer (exit status 0).
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm velocity plano-spherical-5dof --pose x=10mm,xi=15deg --rates zeta=1,x=10mm
+  opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
+  opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
+pub struct VelocityArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The pose, for example x=10mm,xi=15deg; what is not given is at home
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub pose: Pose,
+    /// Rates of the task coordinates a second, for example zeta=1,x=10mm; what is not given is 0
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub rates: Pose,
+    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH")]
+    pub length: Option<Number>,
+}
+
+/// Forward kinematics: every pose that given actuated joints allow
+///
+/// In closed form where the mechanism's sections can be solved one after the other: then all assemblies
+/// are found, each with the working mode that it is in and how well its legs close (`residual`, radians
+/// and shares of the mechanism's size). Otherwise, or with --near, by Newton's method from a pose, which
+/// finds one assembly, in the working mode of --mode or home.
+///
+/// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
+/// modulo a turn, unless a screw follows them.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm fk plano-spherical-5dof --joints S1=170mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
+  opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
+pub struct FkArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The value of every actuated joint, for example S1=10mm,phi14=15deg
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub joints: Pose,
+    /// Start Newton's method at this pose; what is not given is at home
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub near: Option<Pose>,
+    /// Only assemblies in this working mode: `home`, or a sign for every two-valued choice
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+}
+
 /// Positions of a linkage: every joint for a value of its input, or for one turn of it
 ///
 /// For single loops that decompose into two spherical four-bars which share an imaginary joint
@@ -211,7 +281,7 @@ pub struct LinkageArgs {
 Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
-  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000 -o fine.mcap
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// Mechanism file, or the name of a shipped example
@@ -241,6 +311,9 @@ pub struct TrajectoryArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
+/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
+/// takes longer, and does not change the grid that is fitted.
+///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
 /// more than one value. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
@@ -250,6 +323,7 @@ Examples:
   opm workspace plano-spherical-5dof -o cloud.mcap --color theta11
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
+  opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
@@ -261,6 +335,12 @@ pub struct WorkspaceArgs {
     /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
+    /// Only poses with a condition number of at most C count, in a mode in which they have it
+    #[arg(long, value_name = "C", value_parser = condition_number)]
+    pub max_condition: Option<f64>,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", requires = "max_condition")]
+    pub length: Option<Number>,
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -276,6 +356,14 @@ pub struct WorkspaceArgs {
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// A condition number to compare with.
+fn condition_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
+        _ => Err(format!("{text:?}, expected a number of at least 1")),
+    }
 }
 
 /// Draw a recording as a picture, SVG or PNG

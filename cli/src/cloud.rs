@@ -3,10 +3,11 @@
 use crate::args::WorkspaceArgs;
 use crate::failure::Failure;
 use crate::pose::find;
+use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::CloudLayout;
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use opm_workspace::{Axis, Count, Grid, Hits, Modes, Progress, Sweep};
+use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress, Sweep};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
@@ -64,6 +65,7 @@ fn is_field(name: &str) -> bool {
 pub struct Cloud<'a> {
     manipulator: &'a Manipulator,
     modes: Modes,
+    limit: Option<ConditionLimit>,
     axes: [Named; 3],
     scalars: Vec<Named>,
     color: Named,
@@ -71,7 +73,8 @@ pub struct Cloud<'a> {
 
 impl<'a> Cloud<'a> {
     /// The cloud of a grid; what was not asked for suits the grid.
-    pub fn new(wishes: Wishes, manipulator: &'a Manipulator, grid: &Grid, modes: Modes) -> Self {
+    pub fn new(wishes: Wishes, run: &Run<'a>) -> Self {
+        let Run { manipulator, grid, modes, limit, .. } = *run;
         let tallest = tallest(grid);
         let task = |number: usize| (grid.axes()[number].name.clone(), Column::Task(number));
         let color = wishes.color.unwrap_or_else(|| task(tallest));
@@ -86,7 +89,7 @@ impl<'a> Cloud<'a> {
             let known = axes.contains(&color) || is_field(&color.0);
             if known { vec![] } else { vec![color.clone()] }
         });
-        Self { manipulator, modes, axes, scalars, color }
+        Self { manipulator, modes, limit, axes, scalars, color }
     }
 
     /// How often the grid is swept to record it.
@@ -249,7 +252,7 @@ impl Poses {
 pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
-    joints: Joints,
+    joints: Joints<'a>,
     pose: Vec<f64>,
     runs: Vec<(u64, Vec<f64>)>,
     /// A pose that the sweep found and inverse kinematics did not.
@@ -257,21 +260,29 @@ pub struct Points<'a> {
 }
 
 /// Buffers for what inverse kinematics finds.
-enum Joints {
+enum Joints<'a> {
     /// No column asks for joints.
     Unused,
     One(Drives),
     Any(Box<(AllModes, Solution)>),
+    /// With a limit on the condition number, which decides on the mode.
+    Limited(Box<(Conditioned<'a>, Solution)>),
 }
 
 impl<'a> Points<'a> {
     pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column]) -> Self {
         let manipulator = cloud.manipulator;
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
-        let joints = match cloud.modes {
+        let joints = match (cloud.modes, cloud.limit) {
             _ if !columns.iter().any(asked) => Joints::Unused,
-            Modes::One(_) => Joints::One(manipulator.drives()),
-            Modes::Any => Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution()))),
+            (Modes::One(_), _) => Joints::One(manipulator.drives()),
+            (Modes::Any, Some(limit)) => {
+                let conditioned = Conditioned::new(manipulator, limit);
+                Joints::Limited(Box::new((conditioned, manipulator.solution())))
+            }
+            (Modes::Any, None) => {
+                Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
+            }
         };
         Self { cloud, columns, joints, pose: Vec::new(), runs: Vec::new(), lost: None }
     }
@@ -299,6 +310,14 @@ impl<'a> Points<'a> {
                 manipulator.inverse_all(pose, all) == Ok(true)
                     && manipulator.pick_within_limits(all, solution).is_some()
             }
+            (Joints::Limited(buffers), modes) => {
+                let (conditioned, solution) = &mut **buffers;
+                let first = conditioned.first(pose, modes);
+                first.is_some_and(|first| {
+                    solution.clone_from(first);
+                    true
+                })
+            }
             _ => true,
         };
         if !found {
@@ -320,6 +339,12 @@ impl<'a> Points<'a> {
                 (Column::Actuated(number), Joints::One(drives)) => drives.actuated[number],
                 (Column::Imaginary(number), Joints::Any(buffers)) => buffers.1.imaginary[number],
                 (Column::Actuated(number), Joints::Any(buffers)) => {
+                    buffers.1.joints[manipulator.actuated()[number]]
+                }
+                (Column::Imaginary(number), Joints::Limited(buffers)) => {
+                    buffers.1.imaginary[number]
+                }
+                (Column::Actuated(number), Joints::Limited(buffers)) => {
                     buffers.1.joints[manipulator.actuated()[number]]
                 }
                 (Column::Imaginary(_) | Column::Actuated(_), Joints::Unused) => {

@@ -184,7 +184,7 @@ impl Report<'_> {
             legs.row([leg.name, &leg.lower.join(" "), "|", &leg.upper.join(" "), &imaginary]);
         }
         line(&legs);
-        line(&format_args!("The imaginary joints give the upper section J = {j} motions."));
+        line(&format_args!("With the imaginary joints the upper section has J = {j} motions."));
         line(&format_args!(
             "The lower section has M = N - J = {n} - {j} = {m} of its own (Eq. 1)."
         ));

@@ -331,7 +331,7 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
 }
 
 /// Which section of the leg does not close, and by how much.
-fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
+pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
     let (section, gap) = (unreachable.section, unreachable.gap);
     if gap.excess.is_finite() {
         format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))

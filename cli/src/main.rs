@@ -7,6 +7,7 @@ mod completions;
 mod decompose;
 mod examples;
 mod failure;
+mod fk;
 mod ik;
 mod inspect;
 mod lines;
@@ -22,6 +23,7 @@ mod scene;
 mod text;
 mod trajectory;
 mod transform;
+mod velocity;
 mod workspace;
 
 use crate::args::{Args, Command};
@@ -41,6 +43,8 @@ fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
+        Command::Velocity(command) => velocity::run(command, output),
+        Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),

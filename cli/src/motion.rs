@@ -40,11 +40,8 @@ pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Fai
     let (text, file_name, path) = source;
     let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
     let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let motion = if table {
-        table::read(&text, &stem, manipulator)
-    } else {
-        file::read(&text, manipulator)
-    };
+    let motion =
+        if table { table::read(&text, &stem, manipulator) } else { file::read(&text, manipulator) };
     let motion = motion.map_err(|errors| Failure::Work(errors.in_file(&label)))?;
     Ok(LoadedMotion { label, file_name, path, text, motion })
 }

@@ -150,12 +150,40 @@ impl FromStr for Pose {
 impl Pose {
     /// Every coordinate of the pose: what is not given has its home value.
     pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
-        let mut pose: Vec<f64> = coordinates.iter().map(|c| c.home).collect();
+        self.resolve_for("--pose", coordinates)
+    }
+
+    /// As [`Pose::resolve`], for another flag.
+    pub fn resolve_for(
+        &self,
+        flag: &str,
+        coordinates: &[TaskCoordinate],
+    ) -> Result<Vec<f64>, Failure> {
+        let home = coordinates.iter().map(|c| c.home).collect();
+        self.fill(home, coordinates).map_err(|e| Failure::flag(flag, e))
+    }
+
+    /// The rates of all coordinates, a second: what is not given stands still.
+    pub fn resolve_rates(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
+        let still = vec![0.0; coordinates.len()];
+        self.fill(still, coordinates).map_err(|e| Failure::flag("--rates", e))
+    }
+
+    /// What was given, in order.
+    pub fn assignments(&self) -> impl Iterator<Item = (&str, Number)> {
+        self.0.iter().map(|(name, number)| (&**name, *number))
+    }
+
+    fn fill(
+        &self,
+        mut values: Vec<f64>,
+        coordinates: &[TaskCoordinate],
+    ) -> Result<Vec<f64>, Misread> {
         for (name, number) in &self.0 {
-            let index = find(name, coordinates).map_err(|e| Failure::flag("--pose", e))?;
-            pose[index] = number.of(&coordinates[index]).map_err(|e| Failure::flag("--pose", e))?;
+            let index = find(name, coordinates)?;
+            values[index] = number.of(&coordinates[index])?;
         }
-        Ok(pose)
+        Ok(values)
     }
 }
 

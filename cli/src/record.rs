@@ -6,7 +6,7 @@ use crate::text::count;
 use crate::workspace::Run;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::{MAX_SLICES, Metadata, PartialFile, RecordError, Workspace, WorkspaceRecorder};
-use opm_workspace::{Axis, Cancelled, Count, Grid, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress, Sweep};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -150,6 +150,10 @@ fn describe(run: &Run<'_>, found: &Count) -> Metadata {
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into();
+    if let Some(ConditionLimit { most, length }) = run.limit {
+        record.insert("max_condition".to_owned(), most.to_string());
+        record.insert("characteristic_length".to_owned(), length.to_string());
+    }
     for Axis { name, min, max, count } in run.grid.axes() {
         record.insert(format!("grid.{name}"), format!("{min}:{max}:{count}"));
     }

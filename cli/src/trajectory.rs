@@ -68,13 +68,13 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         )));
     }
     let rate = args.rate.or(motion.motion.rate).unwrap_or(RATE);
-    let run =
-        Run { loaded: &loaded, motion: &motion, manipulator: &manipulator, mode, rate };
+    let run = Run { loaded: &loaded, motion: &motion, manipulator: &manipulator, mode, rate };
     let trajectory = Trajectory::new(&manipulator, &motion.motion, mode, rate)
         .map_err(|error| Failure::at(&motion.label, &error))?;
     let player = match &args.output {
         Some(path) => {
-            loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
+            loaded
+                .refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
             Some(Player::create(path, &run)?)
         }
         None => None,

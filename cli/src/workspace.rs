@@ -8,10 +8,13 @@ use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
 use crate::record::Recorder;
 use crate::text::{self, Table, count, short};
+use crate::velocity::characteristic_length;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
-use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Sweep, default_grid};
+use opm_workspace::{
+    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sweep, default_grid,
+};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -24,6 +27,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         "any" => Modes::Any,
         mode => Modes::One(load::mode(&manipulator, mode)?),
     };
+    let limit = limit(args, &manipulator)?;
     let given = given_grid(&args.grid, &manipulator)?;
     let wishes = Wishes::new(args, &manipulator)?;
     let recorder = match &args.output {
@@ -41,8 +45,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         None => fitted_grid(&manipulator, modes, output, &pool, &progress)?,
     };
 
-    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes };
-    let sweep = Sweep::new(&manipulator, &grid, modes);
+    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes, limit };
+    let sweep = Sweep::new(&manipulator, &grid, modes).limited(limit);
     let before = progress.done();
     let done = || progress.done() - before;
     let start = Instant::now();
@@ -53,11 +57,14 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     })?;
     let seconds = start.elapsed().as_secs_f64().max(1e-9);
     if found.reachable == 0 {
-        output.warn("no pose of the grid is in reach and within the limits");
+        output.warn(match limit {
+            Some(_) => "no pose of the grid is in reach, within the limits and well conditioned",
+            None => "no pose of the grid is in reach and within the limits",
+        });
     }
 
     if let Some(recorder) = recorder {
-        let cloud = Cloud::new(wishes, &manipulator, &grid, modes);
+        let cloud = Cloud::new(wishes, &run);
         let total = cloud.passes() * grid.poses();
         let before = progress.done();
         let done = || progress.done() - before;
@@ -66,6 +73,16 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
     }
     output.print(&run.json(&found, seconds), run.text(&found, seconds))
+}
+
+/// The limit on the condition number that the flags give.
+fn limit(
+    args: &WorkspaceArgs,
+    manipulator: &Manipulator,
+) -> Result<Option<ConditionLimit>, Failure> {
+    let Some(most) = args.max_condition else { return Ok(None) };
+    let length = characteristic_length(args.length, "--length", manipulator)?;
+    Ok(Some(ConditionLimit { most, length }))
 }
 
 /// The grid that the flags give; `None` without flags.
@@ -119,6 +136,7 @@ pub struct Run<'a> {
     pub manipulator: &'a Manipulator,
     pub grid: &'a Grid,
     pub modes: Modes,
+    pub limit: Option<ConditionLimit>,
 }
 
 impl Run<'_> {
@@ -157,7 +175,7 @@ impl Run<'_> {
             .map(|(joint, range)| (joint.name.clone(), json!(range)))
             .collect();
         let (value, units) = self.measure(found, FileUnits::SI);
-        json!({
+        let mut json = json!({
             "poses": found.poses,
             "reachable": found.reachable,
             "fraction": found.reachable as f64 / found.poses as f64,
@@ -167,7 +185,12 @@ impl Run<'_> {
             "imaginary_range": ranges,
             "seconds": seconds,
             "poses_per_second": found.poses as f64 / seconds,
-        })
+        });
+        if let Some(ConditionLimit { most, length }) = self.limit {
+            json["max_condition"] = most.into();
+            json["characteristic_length"] = length.into();
+        }
+        json
     }
 
     fn text(&self, found: &Count, seconds: f64) -> String {
@@ -184,6 +207,10 @@ impl Run<'_> {
             axes.row([&*axis.name, &end(axis.min), &end(axis.max), symbol, &count(axis.count)]);
         }
         let _ = writeln!(text, "\n\n{axes}");
+        if let Some(ConditionLimit { most, length }) = self.limit {
+            let length = units.show(length, Quantity::Length);
+            let _ = writeln!(text, "condition number at most {most} (lengths over {length})\n");
+        }
 
         let share = 100.0 * found.reachable as f64 / found.poses as f64;
         let (value, measured) = self.measure(found, units);

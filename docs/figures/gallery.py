@@ -18,6 +18,7 @@ def draw():
     double_spherical()
     plano_cylindrical()
     schoenflies()
+    schoenflies_lift()
     translational_planar()
 
 
@@ -72,17 +73,33 @@ def schoenflies():
         "schoenflies-4dof", ("x", "y", "z"),
         x="-230mm:230mm:231", y="110mm:500mm:196", phi="0", z="-240mm:-60mm:61",
     )  # fmt: skip
+    five_bar(recording, "gallery-schoenflies.png", arm=((120, 0), (240, 160), (0, 340)))
+
+
+def schoenflies_lift():
+    recording = Recording(
+        "schoenflies-lift-4dof", ("x", "y", "z"),
+        x="-370mm:370mm:247", y="220mm:620mm:134", phi="0", z="-260mm:-40mm:45",
+    )  # fmt: skip
+    five_bar(recording, "gallery-schoenflies-lift.png", arm=((60, 0), (210, 200), (0, 480)))
+
+
+def five_bar(recording, name, arm):
+    """The prism that a shaft reaches, and a section of it with the arms that carry the shaft."""
+    size = [values[-1] - values[0] for values in recording.axes]
     figure = plt.figure(figsize=(10, 4.6))
     panel = figure.add_axes((0.0, 0.0, 0.5, 1.0), projection="3d")
-    view_solid(panel, recording, ("x", "y", "z"), view=(28, -60), box=(460, 390, 200))
-    plan = figure.add_axes((0.6, 0.11, 0.39, 0.81))
-    slice_panel(plan, recording, 30, plt.colormaps["viridis"](0.5))
+    view_solid(panel, recording, ("x", "y", "z"), view=(28, -60), box=(*size[:2], 1.1 * size[2]))
+    plan = figure.add_axes((0.63, 0.11, 0.36, 0.81))
+    slice_panel(plan, recording, len(recording.axes[2]) // 2, plt.colormaps["viridis"](0.5))
+    x, y = np.array(arm).T
     for side in (-1, 1):
-        x, y = np.array([(120, 0), (240, 160), (0, 340)]).T
         plan.plot(side * x, y, "-o", color=INK, markerfacecolor="white", linewidth=1.6, markersize=6)
-    plan.set(xlim=(-290, 290), ylim=(-30, 510), xlabel=LABELS["x"], ylabel=LABELS["y"])
+    wide = max(recording.axes[0][-1], x.max()) + 50
+    plan.set(xlim=(-wide, wide), ylim=(-30, recording.axes[1][-1] + 10))
+    plan.set(xlabel=LABELS["x"], ylabel=LABELS["y"])
     plan.set_title("from above, with the arms at home")
-    save(figure, "gallery-schoenflies.png")
+    save(figure, name)
 
 
 def translational_planar():

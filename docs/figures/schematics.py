@@ -25,6 +25,8 @@ DRAWN = (
     ("double-spherical-5dof", "double-spherical", (18, -30), {"leg1": 110, "leg2": 110, "leg3": 110}),
     ("plano-cylindrical-4dof", "plano-cylindrical", (42, -72), {}),
     ("schoenflies-4dof", "schoenflies", (26, -58), {}),
+    ("schoenflies-lift-4dof", "schoenflies-lift", (26, -58), {}),
+    ("translational-helical-3dof-joints", "translational-helical", (34, -62), {}),
     ("translational-planar-4dof", "translational-planar", (24, -35), {}),
 )
 

@@ -1,10 +1,20 @@
 //! A sweep the slow way: one inverse-kinematics call per pose.
 
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{Manipulator, Solution};
 use opm_workspace::{Count, Grid, Modes};
 
 /// The reachable poses and imaginary ranges by one IK call per pose and mode.
 pub fn by_inverse(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> (Vec<Vec<f64>>, Count) {
+    by_predicate(manipulator, grid, modes, |_| true)
+}
+
+/// The same, of those solutions that a predicate admits.
+pub fn by_predicate(
+    manipulator: &Manipulator,
+    grid: &Grid,
+    modes: Modes,
+    mut admits: impl FnMut(&Solution) -> bool,
+) -> (Vec<Vec<f64>>, Count) {
     let mut all = manipulator.all_modes();
     let mut solution = manipulator.solution();
     let mut reached = Vec::new();
@@ -18,7 +28,7 @@ pub fn by_inverse(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> (Vec<
                 continue;
             }
             assert!(manipulator.pick(&all, mode, &mut solution));
-            if solution.within_limits {
+            if solution.within_limits && admits(&solution) {
                 inside = true;
                 for (range, &value) in imaginary.iter_mut().zip(&solution.imaginary) {
                     let [low, high] = range.unwrap_or([value; 2]);

@@ -1,8 +1,10 @@
 //! Tests that span the crates, and what they share: the paper's formulas as an oracle, random
-//! mechanisms of every pair of partial subspaces, and sweeps the slow way.
+//! mechanisms of every pair of partial subspaces, a numeric solver for their legs, central
+//! differences, and sweeps the slow way.
 
 pub mod by_inverse;
 pub mod differences;
+pub mod newton;
 pub mod paper;
 pub mod random;
 

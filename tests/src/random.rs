@@ -86,13 +86,51 @@ struct Place {
 pub struct Options {
     /// Most limits: each coordinate gets some with this probability.
     pub limited: f64,
-    /// Spherical joints in place of three revolutes, where they fit.
+    /// Spherical, universal and cylindrical joints in place of revolutes and sliders, where they fit.
     pub balls: bool,
+}
+
+/// The kinds of joints in a section of a leg, base first: `RPR`, `UR`, `S`, ...
+pub fn order(leg: &Leg, section: &[Freedom]) -> String {
+    let mut joints: Vec<usize> = section.iter().map(|freedom| freedom.joint).collect();
+    joints.dedup();
+    let letter = |&joint: &usize| match leg.joints[joint].kind {
+        JointKind::Revolute => 'R',
+        JointKind::Prismatic => 'P',
+        JointKind::Helical { .. } => 'H',
+        JointKind::Cylindrical => 'C',
+        JointKind::Universal { .. } => 'U',
+        JointKind::Spherical => 'S',
+    };
+    joints.iter().map(letter).collect()
+}
+
+/// Every order of kinds that a section can have, if it has as many freedoms as its subspace, or one
+/// less where the cut, a joint along the intersection motion, takes one.
+pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
+    use Meet::{Rotation, Translation};
+    match (kind, cut) {
+        (Kind::Planar(_), None) => &["RRR", "PRR", "RPR", "RRP", "RPP", "PRP", "PPR"],
+        (Kind::Planar(_), Some(Rotation)) => &["RR", "RP", "PR", "PP"],
+        (Kind::Planar(_), Some(Translation)) => &["RR", "RP", "PR"],
+        (Kind::Spherical, None) => &["RRR", "UR", "RU", "S"],
+        (Kind::Spherical, Some(_)) => &["RR", "U"],
+        (Kind::Cylindrical(_), None) => &["RP", "PR", "RH", "HR", "PH", "HP", "HH", "C"],
+        (Kind::Cylindrical(_), Some(Rotation)) => &["P", "H"],
+        (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
+        (Kind::TranslationalPlane, None) => &["PP"],
+        (Kind::TranslationalPlane, Some(_)) => &["P"],
+    }
+}
+
+/// What the two subspaces of a pair have in common.
+pub fn meet(pair: [Kind; 2]) -> Meet {
+    pair[0].meet().or(pair[1].meet()).unwrap_or(Meet::Translation)
 }
 
 /// A random mechanism of a pair of subspaces, and its decomposition.
 pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism, Decomposition) {
-    let meet = pair[0].meet().or(pair[1].meet()).unwrap_or(Meet::Rotation);
+    let meet = meet(pair);
     let azimuth = rng.f64() * PI;
     let apart = azimuth + 0.5 + rng.f64() * (PI - 1.0);
     let places = [place(rng, pair[0], azimuth), place(rng, pair[1], apart)];
@@ -116,6 +154,9 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
                 let name = format!("{}{number}", (b'a' + joints.len() as u8) as char);
                 joints.push(displaced(rng, &joint, name, &displacement, options));
             }
+        }
+        for joint in &mut joints {
+            joint.actuated = rng.f64() < 0.3;
         }
         joints[0].actuated = true;
         let [lower, upper] = split;
@@ -274,6 +315,15 @@ fn section_joints(
                     joints.push(joint(revolute, axis, place.point + axis * rng.f64()));
                 }
             }
+            if options.balls && rng.bool() {
+                let first = rng.usize(..count - 1);
+                let second = joints.remove(first + 1).axis;
+                joints[first] = joint(
+                    JointKind::Universal { second },
+                    joints[first].axis.into_inner(),
+                    place.point,
+                );
+            }
             joints
         }
         Kind::Planar(meet) => {
@@ -309,7 +359,12 @@ fn section_joints(
             let kinds: &[JointKind] = match (cut, meet) {
                 (Some(_), Meet::Rotation) => &[prismatic, JointKind::Helical { pitch: 0.2 }],
                 (Some(_), Meet::Translation) => &[revolute, JointKind::Helical { pitch: 0.2 }],
-                (None, _) => &[revolute, prismatic, JointKind::Helical { pitch: -0.3 }],
+                (None, _) => &[
+                    revolute,
+                    prismatic,
+                    JointKind::Helical { pitch: -0.3 },
+                    JointKind::Helical { pitch: 0.25 },
+                ],
             };
             let first = rng.usize(..kinds.len());
             let mut picks = vec![kinds[first]];
@@ -353,7 +408,11 @@ fn displaced(
     g: &Isometry3<f64>,
     options: Options,
 ) -> Joint {
-    let mut displaced = Joint::new(name, joint.kind, g * joint.axis, g * joint.point);
+    let kind = match joint.kind {
+        JointKind::Universal { second } => JointKind::Universal { second: g * second },
+        kind => kind,
+    };
+    let mut displaced = Joint::new(name, kind, g * joint.axis, g * joint.point);
     for coordinate in &mut displaced.coordinates {
         coordinate.home = rng.f64() * 2.0 - 1.0;
         if rng.f64() < options.limited {

@@ -2,12 +2,13 @@
 //! forms and its sweep are those of its undecomposed legs.
 
 use fastrand::Rng;
-use opm_core::decomposition::{Decomposition, decompose};
+use opm_core::decomposition::{DecomposeError, Decomposition, decompose};
 use opm_core::joint::Joint;
 use opm_core::leg::Leg;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::{Mechanism, file};
+use opm_core::subspace::SubspaceClass;
 use opm_tests::by_inverse::by_inverse;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 
@@ -33,6 +34,8 @@ struct Page {
     shared: &'static str,
     legs: &'static str,
     redundant: usize,
+    /// Motions of the upper section that are not of the imaginary joints.
+    active: usize,
     coordinates: &'static str,
 }
 
@@ -48,6 +51,7 @@ const PAGES: &[Page] = &[
         shared: "rotation",
         legs: "1|1* 2|2",
         redundant: 0,
+        active: 0,
         coordinates: "",
     },
     PLANAR_PLANAR,
@@ -59,6 +63,7 @@ const PAGES: &[Page] = &[
         shared: "rotation",
         legs: "3|2* 3|2* 3|2* 2|3",
         redundant: 0,
+        active: 0,
         coordinates: "mu nu zeta xi psi",
     },
     Page {
@@ -68,6 +73,7 @@ const PAGES: &[Page] = &[
         shared: "translation",
         legs: "3|1 3|1 3|1 3|1*",
         redundant: 0,
+        active: 0,
         coordinates: "x y theta phi",
     },
     Page {
@@ -77,6 +83,17 @@ const PAGES: &[Page] = &[
         shared: "rotation",
         legs: "3|1* 3|1*",
         redundant: 0,
+        active: 0,
+        coordinates: "x y phi z",
+    },
+    Page {
+        name: "schoenflies-lift-4dof",
+        numbers: [4, 4, 2, 2],
+        subspaces: ["planar", "cylindrical"],
+        shared: "rotation",
+        legs: "3|1* 2|2",
+        redundant: 0,
+        active: 1,
         coordinates: "x y phi z",
     },
     Page {
@@ -86,6 +103,7 @@ const PAGES: &[Page] = &[
         shared: "translation",
         legs: "2|2* 2|2* 2|2* 2|2*",
         redundant: 1,
+        active: 0,
         coordinates: "x y w phi",
     },
 ];
@@ -97,6 +115,7 @@ const PLANO_SPHERICAL: Page = Page {
     shared: "rotation",
     legs: "3|2* 3|2* 3|2* 2|3",
     redundant: 0,
+    active: 0,
     coordinates: "x y zeta xi psi",
 };
 
@@ -107,6 +126,7 @@ const TRANSLATIONAL_HELICAL: Page = Page {
     shared: "translation",
     legs: "2|1* 2|1 2|1",
     redundant: 0,
+    active: 0,
     coordinates: "x y phi",
 };
 
@@ -117,6 +137,7 @@ const PLANAR_PLANAR: Page = Page {
     shared: "translation",
     legs: "3|2* 3|2* 3|2* 2|3",
     redundant: 0,
+    active: 0,
     coordinates: "x y theta w phi",
 };
 
@@ -150,7 +171,12 @@ fn every_mechanism_decomposes_as_its_page_says() {
         assert_eq!([d.lower.name(), d.upper.name()], page.subspaces, "{}", page.name);
         assert_eq!(d.intersection.name(), page.shared, "{}", page.name);
         assert_eq!(legs(d), page.legs, "{}", page.name);
-        assert_eq!((d.redundancy, d.upper_mobility), (page.redundant, 0), "{}", page.name);
+        assert_eq!(
+            (d.redundancy, d.upper_mobility),
+            (page.redundant, page.active),
+            "{}",
+            page.name
+        );
         if page.name != LINKAGE {
             let manipulator = Manipulator::new(mechanism).unwrap();
             assert_eq!(manipulator.decomposition(), d, "{}", page.name);
@@ -169,6 +195,19 @@ fn every_mechanism_has_as_many_actuators_as_freedoms() {
             mechanism.joints().filter(|joint| joint.actuated).map(Joint::freedoms).sum();
         assert_eq!(actuated, decompose(&mechanism).unwrap()[0].mobility, "{}", example.name);
     }
+}
+
+/// The motor of the upper section is needed: without it the height is loose, and nothing else is.
+#[test]
+fn what_is_driven_above_cannot_be_driven_below() {
+    let mut lift = mechanism(find("schoenflies-lift-4dof").unwrap().text);
+    let split = &decompose(&lift).unwrap()[0].legs[0];
+    let last = lift.legs[0].joints.len() - 1;
+    assert!(lift.legs[0].joints[last].actuated && split.upper[0].joint == last);
+    lift.legs[0].joints[last].actuated = false;
+    let Err(DecomposeError::Loose { free, .. }) = decompose(&lift) else { panic!() };
+    let [SubspaceClass::Translation { axis }] = &*free else { panic!("{free:?}") };
+    assert!((axis.z - 1.0).abs() < HOME);
 }
 
 #[test]

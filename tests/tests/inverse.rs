@@ -5,7 +5,8 @@ use fastrand::Rng;
 use opm_core::joint::{JointKind, Quantity};
 use opm_core::leg::Leg;
 use opm_core::manipulator::Manipulator;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Options, PAIRS, mechanism, meet, order, orders};
+use std::collections::BTreeSet;
 
 /// The bound on closure, as a share of the size of the mechanism and its joint values.
 const CLOSURE: f64 = 1e-10;
@@ -23,8 +24,15 @@ fn every_branch_closes_every_original_leg() {
     let mut rng = Rng::with_seed(1);
     for pair in PAIRS {
         let (mut poses, mut reached, mut solutions, mut worst) = (0, 0, 0, 0.0_f64);
+        let mut patterns = BTreeSet::new();
         for _ in 0..150 {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+            let splits = mechanism.legs.iter().zip(&decomposition.legs);
+            let found: Vec<_> = splits
+                .map(|(leg, split)| {
+                    (split.imaginary, order(leg, &split.lower), order(leg, &split.upper))
+                })
+                .collect();
             let manipulator = match Manipulator::with_decomposition(mechanism, decomposition) {
                 Ok(manipulator) => manipulator,
                 Err(error) => panic!("{pair:?}: {error}"),
@@ -39,6 +47,9 @@ fn every_branch_closes_every_original_leg() {
                 let any = manipulator.inverse_all(&pose, &mut all).unwrap();
                 assert_eq!(any, all.modes(&manipulator).next().is_some());
                 reached += usize::from(any);
+                if any {
+                    patterns.extend(found.iter().cloned());
+                }
                 let target = manipulator.task().displacement(&pose);
                 for mode in all.modes(&manipulator) {
                     solutions += 1;
@@ -73,6 +84,19 @@ fn every_branch_closes_every_original_leg() {
         }
         println!("{pair:?}: {reached} of {poses} poses, {solutions} solutions, worst {worst:.1e}");
         assert!(reached > poses / 20, "{pair:?}: hardly any pose was in reach");
+        // Each order of joints in either section, with the cut above and below.
+        for above in [true, false] {
+            let cut = Some(meet(pair));
+            let cuts = if above { [None, cut] } else { [cut, None] };
+            for (section, (kind, cut)) in pair.into_iter().zip(cuts).enumerate() {
+                for order in orders(kind, cut) {
+                    let seen = patterns.iter().any(|(imaginary, lower, upper)| {
+                        *imaginary == above && [lower, upper][section] == order
+                    });
+                    assert!(seen, "{pair:?}: no {order} in section {section}, cut above: {above}");
+                }
+            }
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 //! thread or several.
 
 use fastrand::Rng;
-use opm_core::manipulator::Manipulator;
-use opm_tests::by_inverse::by_inverse;
+use opm_core::manipulator::{Manipulator, Solution};
+use opm_tests::by_inverse::{by_inverse, by_predicate};
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sweep};
 
 /// A grid about home with more values along the coordinates of the lower section.
 fn grid(rng: &mut Rng, manipulator: &Manipulator) -> Grid {
@@ -68,6 +68,57 @@ fn a_sweep_finds_what_inverse_kinematics_finds() {
     }
     println!("{reachable} of {poses} poses; {partly} grids in part");
     assert!(partly > 300, "{partly} grids were reached in part");
+}
+
+/// A sweep with a limit on the condition number finds the poses that one call each admits, in the
+/// modes that they are admitted in, and no others.
+#[test]
+fn a_limited_sweep_finds_what_is_conditioned_well_enough() {
+    let mut rng = Rng::with_seed(13);
+    let (mut admitted, mut partly) = (0, 0);
+    for round in 0..12 {
+        for pair in PAIRS {
+            let limited = if round % 2 == 0 { 0.0 } else { 0.2 };
+            let options = Options { limited, balls: round % 3 != 0 };
+            let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            // Enough actuators that some pose has a condition number.
+            mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints).for_each(|joint| {
+                joint.actuated = true;
+            });
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let grid = grid(&mut rng, &manipulator);
+            let modes = match rng.u8(..3) {
+                0 => Modes::Any,
+                1 => Modes::One(manipulator.home_mode()),
+                _ => Modes::One(Default::default()),
+            };
+            let length = manipulator.characteristic_length() * (0.5 + rng.f64());
+            let mut jacobians = manipulator.jacobians();
+            let mut conditions = Vec::new();
+            let mut condition = |solution: &Solution| {
+                manipulator.differentiate(solution, &mut jacobians).unwrap();
+                manipulator.conditioning(&jacobians, length).condition
+            };
+            let (_, all) = by_predicate(&manipulator, &grid, modes, |solution| {
+                conditions.push(condition(solution));
+                true
+            });
+            // The median admits half of the solutions.
+            conditions.sort_by(f64::total_cmp);
+            let most = conditions.get(conditions.len() / 2).copied().unwrap_or(1.0);
+            let (reached, expected) =
+                by_predicate(&manipulator, &grid, modes, |solution| condition(solution) <= most);
+            let limit = ConditionLimit { most, length };
+            let sweep = Sweep::new(&manipulator, &grid, modes).limited(Some(limit));
+            let count = sweep.count(&Progress::default()).unwrap();
+            assert_eq!(count, expected, "{pair:?} {modes:?}");
+            assert_eq!(points(&sweep), reached, "{pair:?} {modes:?}");
+            admitted += count.reachable;
+            partly += u32::from(count.reachable > 0 && count.reachable < all.reachable);
+        }
+    }
+    println!("{admitted} poses admitted; {partly} grids in part");
+    assert!(partly > 60, "{partly} grids were admitted in part");
 }
 
 #[test]

@@ -177,8 +177,11 @@ impl Sweep<'_> {
                 &[]
             };
             let posture = Posture { joints, imaginary, rates: None, frames };
-            let sample =
-                Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };
+            let sample = Sample {
+                valid: position.within_limits,
+                posture: Some(posture),
+                ..Sample::default()
+            };
             recorder.push(time, &sample).map_err(failed)
         };
         let summary = self.each(write, |failure| failure)?;

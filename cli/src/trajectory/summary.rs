@@ -161,15 +161,7 @@ impl Summary {
             count(self.valid)
         );
         let mut table = Table::new([
-            "joint",
-            "kind",
-            "unit",
-            ">min",
-            ">max",
-            ">min /s",
-            ">max /s",
-            ">min /s2",
-            ">max /s2",
+            "joint", "kind", "unit", ">min", ">max", ">min /s", ">max /s", ">min /s2", ">max /s2",
         ]);
         let mut row = |name: &str, kind: &str, quantity: Quantity, ranges: &Ranges| {
             let mut cells =

@@ -51,6 +51,12 @@ fn wrong_usage_names_the_flag() {
         (&workspace, &["--grid", "x=0:1:18446744073709551616"], &["--grid", "number of values"]),
         (&workspace, &["--mode", "sideways"], &["--mode", "not a sign"]),
         (&workspace, &["--threads", "0"], &["--threads", "1..=1024"]),
+        (&workspace, &["--max-condition", "0.9"], &["--max-condition", "at least 1"]),
+        (&workspace, &["--max-condition", "nan"], &["--max-condition", "at least 1"]),
+        (&workspace, &["--max-condition", "inf"], &["--max-condition", "at least 1"]),
+        (&workspace, &["--length", "1"], &["--max-condition"]),
+        (&workspace, &["--max-condition", "9", "--length", "0"], &["--length", "positive"]),
+        (&workspace, &["--max-condition", "9", "--length", "1deg"], &["--length", "an angle"]),
         (&workspace, &["--color", "x"], &["--output"]),
         (&workspace, &["-o", "-"], &["--output", "standard output"]),
     ] {

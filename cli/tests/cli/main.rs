@@ -10,6 +10,7 @@ mod plot;
 mod run;
 mod small;
 mod trajectory;
+mod velocity;
 mod workspace;
 
 /// The paper's first manipulator, as it is shipped.

@@ -70,6 +70,7 @@ fn help_and_version_go_to_standard_output() {
     for command in [
         "decompose",
         "ik",
+        "velocity",
         "linkage",
         "trajectory",
         "workspace",
@@ -95,7 +96,9 @@ fn record_for_plots(folder: &Folder) {
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "linkage", "trajectory", "workspace", "plot", "examples"] {
+    let commands =
+        ["decompose", "ik", "velocity", "linkage", "trajectory", "workspace", "plot", "examples"];
+    for command in commands {
         if command == "plot" {
             record_for_plots(&folder);
         }

@@ -30,8 +30,20 @@ fn a_shipped_motion_is_followed() {
     for (file, motion) in [(PLANO, SINUSOIDS), (HELICAL, "translational-helical-sinusoids")] {
         let found = json(file, motion, &[]);
         let expected = [
-            "name", "motion", "mode", "start", "duration", "rate", "samples", "reached", "valid",
-            "joints", "imaginary", "condition", "violation_count", "violations",
+            "name",
+            "motion",
+            "mode",
+            "start",
+            "duration",
+            "rate",
+            "samples",
+            "reached",
+            "valid",
+            "joints",
+            "imaginary",
+            "condition",
+            "violation_count",
+            "violations",
         ];
         assert_eq!(keys(&found), expected);
         assert_eq!((&found["samples"], &found["valid"]), (&json!(1001), &json!(1001)));
@@ -55,7 +67,11 @@ fn what_cannot_be_followed_is_told_between_samples() {
     let folder = Folder::new();
     let motion = short_excursion(&folder);
     let found = json(HELICAL, &motion, &["--quiet"]);
-    assert_eq!((&found["samples"], &found["valid"]), (&json!(21), &json!(21)), "no sample is past it");
+    assert_eq!(
+        (&found["samples"], &found["valid"]),
+        (&json!(21), &json!(21)),
+        "no sample is past it"
+    );
     assert_eq!(found["violation_count"], 1);
     let violation = &found["violations"][0];
     let expected = ["kind", "start", "end", "worst", "amount", "unit", "leg", "joint", "bound"];
@@ -111,8 +127,10 @@ fn a_table_is_followed_like_its_formula() {
     let x = |t: f64| 0.05 * (2.0 * PI * 0.2 * t).sin();
     // Wrapped at half a turn: a full turn in ten seconds.
     let phi = |t: f64| (0.2 * PI * t + PI).rem_euclid(2.0 * PI) - PI;
-    let rows: String =
-        (0..=400).map(|i| f64::from(i) / 40.0).map(|t| format!("{t},{},{}\n", phi(t), x(t))).collect();
+    let rows: String = (0..=400)
+        .map(|i| f64::from(i) / 40.0)
+        .map(|t| format!("{t},{},{}\n", phi(t), x(t)))
+        .collect();
     let table = folder.write("poses.csv", format!("t,phi,x\n{rows}"));
     let turn = "phi = [{ amplitude = 0, frequency = 1 }]";
     let text = format!("{HEAD}duration = 10\nrate = 100\n[coordinates]\n{turn}\n");
@@ -209,6 +227,6 @@ fn wrong_usage_names_the_flag() {
     let nowhere = folder.arg("no/such/folder.mcap");
     trajectory(PLANO, SINUSOIDS, &["-o", &nowhere]).fails_with_one_line(1, &["folder.mcap"]);
     // The helical manipulator has no such coordinates.
-    trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "x, y, phi"]);
+    trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "`x`, `y`, `phi`"]);
     assert_eq!(folder.names(), ["m.toml"]);
 }

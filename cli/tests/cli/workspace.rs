@@ -296,3 +296,39 @@ fn a_grid_of_very_many_orientations_is_recorded_by_its_slowest_axes() {
     assert_eq!(slices["messages"], 50 * 40);
     assert_eq!(slices["points"], counted["reachable"]);
 }
+
+/// Poses count whose condition number, as `opm velocity` gives it, is within the limit; the recording
+/// holds them, in a mode in which it is.
+#[test]
+fn a_limit_on_the_condition_number_is_that_of_velocity() {
+    let folder = Folder::new();
+    let output = folder.arg("out.mcap");
+    let grid = ["--grid", "x=-80mm:80mm:5", "--grid", "xi=-20deg:20deg:5"];
+    let limit = ["--max-condition", "9.5", "--length", "80mm"];
+    let mut expected = 0;
+    for x in [-80, -40, 0, 40, 80] {
+        for xi in [-20, -10, 0, 10, 20] {
+            let pose = format!("x={x}mm,xi={xi}deg");
+            let at = ["velocity", PLANO, "--pose", &pose, "--length", "80mm", "--format", "json"];
+            let condition = &opm(&at).json()["singularity"]["condition"];
+            let solved = opm(&["ik", PLANO, "--pose", &pose, "--format", "json"]).json();
+            let within = solved["solutions"][0]["within_limits"] == true;
+            expected += u64::from(within && condition.as_f64().is_some_and(|c| c <= 9.5));
+        }
+    }
+    assert!((5..20).contains(&expected), "{expected}");
+    let found = workspace(&[&[PLANO], &grid[..], &limit].concat());
+    assert_eq!(found["reachable"], expected);
+    assert_eq!(number(&found["max_condition"]), 9.5);
+    assert_eq!(number(&found["characteristic_length"]), 0.08);
+    assert!(workspace(&[&[PLANO], &grid[..]].concat()).get("max_condition").is_none());
+
+    for mode in ["home", "any"] {
+        let flags = ["--mode", mode, "-o", &output, "--color", "S1"];
+        let found = workspace(&[&[PLANO], &grid[..], &limit, &flags].concat());
+        assert!(found["reachable"].as_u64().unwrap() >= expected);
+        let inspected = opm(&["inspect", &output, "--format", "json"]).json();
+        let topics = inspected["topics"].as_array().unwrap();
+        assert!(topics.iter().all(|topic| topic["points"] == found["reachable"]), "{inspected}");
+    }
+}

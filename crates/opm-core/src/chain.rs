@@ -124,11 +124,11 @@ pub struct Gap {
 }
 
 impl Gap {
-    fn length(excess: f64) -> Self {
+    pub(crate) fn length(excess: f64) -> Self {
         Self::new(excess, Quantity::Length)
     }
 
-    fn angle(excess: f64) -> Self {
+    pub(crate) fn angle(excess: f64) -> Self {
         Self::new(excess, Quantity::Angle)
     }
 

@@ -35,6 +35,7 @@
 
 pub mod chain;
 pub mod decomposition;
+pub mod forward;
 pub mod joint;
 pub mod leg;
 pub mod limits;

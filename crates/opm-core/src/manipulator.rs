@@ -25,6 +25,7 @@ pub use reach::Follow;
 
 use crate::chain::{Amount, Chain};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
+use crate::forward::{Closure, NoClosedForm, Plan};
 use crate::joint::{JointCoordinate, Quantity};
 use crate::leg::Leg;
 use crate::limits::Limits;
@@ -32,7 +33,7 @@ use crate::mechanism::Mechanism;
 use crate::mobility::frame;
 use crate::task::{Task, TaskCoordinate, TaskError};
 use leg::Surroundings;
-pub(crate) use leg::{CompiledLeg, CompiledSection, LegSolution};
+pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, Slot};
 use mode::ModeLayout;
 
 /// Choices that a [`Mode`] has room for.
@@ -89,6 +90,10 @@ pub struct Manipulator {
     modes: ModeLayout,
     home_mode: Mode,
     length: f64,
+    /// How forward kinematics go about it.
+    pub(crate) plan: Result<Plan, NoClosedForm>,
+    /// Its legs' products of exponentials.
+    pub(crate) closure: Closure,
 }
 
 impl Manipulator {
@@ -201,6 +206,16 @@ impl Manipulator {
         self.modes.format(mode)
     }
 
+    /// Every combination of a leg's own choices, as modes that are plus elsewhere.
+    pub(crate) fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
+        self.modes.leg_modes(leg)
+    }
+
+    /// The branches of a leg's chains in a mode.
+    pub(crate) fn branches(&self, mode: Mode, leg: usize) -> LegBranches {
+        self.modes.branches(mode, leg)
+    }
+
     /// Of each leg's solutions at home, the one that leaves its joints where they are.
     fn mode_at_home(&self) -> Mode {
         let home = self.task.home();
@@ -275,7 +290,10 @@ impl Compiled {
 
     fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
         let Self { task, legs, coordinates, limits, actuated, imaginary, modes, length } = self;
+        let closure = Closure::new(&mechanism);
         let mut manipulator = Manipulator {
+            plan: Plan::new(&task, &legs, closure.size),
+            closure,
             mechanism,
             decomposition,
             task,

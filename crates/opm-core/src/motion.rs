@@ -1,6 +1,6 @@
 //! Motions of the platform: its pose as a function of time, twice differentiable.
 //!
-//! A motion comes from a motion file ([`file`]: constants and sums of sinusoids) or from a table of
+//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a table of
 //! poses ([`table`]: cubic splines). Either way it is a formula in time, whose derivatives are exact:
 //! nothing is sampled until somebody asks for an instant.
 

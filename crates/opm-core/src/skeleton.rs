@@ -225,9 +225,8 @@ impl Mover {
                 Isometry3::from_parts(Translation3::from(p - rotation * p), rotation)
             }
             Some(_) => Isometry3::identity(),
-            None => (0..freedoms).fold(Isometry3::identity(), |g, i| {
-                g * self.freedoms[i].0.exp(from_home(i))
-            }),
+            None => (0..freedoms)
+                .fold(Isometry3::identity(), |g, i| g * self.freedoms[i].0.exp(from_home(i))),
         }
     }
 }
@@ -356,7 +355,7 @@ impl Builder<'_> {
             Some(point) => Screw::rotation(axis, point),
             None => Screw::translation(axis),
         };
-        let step = 1.5 * self.sizes.collar;
+        let step = 2.5 * self.sizes.collar;
         let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
         let mut imaginary = Vec::new();
         for (i, (joint, end)) in cuts.imaginary.iter().zip(&ends).enumerate() {
@@ -370,6 +369,9 @@ impl Builder<'_> {
                 None => (SeatMotion::Slide, self.sizes.block(centre, axis)),
             };
             self.draw(body, hub, Material::Imaginary);
+            if motion == SeatMotion::Turn {
+                self.draw(platform, self.sizes.pin(centre, axis), Material::Imaginary);
+            }
             self.rod(body, [centre, end.centre], Material::Imaginary);
             let name = joint.name.clone();
             self.seat([platform, body], &Seat { joint: name, motion, centre, axis });

@@ -42,6 +42,7 @@
 //! values follow. A plane's normal is not free where `I` turns about it: `axis` decides it.
 
 mod displacement;
+mod pose;
 mod subspace;
 
 pub use displacement::{Cut, Displacement};
@@ -266,11 +267,7 @@ impl Task {
         match (self.lower.kind, self.lower_cut) {
             (SubspaceKind::Planar, Cut::Turn) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
             (SubspaceKind::Planar, _) => planar(unit(q(2)), q(0), q(1)),
-            (SubspaceKind::Spherical, _) => {
-                let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), q(0))
-                    * Rotation3::from_axis_angle(&Vector3::y_axis(), q(1));
-                Displacement::Spherical(tilt.into_inner())
-            }
+            (SubspaceKind::Spherical, _) => Displacement::Spherical(tilt(q(0), q(1))),
             (SubspaceKind::Cylindrical, Cut::Turn) => cylindrical(0.0, q(0)),
             (SubspaceKind::Cylindrical, _) => cylindrical(q(0), q(1)),
             (SubspaceKind::TranslationalPlane, _) => {
@@ -303,8 +300,12 @@ impl Task {
 
     /// The platform's displacement from home at a pose, `g = v · b`, base coordinates.
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
-        self.lower.isometry(&self.lower(pose))
-            * self.upper.isometry(&self.upper(&pose[self.lower_count..]))
+        self.isometry(&self.lower(pose), &self.upper(&pose[self.lower_count..]))
+    }
+
+    /// `v · b` in base coordinates.
+    pub(crate) fn isometry(&self, v: &Displacement, b: &Displacement) -> Isometry3<f64> {
+        self.lower.isometry(v) * self.upper.isometry(b)
     }
 
     /// The platform's orientation at home, base coordinates: where Euler angles measure it that of
@@ -321,6 +322,14 @@ impl Task {
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
     }
+}
+
+/// `Rx(mu) Ry(nu)`.
+#[inline]
+fn tilt(mu: f64, nu: f64) -> Matrix3<f64> {
+    let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), mu)
+        * Rotation3::from_axis_angle(&Vector3::y_axis(), nu);
+    tilt.into_inner()
 }
 
 /// `Rz(zeta) Ry(xi) Rz(psi)`.

@@ -48,7 +48,9 @@ const MOST_SAMPLES: f64 = 9e15;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
     /// A rate that is no rate.
-    #[error("{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples")]
+    #[error(
+        "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
+    )]
     Rate {
         /// Samples a second.
         rate: f64,
@@ -220,9 +222,7 @@ impl<'a> Trajectory<'a> {
             mode,
             rate,
             gauges: gauge::gauges(manipulator),
-            legs: legs
-                .flat_map(|(number, leg)| leg.coordinates().map(move |_| number))
-                .collect(),
+            legs: legs.flat_map(|(number, leg)| leg.coordinates().map(move |_| number)).collect(),
             length: manipulator.characteristic_length(),
             jacobians: manipulator.jacobians(),
             measured,
@@ -281,7 +281,7 @@ impl<'a> Trajectory<'a> {
             self.begin();
         } else if self.eventful() {
             let (from, to) = (self.previous.clone(), self.current.clone());
-            self.watch(&from, &to)?;
+            self.current = self.watch(&from, to)?;
         }
         self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
         self.worsen();

@@ -33,14 +33,14 @@ pub use singularity::{Cause, Measures, Singularities};
 
 use crate::chain::Amount;
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
-use local::Local;
+pub(crate) use local::Local;
 use nalgebra::Vector3;
 use section::Differential;
 
 /// A measure of singularity below this is zero, and there are no rates. At a singular pose, where two
-/// solutions meet, a chain takes the square root of a number that is zero but for rounding: some 1e-16,
-/// times a few. Whatever a root says below the root of that is noise.
-pub const SINGULAR: f64 = 1e-7;
+/// solutions meet, a chain takes the square root of a number that is zero but for rounding: some 1e-15,
+/// 1e-14 in an awkward frame. What comes to about the root of that is noise, and so are rates over it.
+pub const SINGULAR: f64 = 1e-6;
 
 /// Rates that cannot be computed with, or a solution without joints.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

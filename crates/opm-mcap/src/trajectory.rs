@@ -254,8 +254,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         } else {
             measures.iter().cloned().chain([VALID.to_owned()]).collect()
         };
-        let pose_velocities =
-            topic(POSE_VELOCITIES_TOPIC, "PoseVelocities", &pose_names, *rates)?;
+        let pose_velocities = topic(POSE_VELOCITIES_TOPIC, "PoseVelocities", &pose_names, *rates)?;
         let pose = topic(POSE_TOPIC, "Pose", &pose_names, true)?;
         let joints = topic(JOINTS_TOPIC, "Joints", &joint_names, true)?;
         let velocities = topic(VELOCITIES_TOPIC, "Velocities", &joint_names, *rates)?;
@@ -265,10 +264,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
             topic(IMAGINARY_VELOCITIES_TOPIC, "ImaginaryVelocities", &imaginary_names, *rates)?;
         let condition = topic(CONDITION_TOPIC, "Condition", &judged, true)?;
         let state = |name: &String| JointState { name: name.clone(), ..JointState::default() };
-        let states = JointStates {
-            timestamp: None,
-            joints: joint_names.iter().map(state).collect(),
-        };
+        let states =
+            JointStates { timestamp: None, joints: joint_names.iter().map(state).collect() };
         let states = (!joint_names.is_empty())
             .then(|| Ok::<_, RecordError>((log.topic::<JointStates>(JOINT_STATES_TOPIC)?, states)))
             .transpose()?;

@@ -133,12 +133,8 @@ fn a_motion_has_all_topics() {
     let frames = [Frame { translation: [1.0, 2.0, 3.0], rotation: [0.0, 0.0, 0.0, 1.0] }];
     let rates = Rates { velocities: &[1.0; 3], imaginary: &[2.0], accelerations: &[3.0; 3] };
     let values = [0.5; 3];
-    let reached = Posture {
-        joints: &values,
-        imaginary: &[0.1],
-        rates: Some(rates),
-        frames: &frames,
-    };
+    let reached =
+        Posture { joints: &values, imaginary: &[0.1], rates: Some(rates), frames: &frames };
     let at = |valid, posture| Sample {
         pose: &[1.0, 2.0],
         pose_velocities: &[3.0, 4.0],
@@ -164,8 +160,7 @@ fn a_motion_has_all_topics() {
     })
     .unwrap();
     assert_eq!(judged, [[7.0, 1.0], [7.0, 0.0]]);
-    let counts: BTreeMap<_, _> =
-        recording.topics.iter().map(|t| (&*t.name, t.messages)).collect();
+    let counts: BTreeMap<_, _> = recording.topics.iter().map(|t| (&*t.name, t.messages)).collect();
     for (topic, count) in [
         (POSE_TOPIC, 2),
         (POSE_VELOCITIES_TOPIC, 2),
@@ -204,8 +199,7 @@ fn pictures_come_no_faster_than_they_are_seen() {
     recorder.finish(&record([])).unwrap();
     assert_eq!(shown, 201);
     let directory = tempfile::tempdir().unwrap();
-    let recording =
-        read::<ReadError>(&file(&directory, "t.mcap", &bytes), |_| Ok(())).unwrap();
+    let recording = read::<ReadError>(&file(&directory, "t.mcap", &bytes), |_| Ok(())).unwrap();
     assert_eq!(recording.topic(JOINTS_TOPIC).unwrap().messages, 1001);
     assert_eq!(recording.topic(JOINT_STATES_TOPIC).unwrap().messages, 201);
 }
@@ -249,8 +243,7 @@ fn what_does_not_fit_ends_the_recording() {
         assert!(recorder.finish(&record([])).is_err());
         assert!(!path.exists());
     }
-    let twice =
-        Trajectory { joints: coordinates(&["a", "a"], Role::Passive), ..trajectory(&[]) };
+    let twice = Trajectory { joints: coordinates(&["a", "a"], Role::Passive), ..trajectory(&[]) };
     let error = TrajectoryRecorder::create(&path, &twice).err().unwrap();
     assert!(error.to_string().contains("joint a is given twice"), "{error}");
 }

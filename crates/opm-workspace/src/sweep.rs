@@ -8,12 +8,14 @@ mod cuts;
 mod runs;
 mod scratch;
 
+pub use runs::Run;
+
+use crate::condition::ConditionLimit;
 use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
-use runs::Run;
 use scratch::Scratch;
 
 /// Poses of a row that are decided together, of which a block has room for several.
@@ -53,6 +55,10 @@ pub struct Count {
 pub struct Hits<'a> {
     /// Number of the slice: see [`Grid::slices`].
     pub slice: u64,
+    /// Number of the row: that of its poses over the count of the first axis.
+    pub row: u64,
+    /// Numbers of the values of the first coordinate.
+    pub runs: &'a [Run],
     /// Values of the first coordinate, ascending.
     pub first: &'a [f64],
     /// The other coordinates.
@@ -65,10 +71,15 @@ pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
     grid: &'a Grid,
     modes: Modes,
+    limit: Option<ConditionLimit>,
     /// Segments a row.
     segments: u64,
     /// Segments a block.
     stride: u64,
+    /// Rows a sheet: they differ in the second coordinate alone, where that is the lower section's.
+    side: u64,
+    /// Sheets a slice.
+    sheets: u64,
 }
 
 impl<'a> Sweep<'a> {
@@ -76,7 +87,18 @@ impl<'a> Sweep<'a> {
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
         let row = grid.axes()[0].count;
         let stride = (BLOCK / row.min(SEGMENT)).max(1);
-        Self { manipulator, grid, modes, segments: row.div_ceil(SEGMENT), stride }
+        let lower = &grid.axes()[1..grid.lower()];
+        let side = lower.first().map_or(1, |axis| axis.count);
+        let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
+        let segments = row.div_ceil(SEGMENT);
+        Self { manipulator, grid, modes, limit: None, segments, stride, side, sheets }
+    }
+
+    /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
+    /// enough. That is decided pose by pose, a few microseconds each and mode.
+    #[must_use]
+    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        Self { limit, ..self }
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
@@ -167,20 +189,15 @@ impl<'a> Sweep<'a> {
         tally: &mut Tally,
         mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
     ) -> u64 {
-        let axes = self.grid.axes();
-        let lower = self.grid.lower();
-        let along = axes[0].count;
-        // Rows that differ in the second coordinate alone, where that belongs to the lower section.
-        let side = if lower > 1 { axes[1].count } else { 1 };
-        let sheets: u64 = axes[1..lower].iter().skip(1).map(|axis| axis.count).product();
+        let along = self.grid.axes()[0].count;
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
         let mut poses = 0;
         while next < end {
             let (row, part) = (next / self.segments, next % self.segments);
-            let (sheet, start) = (row / side, row % side);
+            let (sheet, start) = (row / self.side, row % self.side);
             let together = if self.segments == 1 {
-                (side - start).min(end - next).min(ROWS as u64)
+                (self.side - start).min(end - next).min(ROWS as u64)
             } else {
                 1
             };
@@ -188,7 +205,7 @@ impl<'a> Sweep<'a> {
             let window = Run { from, to: (from + SEGMENT).min(along) };
             poses += together * (window.to - window.from);
             next += together;
-            scratch.enter_sheet(sheet / sheets, sheet % sheets);
+            scratch.enter_sheet(sheet / self.sheets, sheet % self.sheets);
             if scratch.alive {
                 scratch.decide(start..start + together, window, tally, &mut hit);
             }

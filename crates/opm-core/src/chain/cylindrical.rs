@@ -54,6 +54,11 @@ impl CylindricalChain {
         Ok(Self { joints, determinant })
     }
 
+    /// The joints, base first.
+    pub fn joints(&self) -> &[CoaxialJoint; 2] {
+        &self.joints
+    }
+
     /// Whether targets whole turns apart differ: no revolute joint makes up for a turn.
     pub fn counts_turns(&self) -> bool {
         !self.joints.iter().any(CoaxialJoint::is_revolute)

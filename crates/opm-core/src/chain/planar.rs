@@ -105,6 +105,10 @@ struct Pivot {
 }
 
 impl Pivot {
+    fn joint(&self) -> PlanarJoint {
+        PlanarJoint::Revolute { at: self.at, reversed: self.reversed }
+    }
+
     /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
     #[inline]
     fn amount(&self, r: Complex<f64>) -> Amount {
@@ -173,6 +177,19 @@ impl PlanarChain {
                 return Err(ChainError::Dependent("three sliders in one plane"));
             }
         })
+    }
+
+    /// The joints that it was made of, base first.
+    pub fn joints(&self) -> [PlanarJoint; 3] {
+        match self {
+            Self::Rrr(chain) => chain.joints(),
+            Self::Prr(chain) => chain.joints(),
+            Self::Rrp(chain) => chain.joints(),
+            Self::Rpr(chain) => chain.joints(),
+            Self::Rpp(chain) => chain.joints(),
+            Self::Ppr(chain) => chain.joints(),
+            Self::Prp(chain) => chain.joints(),
+        }
     }
 
     /// Whether a target has two solutions: the chain has a choice of branch.

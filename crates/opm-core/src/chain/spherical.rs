@@ -101,6 +101,11 @@ impl SphericalChain {
         &self.axes[2]
     }
 
+    /// The joints' axes at home, base first.
+    pub fn axes(&self) -> &[Vector3<f64>; 3] {
+        &self.axes
+    }
+
     /// The rotation of the outer link: the product of the joints' rotations, base first.
     pub fn forward(&self, amounts: &[Amount; 3]) -> Matrix3<f64> {
         self.axes.iter().zip(amounts).fold(Matrix3::identity(), |r, (axis, amount)| {

@@ -24,6 +24,11 @@ impl TranslationalChain {
         Ok(Self { slides })
     }
 
+    /// The sliders' directions, base first.
+    pub fn slides(&self) -> &[Complex<f64>; 2] {
+        &self.slides
+    }
+
     /// The translations at which the sliders are in their ranges.
     pub fn region(&self, ranges: [[f64; 2]; 2]) -> Region {
         parallelogram(self.slides, Complex::new(0.0, 0.0), ranges)

@@ -275,7 +275,7 @@ impl Manipulator {
     }
 
     /// `v` and `b` of a pose, which must have finite coordinates.
-    pub(super) fn displacements(
+    pub(crate) fn displacements(
         &self,
         pose: &[f64],
     ) -> Result<(Displacement, Displacement), PoseError> {
@@ -327,6 +327,11 @@ impl Manipulator {
                 }
             }
         }
+    }
+
+    /// Reports a leg's solution, angles within half a turn of home.
+    pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
+        self.write(number, solution, out, Turns::NearHome);
     }
 
     /// Reports a leg's solution.

@@ -21,6 +21,14 @@ pub struct ModeError {
     pub example: String,
 }
 
+impl Mode {
+    /// This mode, and the choices of another leg.
+    #[must_use]
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
 /// Which choices each leg has, and their bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ModeLayout {

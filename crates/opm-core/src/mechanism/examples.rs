@@ -64,6 +64,11 @@ pub const EXAMPLES: &[Example] = &[
         text: include_str!("../../mechanisms/schoenflies-4dof.toml"),
     },
     Example {
+        name: "schoenflies-lift-4dof",
+        description: "RRR(P) + RR(C), a motor in the upper section: three translations, one rotation",
+        text: include_str!("../../mechanisms/schoenflies-lift-4dof.toml"),
+    },
+    Example {
         name: "translational-planar-4dof",
         description: "4-PP(RR): three translations, one rotation",
         text: include_str!("../../mechanisms/translational-planar-4dof.toml"),

@@ -103,11 +103,8 @@ pub(crate) fn document<T>(
     for error in &syntax {
         reader.report(error.span().map_or(0, |span| span.start), error.message());
     }
-    let file = if syntax.is_empty() {
-        read(&Table::new(document.get_ref(), 0, &reader))
-    } else {
-        None
-    };
+    let file =
+        if syntax.is_empty() { read(&Table::new(document.get_ref(), 0, &reader)) } else { None };
     match (reader.into_errors(text), file) {
         (None, Some(file)) => Ok(file),
         (Some(errors), _) => Err(errors),

@@ -160,18 +160,14 @@ fn read_header(
 }
 
 /// A line to be read.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     number: usize,
     line: &'a str,
     columns: &'a [Column],
 }
 
-fn read_row(
-    row: Row<'_>,
-    times: &mut Vec<f64>,
-    values: &mut [Vec<f64>],
-    problems: &mut Problems,
-) {
+fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problems: &mut Problems) {
     let Row { number, line, columns } = row;
     let mut found = 0;
     for (at, cell) in cells(line) {

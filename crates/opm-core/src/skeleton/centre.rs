@@ -21,11 +21,8 @@ const TRAVEL: f64 = 0.2;
 /// How large the mechanism is to look at, metres: the joints' points and the platform's lie within
 /// this distance of each other, unless sliders travel farther.
 pub(super) fn size(mechanism: &Mechanism) -> f64 {
-    let points: Vec<_> = mechanism
-        .joints()
-        .map(|joint| joint.point)
-        .chain([mechanism.platform])
-        .collect();
+    let points: Vec<_> =
+        mechanism.joints().map(|joint| joint.point).chain([mechanism.platform]).collect();
     let apart = |p: &Point3<f64>| points.iter().map(|q| (q - p).norm()).fold(0.0, f64::max);
     let across = points.iter().map(apart).fold(0.0, f64::max);
     let lengths = mechanism.coordinates().filter(|c| c.quantity == Quantity::Length);

@@ -127,7 +127,7 @@ impl Sizes {
     pub fn joint(&self, joint: &Joint, centre: Point3<f64>) -> Vec<(Side, Solid)> {
         let inner = |own| Side { outer: false, own };
         let outer = |own| Side { outer: true, own };
-        let pin = |axis| self.cylinder(centre, axis, self.pin, 1.2 * self.rod);
+        let pin = |axis| self.pin(centre, axis);
         match joint.kind {
             JointKind::Revolute => {
                 vec![(inner(true), pin(joint.axis)), (outer(false), self.hub(centre, joint.axis))]
@@ -151,6 +151,11 @@ impl Sizes {
             ],
             JointKind::Spherical => vec![(inner(true), Solid::ball(centre, self.ball))],
         }
+    }
+
+    /// A pin.
+    pub fn pin(&self, centre: Point3<f64>, axis: Unit<Vector3<f64>>) -> Solid {
+        self.cylinder(centre, axis, self.pin, 1.2 * self.rod)
     }
 
     /// A collar around a pin.

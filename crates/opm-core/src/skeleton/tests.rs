@@ -19,10 +19,8 @@ fn manipulators() -> Vec<Manipulator> {
 }
 
 fn skeleton(manipulator: &Manipulator) -> Skeleton {
-    let cuts = Cuts {
-        decomposition: manipulator.decomposition(),
-        imaginary: manipulator.imaginary(),
-    };
+    let cuts =
+        Cuts { decomposition: manipulator.decomposition(), imaginary: manipulator.imaginary() };
     Skeleton::new(manipulator.mechanism(), cuts)
 }
 

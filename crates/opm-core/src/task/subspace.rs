@@ -2,6 +2,7 @@
 
 use super::displacement::{Cut, Displacement};
 use super::{FrameProblem, TaskError};
+use crate::chain::cylindrical::CylindricalDisplacement;
 use crate::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
 use crate::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
@@ -21,6 +22,19 @@ pub enum SubspaceKind {
     Cylindrical,
     /// Two translations.
     TranslationalPlane,
+}
+
+impl SubspaceKind {
+    /// The displacement with these two numbers, of a kind whose displacements add up: angle and advance,
+    /// or a translation.
+    pub(crate) fn flat(self, first: f64, second: f64) -> Displacement {
+        match self {
+            Self::Cylindrical => {
+                Displacement::Cylindrical(CylindricalDisplacement { angle: first, advance: second })
+            }
+            _ => Displacement::Translational(Complex::new(first, second)),
+        }
+    }
 }
 
 impl fmt::Display for SubspaceKind {

@@ -73,11 +73,16 @@ impl Trajectory<'_> {
         })
     }
 
-    /// From one sample to the next.
-    pub(super) fn watch(&mut self, from: &Sample, to: &Sample) -> Result<(), TrajectoryError> {
+    /// From one sample to the next, which is given back: a leg that comes back into reach in between
+    /// goes on from where it came back, not from where it was lost.
+    pub(super) fn watch(
+        &mut self,
+        from: &Sample,
+        mut to: Sample,
+    ) -> Result<Sample, TrajectoryError> {
         let step = to.time - from.time;
         // Where a leg comes to the end of its reach, all else changes: first up to there.
-        if !self.same_legs(from, to) {
+        if !self.same_legs(from, &to) {
             let [mut before, mut after] = [from.clone(), to.clone()];
             while after.time - before.time > RESOLUTION / self.solver.rate {
                 let middle = self.between(&before, &after, 0.5)?;
@@ -95,19 +100,28 @@ impl Trajectory<'_> {
                 self.worse(number, &before);
                 self.switch(number, &before, &after);
             }
-            return if after.time < to.time { self.watch(&after, to) } else { Ok(()) };
+            if after.time >= to.time {
+                return Ok(to);
+            }
+            to.solution.copy_from(&after.solution);
+            self.solver.solve(to.time, Turns::Held, &mut to)?;
+            self.solver.rates(&mut to)?;
+            let last = to.time >= self.solver.motion.end();
+            let look = if last { Look::Back } else { Look::Ahead };
+            self.solver.slope(&mut to, look, &mut self.probe)?;
+            return self.watch(&after, to);
         }
         // A leg may have gone out of reach and come back.
         for number in 0..self.solver.gauges.len() {
             if !matches!(self.solver.gauges[number], Gauge::Reach { .. }) {
                 continue;
             }
-            let stretch = Stretch { number, from, to };
+            let stretch = Stretch { number, from, to: &to };
             let reached = stretch.levels().is_some_and(|[a, b]| a > 0.0 && b > 0.0);
             if reached && stretch.turns(1.0) && step > RESOLUTION / self.solver.rate {
                 let lowest = self.extreme(&stretch, |level| level)?;
                 if lowest.levels[number].is_some_and(|level| level < 0.0) {
-                    self.watch(from, &lowest)?;
+                    let lowest = self.watch(from, lowest)?;
                     self.worse(number, &lowest);
                     return self.watch(&lowest, to);
                 }
@@ -116,7 +130,8 @@ impl Trajectory<'_> {
                 }
             }
         }
-        self.stretch(from, to)
+        self.stretch(from, &to)?;
+        Ok(to)
     }
 
     /// Limits and parallel singularities where the legs that reach are the same all along.
@@ -180,9 +195,12 @@ impl Trajectory<'_> {
         let deeper = stretch.turns(1.0);
         let worst = if deeper { Some(self.extreme(stretch, |level| level)?) } else { None };
         let [before, after] = self.crossing(stretch, |level| level < 0.0)?;
+        // Where a slider would have to be infinitely long, it comes from there and not from its limit.
+        let edge = if out { &before } else { &after };
         if !out {
             self.switch(number, &before, &after);
         }
+        self.worse(number, edge);
         if let Some(worst) = worst {
             self.worse(number, &worst);
         }
@@ -222,7 +240,12 @@ impl Trajectory<'_> {
             if middle.time <= before.time || middle.time >= after.time {
                 break;
             }
-            if middle.levels[number].map(&side) == first { before = middle } else { after = middle }
+            let here = middle.levels[number].map(&side);
+            // As near as can be to a pole, in the few roundings' width where there is no answer.
+            if here.is_none() {
+                break;
+            }
+            if here == first { before = middle } else { after = middle }
         }
         Ok([before, after])
     }
@@ -253,7 +276,12 @@ impl Trajectory<'_> {
     }
 
     /// The joints and the gauges, not the rates, at a share of the way from one sample to another.
-    fn between(&mut self, from: &Sample, to: &Sample, share: f64) -> Result<Sample, TrajectoryError> {
+    fn between(
+        &mut self,
+        from: &Sample,
+        to: &Sample,
+        share: f64,
+    ) -> Result<Sample, TrajectoryError> {
         let mut sample = from.clone();
         let time = from.time + share * (to.time - from.time);
         self.solver.solve(time, Turns::Held, &mut sample)?;
@@ -264,7 +292,8 @@ impl Trajectory<'_> {
     fn same_legs(&self, a: &Sample, b: &Sample) -> bool {
         let out = |sample: &Sample, leg| sample.solution.unreachable.iter().any(|u| u.leg == leg);
         a.reached && b.reached
-            || (0..self.solver.manipulator.mechanism().legs.len()).all(|leg| out(a, leg) == out(b, leg))
+            || (0..self.solver.manipulator.mechanism().legs.len())
+                .all(|leg| out(a, leg) == out(b, leg))
     }
 
     /// Whether a stretch of violation is under way.

@@ -111,6 +111,16 @@ pub(super) fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
     }
 }
 
+impl Jacobians {
+    /// The components of the section twist, in the order of the columns: what each does to the upper
+    /// section and to the lower one, twists in the sections' frames.
+    pub(crate) fn directions(&self) -> Vec<[Local; 2]> {
+        let zero = Local::zeros();
+        let upper = self.basis.upper.iter().map(|twist| [*twist, zero]);
+        upper.chain(self.basis.lower.iter().map(|twist| [zero, *twist])).collect()
+    }
+}
+
 impl Manipulator {
     /// A buffer for [`Manipulator::differentiate`]. Its matrices are zeros before that.
     pub fn jacobians(&self) -> Jacobians {

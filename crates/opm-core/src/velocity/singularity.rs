@@ -17,8 +17,8 @@
 //!
 //! All measures are continuous, have no dimension, vanish at the singularity and change sign
 //! across it, within one working mode as well as from one to the next. Lengths are over lengths of the
-//! mechanism that do not change: a link, or the characteristic length. Signs are of no consequence
-//! by themselves; they turn with the positive direction of the intersection motion.
+//! mechanism that do not change: a link, or the characteristic length. A sign means nothing by itself,
+//! only its change does: signs turn with the directions of the sections' frames.
 
 use super::Jacobians;
 use super::jacobian::{beside, whole};

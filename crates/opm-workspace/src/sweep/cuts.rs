@@ -121,9 +121,10 @@ impl Default for Counts {
 }
 
 /// Counts the poses of each row that lie in all regions, one a leg: negative for doubtful rows, and
-/// where several holes take of the same row, which [`Cuts::runs`] can tell.
+/// where more than two holes take of the same row, which [`Cuts::runs`] can tell. Holes are cut to
+/// what the regions without them have in common.
 pub struct Common<'a> {
-    pub legs: &'a [Cuts],
+    pub legs: &'a mut [Cuts],
     /// Number of rows.
     pub rows: usize,
     pub doubts: &'a Doubts,
@@ -150,16 +151,26 @@ impl WithSimd for Common<'_> {
             rows[i] = larger(last[i] - first[i] + 1.0, 0.0);
         }
         let mut holes = [0.0; ROWS];
-        for cuts in legs.iter().filter(|cuts| cuts.hole) {
+        for cuts in legs.iter_mut().filter(|cuts| cuts.hole) {
             for i in 0..count {
-                let start = larger(first[i], cuts.hole_first[i]);
-                let missing = larger(smaller(last[i], cuts.hole_last[i]) - start + 1.0, 0.0);
+                cuts.hole_first[i] = larger(first[i], cuts.hole_first[i]);
+                cuts.hole_last[i] = smaller(last[i], cuts.hole_last[i]);
+                let missing = larger(cuts.hole_last[i] - cuts.hole_first[i] + 1.0, 0.0);
                 rows[i] -= missing;
                 holes[i] += if missing > 0.0 { 1.0 } else { 0.0 };
             }
         }
+        for (number, a) in legs.iter().enumerate() {
+            for b in legs[..number].iter().filter(|b| a.hole && b.hole) {
+                for i in 0..count {
+                    // What two holes both take was taken twice.
+                    let first = larger(a.hole_first[i], b.hole_first[i]);
+                    rows[i] += larger(smaller(a.hole_last[i], b.hole_last[i]) - first + 1.0, 0.0);
+                }
+            }
+        }
         for i in 0..count {
-            rows[i] = if (holes[i] > 1.0) | (doubts[i] != 0) { -1.0 } else { rows[i] };
+            rows[i] = if (holes[i] > 2.0) | (doubts[i] != 0) { -1.0 } else { rows[i] };
         }
         // Whole numbers: their sum does not depend on the order, which the compiler cannot know.
         let (mut sums, mut least) = ([0.0; LANES], [0.0; LANES]);

@@ -3,7 +3,9 @@
 /// Numbers from `from` on, before `to`; never empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
+    /// The first.
     pub from: u64,
+    /// One more than the last.
     pub to: u64,
 }
 

@@ -3,6 +3,7 @@
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::runs::{self, Run};
 use super::{Hits, Modes, Sweep, Tally};
+use crate::condition::Conditioned;
 use crate::grid::fill;
 use nalgebra::Complex;
 use opm_core::manipulator::Follow;
@@ -26,6 +27,8 @@ pub struct Scratch<'a> {
     sweep: &'a Sweep<'a>,
     slice: Option<u64>,
     sheet: u64,
+    /// Number of the sheet's first row.
+    row: u64,
     /// Every leg's upper section closes in this slice.
     pub alive: bool,
     legs: Vec<Vec<Way>>,
@@ -51,6 +54,8 @@ pub struct Scratch<'a> {
     union: Vec<Run>,
     next_runs: Vec<Run>,
     hits: Vec<f64>,
+    limit: Option<Conditioned<'a>>,
+    pose: Vec<f64>,
     arch: Arch,
 }
 
@@ -77,6 +82,7 @@ impl<'a> Scratch<'a> {
             sweep,
             slice: None,
             sheet: 0,
+            row: 0,
             alive: false,
             legs: vec![Vec::new(); manipulator.legs()],
             found: Vec::new(),
@@ -93,6 +99,8 @@ impl<'a> Scratch<'a> {
             union: Vec::new(),
             next_runs: Vec::new(),
             hits: Vec::new(),
+            limit: sweep.limit.map(|limit| Conditioned::new(manipulator, limit)),
+            pose: vec![0.0; axes.len()],
             arch: Arch::new(),
         }
     }
@@ -107,6 +115,7 @@ impl<'a> Scratch<'a> {
             return;
         }
         self.sheet = sheet;
+        self.row = (slice * sweep.sheets + sheet) * sweep.side;
         if !self.alive {
             return;
         }
@@ -171,7 +180,7 @@ impl<'a> Scratch<'a> {
         self.rows.extend(rows.clone().map(height));
         let mut doubts = [0; ROWS];
         let mut counts = Counts::default();
-        let plain = self.plain && hit.is_none();
+        let plain = self.plain && hit.is_none() && self.limit.is_none();
         self.cuts.resize_with(self.legs.iter().map(Vec::len).sum(), Cuts::new);
         let (heights, doubts) = (&self.rows[..], &mut doubts);
         for (cuts, way) in self.cuts.iter_mut().zip(self.legs.iter().flatten()) {
@@ -180,7 +189,7 @@ impl<'a> Scratch<'a> {
             }
         }
         if plain {
-            let (legs, rows) = (&self.cuts[..], heights.len());
+            let (legs, rows) = (&mut self.cuts[..], heights.len());
             self.arch.dispatch(Common { legs, rows, doubts, counts: &mut counts });
         }
         let mut reachable = counts.total;
@@ -195,17 +204,22 @@ impl<'a> Scratch<'a> {
                 self.others[0] = axes[1].value(row);
             }
             let doubt = doubts[i] != 0;
-            let count = self.decide_row(i, window, doubt);
+            let mut count = self.decide_row(i, window, doubt);
+            if count > 0 && self.limit.is_some() {
+                count = self.limit_row(hit.is_none(), tally);
+            } else if count > 0 {
+                self.settle(i, window, doubt, tally);
+            }
             if count == 0 {
                 continue;
             }
             reachable += count;
-            self.settle(i, window, doubt, tally);
             if let Some(hit) = hit {
                 self.hits.clear();
                 self.hits.extend(runs::poses(&self.runs).map(|pose| axes[0].value(pose)));
                 let slice = self.slice.unwrap_or_default();
-                hit(&Hits { slice, first: &self.hits, others: &self.others });
+                let (runs, first, others) = (&self.runs[..], &self.hits[..], &self.others[..]);
+                hit(&Hits { slice, row: self.row + row, runs, first, others });
             }
         }
         if plain && reachable > 0 {
@@ -252,6 +266,30 @@ impl<'a> Scratch<'a> {
                 std::mem::swap(&mut self.runs, &mut self.next_runs);
             }
         }
+        self.runs.iter().map(|run| run.to - run.from).sum()
+    }
+
+    /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
+    /// the imaginary joints of the modes in which they are; returns how many are left.
+    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+        let Some(limit) = &mut self.limit else { return 0 };
+        let axis = &self.sweep.grid.axes()[0];
+        self.pose[1..].copy_from_slice(&self.others);
+        self.next_runs.clear();
+        for number in runs::poses(&self.runs) {
+            self.pose[0] = axis.value(number);
+            let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
+                if ranges {
+                    let values = solution.imaginary.iter().enumerate();
+                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                }
+                ranges
+            });
+            if admitted {
+                runs::push(&mut self.next_runs, number);
+            }
+        }
+        std::mem::swap(&mut self.runs, &mut self.next_runs);
         self.runs.iter().map(|run| run.to - run.from).sum()
     }
 

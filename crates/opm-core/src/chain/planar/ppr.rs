@@ -1,6 +1,6 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
-use super::{Amount, ChainError, Pivot, PlanarDisplacement, Rpp};
+use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
 use crate::chain::region::Region;
 use nalgebra::Complex;
 
@@ -15,6 +15,11 @@ impl Ppr {
         pivot: Pivot,
     ) -> Result<Self, ChainError> {
         Rpp::new(pivot, d2, d1).map(Self)
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [third, second, first] = self.0.joints();
+        [first, second, third]
     }
 
     /// The region of the RPP, for targets backwards: `t ↦ -conj(r) t`.

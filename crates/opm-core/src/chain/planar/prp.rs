@@ -1,6 +1,6 @@
 //! PRP: a pivot between two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, Gap, Pivot, PlanarDisplacement, along, cross};
+use super::{Amount, Gap, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::region::{Region, parallelogram};
 use crate::chain::{DEGENERATE, RIM};
 use nalgebra::Complex;
@@ -15,6 +15,11 @@ pub struct Prp {
 impl Prp {
     pub(super) fn new(d1: Complex<f64>, pivot: Pivot, d3: Complex<f64>) -> Self {
         Self { slides: [d1, d3], pivot }
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [first, second] = self.slides.map(|along| PlanarJoint::Prismatic { along });
+        [first, self.pivot.joint(), second]
     }
 
     /// A parallelogram; `None` where the slides come to be all but parallel.

@@ -1,7 +1,7 @@
 //! PRR: a slider that carries a link (Eqs. 13-16 of the paper, with the division by 2 that its
 //! Eq. 16 lacks).
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::RIM;
 use crate::chain::region::{Band, Convex, Region, Stadium};
 use nalgebra::Complex;
@@ -44,6 +44,11 @@ impl Prr {
     #[inline]
     fn outer(&self) -> Complex<f64> {
         self.pivots[1].at
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [inner, outer] = self.pivots.map(|pivot| pivot.joint());
+        [PlanarJoint::Prismatic { along: self.slide }, inner, outer]
     }
 
     /// What half the circle about the inner pivot sweeps, as the slider goes through its range: what

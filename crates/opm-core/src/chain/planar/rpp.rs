@@ -1,6 +1,6 @@
 //! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, ChainError, Pivot, PlanarDisplacement, along, cross};
+use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::DEGENERATE;
 use crate::chain::region::{Region, parallelogram};
 use nalgebra::Complex;
@@ -22,6 +22,11 @@ impl Rpp {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
         Ok(Self { pivot, slides: [d2, d3] })
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [first, second] = self.slides.map(|along| PlanarJoint::Prismatic { along });
+        [self.pivot.joint(), first, second]
     }
 
     /// A parallelogram, turned with the target.

@@ -1,6 +1,6 @@
 //! RPR: a telescope between two pivots.
 
-use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement};
+use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::{RIM, direction};
 use nalgebra::Complex;
@@ -18,6 +18,11 @@ pub struct Rpr {
 impl Rpr {
     pub(super) fn new(p1: Pivot, slide: Complex<f64>, p3: Pivot) -> Self {
         Self { pivots: [p1, p3], slide, offset: (p3.at - p1.at) * slide.conj() }
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [inner, outer] = self.pivots.map(|pivot| pivot.joint());
+        [inner, PlanarJoint::Prismatic { along: self.slide }, outer]
     }
 
     /// A ring about the first pivot, between the lengths that the slider allows.

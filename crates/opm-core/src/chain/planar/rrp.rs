@@ -1,6 +1,6 @@
 //! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, Prr};
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint, Prr};
 use crate::chain::region::Region;
 use nalgebra::Complex;
 
@@ -11,6 +11,11 @@ pub struct Rrp(Prr);
 impl Rrp {
     pub(super) fn new(p1: Pivot, p2: Pivot, slide: Complex<f64>) -> Result<Self, ChainError> {
         Prr::new(slide, p2, p1).map(Self)
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        let [third, second, first] = self.0.joints();
+        [first, second, third]
     }
 
     /// The region of the PRR, for targets backwards: `t ↦ -conj(r) t`.

@@ -1,6 +1,6 @@
 //! RRR: a two-link arm from a fixed pivot, with a wrist.
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement};
+use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::{DEGENERATE, RIM, direction};
 use nalgebra::Complex;
@@ -62,6 +62,10 @@ impl Rrr {
     #[inline]
     fn wrist(&self) -> Complex<f64> {
         self.pivots[2].at
+    }
+
+    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+        self.pivots.map(|pivot| pivot.joint())
     }
 
     #[inline]

@@ -1,0 +1,279 @@
+//! `opm fk`: forward kinematics.
+
+use crate::args::{FkArgs, Output};
+use crate::failure::Failure;
+use crate::ik::reason;
+use crate::load::{self, Loaded};
+use crate::output::named;
+use crate::pose::Pose;
+use crate::text::{self, Table};
+use opm_core::chain::Amount;
+use opm_core::forward::{Assemblies, Assembly, NearError, Stop, Unmet};
+use opm_core::joint::JointCoordinate;
+use opm_core::manipulator::{Manipulator, Mode, Section};
+use opm_core::mechanism::file::FileUnits;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::fmt::Write;
+
+pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
+    let loaded = load::open(&args.file)?;
+    let manipulator = loaded.compile()?;
+    let actuated = joints(&args.joints, &manipulator)?;
+    let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
+    for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
+        let (c, limits) =
+            (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
+        if let Some(range) = c.limits.filter(|_| !limits.admits(Amount::Value(value - c.home))) {
+            let units = loaded.file.units;
+            output.note(format_args!(
+                "{} = {} is beyond its limits, {} {}",
+                c.name,
+                units.show(value, c.quantity),
+                text::range(range, c.quantity, units),
+                units.symbol(c.quantity)
+            ));
+        }
+    }
+    let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
+    let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
+        (None, Ok(())) => {
+            let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
+            if let Some(mode) = only {
+                found.list.retain(|assembly| assembly.mode == mode);
+            }
+            (found, Method::ClosedForm)
+        }
+        (near, closed_form) => {
+            let start = match near {
+                Some(pose) => pose.resolve_for("--near", manipulator.task_coordinates())?,
+                None => manipulator.task().home(),
+            };
+            if let (None, Err(why)) = (near, closed_form) {
+                output.note(format_args!(
+                    "no closed form of the forward kinematics: {why}; by Newton's method from home, \
+                     which finds one assembly (--near says from where)"
+                ));
+            }
+            let mode = only.unwrap_or_else(|| manipulator.home_mode());
+            let assembly =
+                manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
+                    NearError::Joints(error) => wrong(&error),
+                    NearError::Start(error) => Failure::flag("--near", error),
+                    NearError::NotFound(not_found) => {
+                        Failure::Work(format!("{}: {}", loaded.label, {
+                            match not_found.why {
+                                Stop::OutOfReach(u) if not_found.steps == 0 => format!(
+                                    "the start is out of reach in mode {}: {}: {}",
+                                    shown(&manipulator, mode),
+                                    manipulator.mechanism().legs[u.leg].name,
+                                    reason(&u, loaded.file.units)
+                                ),
+                                _ => not_found.to_string(),
+                            }
+                        }))
+                    }
+                })?;
+            (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
+        }
+    };
+    let answer =
+        Answer { loaded: &loaded, manipulator: &manipulator, actuated, found, only, method };
+    output.print(&answer.json(), answer.text())
+}
+
+/// Every actuated joint's value.
+fn joints(given: &Pose, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> {
+    let actuated: Vec<&JointCoordinate> =
+        manipulator.actuated().iter().map(|&i| &manipulator.coordinates()[i]).collect();
+    let wrong = |problem: String| Failure::flag("--joints", problem);
+    let names = || actuated.iter().map(|c| &*c.name).collect::<Vec<_>>().join(", ");
+    let unknown: Vec<String> = (given.assignments())
+        .filter(|(name, _)| actuated.iter().all(|c| c.name != *name))
+        .map(|(name, _)| {
+            let passive = manipulator.coordinates().iter().any(|c| c.name == name);
+            if passive { format!("{name} is passive") } else { format!("no joint {name:?}") }
+        })
+        .collect();
+    let missing: Vec<&str> = (actuated.iter())
+        .filter(|c| given.assignments().all(|(name, _)| c.name != name))
+        .map(|c| &*c.name)
+        .collect();
+    let mut problems = unknown;
+    if !missing.is_empty() {
+        problems.push(format!("no value for {}", missing.join(", ")));
+    }
+    if !problems.is_empty() {
+        return Err(wrong(format!("{}; the actuated joints are {}", problems.join(", "), names())));
+    }
+    actuated
+        .iter()
+        .filter_map(|c| {
+            let (_, number) = given.assignments().find(|(name, _)| c.name == *name)?;
+            Some(number.value_of(&c.name, c.quantity).map_err(|e| wrong(e.to_string())))
+        })
+        .collect()
+}
+
+/// A mode as it is written; one without choices has no signs.
+fn shown(manipulator: &Manipulator, mode: Mode) -> String {
+    match manipulator.choices() {
+        0 => "(no choices)".to_owned(),
+        _ => manipulator.format_mode(mode),
+    }
+}
+
+/// How the assemblies were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Method {
+    ClosedForm,
+    Newton,
+}
+
+struct Answer<'a> {
+    loaded: &'a Loaded,
+    manipulator: &'a Manipulator,
+    actuated: Vec<f64>,
+    found: Assemblies,
+    only: Option<Mode>,
+    method: Method,
+}
+
+#[derive(Serialize)]
+struct Json {
+    actuated: Map<String, Value>,
+    method: Method,
+    assemblies: Vec<JsonAssembly>,
+    unmet: Vec<String>,
+    loose: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct JsonAssembly {
+    pose: Map<String, Value>,
+    mode: String,
+    within_limits: bool,
+    joints: Map<String, Value>,
+    imaginary: Map<String, Value>,
+    residual: f64,
+}
+
+impl Answer<'_> {
+    fn json(&self) -> Json {
+        let m = self.manipulator;
+        let pair = |names: Vec<&str>, values: &[f64]| {
+            named(names.into_iter().zip(values.iter().copied()).collect::<Vec<_>>())
+        };
+        let actuated = m.actuated().iter().map(|&i| &*m.coordinates()[i].name).collect();
+        let assembly = |a: &Assembly| JsonAssembly {
+            pose: pair(m.task_coordinates().iter().map(|c| c.name).collect(), &a.pose),
+            mode: m.format_mode(a.mode),
+            within_limits: a.within_limits,
+            joints: pair(m.coordinates().iter().map(|c| &*c.name).collect(), &a.joints),
+            imaginary: pair(m.imaginary().iter().map(|j| &*j.name).collect(), &a.imaginary),
+            residual: a.residual,
+        };
+        Json {
+            actuated: pair(actuated, &self.actuated),
+            method: self.method,
+            assemblies: self.found.list.iter().map(assembly).collect(),
+            unmet: self.unmet(FileUnits::SI),
+            loose: self.found.loose.iter().map(Section::to_string).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let (m, units) = (self.manipulator, self.loaded.file.units);
+        let joints: Vec<String> = (m.actuated().iter().zip(&self.actuated))
+            .map(|(&i, &value)| {
+                let c = &m.coordinates()[i];
+                format!("{} = {}", c.name, units.show(value, c.quantity))
+            })
+            .collect();
+        let mut text = format!("{} with {}\n\n", m.mechanism().name, joints.join(", "));
+        let list = &self.found.list;
+        let in_mode =
+            self.only.map_or(String::new(), |mode| format!(" in mode {}", shown(m, mode)));
+        if list.is_empty() {
+            let _ = writeln!(text, "no assembly{in_mode}");
+            for unmet in self.unmet(units) {
+                let _ = writeln!(text, "  {unmet}");
+            }
+        } else {
+            let (count, many) =
+                (list.len(), if list.len() == 1 { "assembly" } else { "assemblies" });
+            let beyond = list.iter().filter(|a| !a.within_limits).count();
+            let limits = match beyond {
+                0 => "within limits".to_owned(),
+                n if n == count => "beyond limits".to_owned(),
+                n => format!("{} within limits (the others are marked *)", count - n),
+            };
+            let how = match self.method {
+                Method::ClosedForm => "",
+                Method::Newton => " by Newton's method",
+            };
+            let worst = list.iter().map(|a| a.residual).fold(0.0, f64::max);
+            let _ = writeln!(
+                text,
+                "{count} {many}{in_mode}{how}, {limits}; legs close to {worst:.1e} of the size\n"
+            );
+            let _ = write!(text, "{}", self.table());
+        }
+        for section in &self.found.loose {
+            let _ = writeln!(
+                text,
+                "\nsingular: with these joints held the {section} section is loose; the poses of that motion \
+                 are not listed"
+            );
+        }
+        text
+    }
+
+    /// A row an assembly.
+    fn table(&self) -> Table {
+        let (m, units) = (self.manipulator, self.loaded.file.units);
+        let mut headers = vec![">".to_owned()];
+        if m.choices() > 0 {
+            headers.push("mode".to_owned());
+        }
+        headers
+            .extend(m.task_coordinates().iter().map(|c| text::header(c.name, c.quantity, units)));
+        headers.extend(m.imaginary().iter().map(|j| text::header(&j.name, j.quantity, units)));
+        headers.push(String::new());
+        let mut table = Table::new(headers);
+        for (number, a) in self.found.list.iter().enumerate() {
+            let mut row = vec![(number + 1).to_string()];
+            if m.choices() > 0 {
+                row.push(m.format_mode(a.mode));
+            }
+            let pose = a.pose.iter().zip(m.task_coordinates());
+            row.extend(pose.map(|(&value, c)| text::number(value, c.quantity, units)));
+            let imaginary = a.imaginary.iter().zip(m.imaginary());
+            row.extend(imaginary.map(|(&value, j)| text::number(value, j.quantity, units)));
+            row.push(if a.within_limits { "" } else { "*" }.to_owned());
+            table.row(row);
+        }
+        table
+    }
+
+    fn unmet(&self, units: FileUnits) -> Vec<String> {
+        let leg = |number: usize| &*self.manipulator.mechanism().legs[number].name;
+        let line = |unmet: &Unmet| match unmet {
+            Unmet::Leg(unreachable) => {
+                format!("{}: {}", leg(unreachable.leg), reason(unreachable, units))
+            }
+            Unmet::Legs([a, b]) => {
+                format!("{} and {} do not meet in the lower section", leg(*a), leg(*b))
+            }
+            Unmet::Section(section) => {
+                format!("{section} section: no pose closes all of its legs at once")
+            }
+            Unmet::Contradiction(residual) => format!(
+                "the actuated joints contradict each other: the legs close to no better than \
+                 {residual:.1e} of the size"
+            ),
+        };
+        self.found.unmet.iter().map(line).collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! How far the legs fail to close: their products of exponentials as they stand in the mechanism, without
+//! any decomposition, against the pose of the platform.
+
+use crate::joint::JointKind;
+use crate::mechanism::Mechanism;
+use crate::mobility::frame;
+use crate::screw::Screw;
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
+};
+
+/// The legs, ready to be multiplied.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    legs: Vec<Vec<Motion>>,
+    platform: Point3<f64>,
+    /// The mechanism's, metres.
+    pub size: f64,
+}
+
+/// One joint, and its values at home.
+#[derive(Clone, Debug)]
+enum Motion {
+    Screw {
+        screw: Screw,
+        home: f64,
+        actuated: bool,
+    },
+    /// A rotation vector about a point.
+    Ball {
+        point: Vector3<f64>,
+        home: Vector3<f64>,
+        actuated: bool,
+    },
+}
+
+impl Motion {
+    fn values(&self) -> usize {
+        match self {
+            Self::Screw { .. } => 1,
+            Self::Ball { .. } => 3,
+        }
+    }
+
+    fn displacement(&self, values: &[f64]) -> Isometry3<f64> {
+        match self {
+            Self::Screw { screw, home, .. } => screw.exp(values[0] - home),
+            Self::Ball { point, home, .. } => {
+                let vector = Vector3::new(values[0], values[1], values[2]) - home;
+                let rotation = UnitQuaternion::from_scaled_axis(vector);
+                Isometry3::from_parts(Translation3::from(point - rotation * point), rotation)
+            }
+        }
+    }
+}
+
+impl Closure {
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let legs = mechanism
+            .legs
+            .iter()
+            .map(|leg| {
+                let mut motions = Vec::new();
+                for joint in &leg.joints {
+                    let (actuated, c) = (joint.actuated, &joint.coordinates);
+                    if joint.kind == JointKind::Spherical {
+                        let home = Vector3::from_fn(|i, _| c[i].home);
+                        motions.push(Motion::Ball { point: joint.point.coords, home, actuated });
+                    } else {
+                        motions.extend(
+                            joint.screws().into_iter().zip(c).map(|(screw, c)| Motion::Screw {
+                                screw,
+                                home: c.home,
+                                actuated,
+                            }),
+                        );
+                    }
+                }
+                motions
+            })
+            .collect();
+        Self { legs, platform: mechanism.platform, size: frame(mechanism).length }
+    }
+
+    /// The largest distance of a leg's end from where the platform at `target` has it: radians plus the
+    /// way of the reference point over the size.
+    pub fn residual(&self, joints: &[f64], target: &Isometry3<f64>) -> f64 {
+        let mut first = 0;
+        self.legs.iter().fold(0.0, |largest, leg| {
+            let end = self.end(leg, joints, &mut first);
+            f64::max(largest, self.apart(&end, target))
+        })
+    }
+
+    fn end(&self, leg: &[Motion], joints: &[f64], first: &mut usize) -> Isometry3<f64> {
+        leg.iter().fold(Isometry3::identity(), |g, motion| {
+            let g = g * motion.displacement(&joints[*first..]);
+            *first += motion.values();
+            g
+        })
+    }
+
+    fn apart(&self, end: &Isometry3<f64>, target: &Isometry3<f64>) -> f64 {
+        // The sine of half the angle, twice: acos would lose half of the digits.
+        let turn = end.rotation.rotation_to(&target.rotation).into_inner();
+        let way = (end * self.platform - target * self.platform).norm();
+        2.0 * turn.imag().norm() + way / self.size
+    }
+
+    /// Moves the passive joints of every leg so that it closes, the actuated ones held: Newton's steps by
+    /// least squares. For joints that were found from the pose alone where the actuated ones are all but
+    /// undone by it: near a serial singularity the root of the rounding is left in them. Takes and returns
+    /// the residual.
+    pub fn settle(&self, joints: &mut [f64], target: &Isometry3<f64>, residual: f64) -> f64 {
+        /// Where the passive joints are singular themselves, a step only halves what is left.
+        const STEPS: usize = 40;
+        let mut residual = residual;
+        let mut tried = joints.to_vec();
+        for _ in 0..STEPS {
+            let mut first = 0;
+            for leg in &self.legs {
+                let values: usize = leg.iter().map(Motion::values).sum();
+                self.step(leg, &mut tried[first..first + values], target);
+                first += values;
+            }
+            let after = self.residual(&tried, target);
+            if !(after < residual) {
+                break;
+            }
+            residual = after;
+            joints.copy_from_slice(&tried);
+        }
+        residual
+    }
+
+    fn step(&self, leg: &[Motion], joints: &mut [f64], target: &Isometry3<f64>) {
+        /// What is damped is below the rounding of what is solved for.
+        const DAMPING: f64 = 1e-12;
+        let mut g = Isometry3::identity();
+        let (mut columns, mut passive) = (Vec::new(), Vec::new());
+        let mut at = 0;
+        // Lengths over the size, about the platform's point.
+        let about = Translation3::from(-(target * self.platform).coords);
+        let unit = |screw: Screw| {
+            let moved =
+                screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
+            Screw { linear: moved.linear / self.size, ..moved }.to_vector()
+        };
+        for motion in leg {
+            let moved = g * motion.displacement(&joints[at..]);
+            match motion {
+                Motion::Screw { screw, actuated: false, .. } => {
+                    columns.push(unit(screw.transformed(&g)));
+                    passive.push((at, motion, g.rotation));
+                }
+                Motion::Ball { point, actuated: false, .. } => {
+                    let point = g * Point3::from(*point);
+                    let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+                    columns.extend(axes.map(|axis| unit(Screw::rotation(axis, point))));
+                    passive.push((at, motion, g.rotation));
+                }
+                Motion::Screw { .. } | Motion::Ball { .. } => {}
+            }
+            g = moved;
+            at += motion.values();
+        }
+        let error = {
+            let turn = (target.rotation * g.rotation.inverse()).scaled_axis();
+            let way = (target * self.platform - g * self.platform) / self.size;
+            Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+        };
+        if columns.is_empty() {
+            return;
+        }
+        let jacobian = DMatrix::from_fn(6, columns.len(), |i, j| columns[j][i]);
+        let mut normal = jacobian.tr_mul(&jacobian);
+        for i in 0..columns.len() {
+            normal[(i, i)] += DAMPING;
+        }
+        let right: DVector<f64> = jacobian.tr_mul(&error);
+        let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { return };
+        let mut step = step.iter();
+        let mut next = || step.next().copied().unwrap_or(0.0);
+        for (at, motion, before) in passive {
+            match motion {
+                Motion::Screw { .. } => joints[at] += next(),
+                Motion::Ball { home, .. } => {
+                    let turn = Vector3::from_fn(|_, _| next());
+                    let turn = UnitQuaternion::from_scaled_axis(before.inverse() * turn);
+                    let held = Vector3::from_column_slice(&joints[at..at + 3]) - home;
+                    let vector = (turn * UnitQuaternion::from_scaled_axis(held)).scaled_axis();
+                    joints[at..at + 3].copy_from_slice((home + vector).as_slice());
+                }
+            }
+        }
+    }
+}

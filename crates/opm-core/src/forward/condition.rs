@@ -1,0 +1,252 @@
+//! What a driven joint of a chain asks of the chain's displacement: one equation.
+//!
+//! A chain `E₀ E₁ E₂` of which one joint is held can be written as `D · X(p) · Y(q) · E` with the two
+//! others, `X` and `Y`, free: where the second is held, the third is carried over it,
+//! `E₀ E₁ E₂ = E₀ (E₁ E₂ E₁⁻¹) E₁`. What two free joints leave fixed is one of the equations below.
+
+use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
+use crate::chain::{Amount, Chain};
+use crate::task::Displacement;
+use nalgebra::{Complex, Matrix3, Vector3};
+
+/// A quarter turn.
+pub const QUARTER: Complex<f64> = Complex::new(0.0, 1.0);
+
+/// One equation on a displacement `g`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// A carried point of the plane is at a distance from a fixed one: `|g point − centre| = radius`.
+    Circle {
+        /// In the body.
+        point: Complex<f64>,
+        /// In the base.
+        centre: Complex<f64>,
+        /// Metres.
+        radius: f64,
+    },
+    /// A carried point is on a fixed line: `normal · g point = offset`.
+    Line {
+        /// In the body.
+        point: Complex<f64>,
+        /// In the base, unit.
+        normal: Complex<f64>,
+        /// Metres.
+        offset: f64,
+    },
+    /// A fixed point is on a carried line: `normal · g⁻¹ point = offset`.
+    CarriedLine {
+        /// In the base.
+        point: Complex<f64>,
+        /// In the body, unit.
+        normal: Complex<f64>,
+        /// Metres.
+        offset: f64,
+    },
+    /// The rotation is known.
+    Heading {
+        /// Unit.
+        rotation: Complex<f64>,
+    },
+    /// A carried direction makes an angle with a fixed one: `fixed · g carried = cosine`.
+    Cone {
+        /// In the base, unit.
+        fixed: Vector3<f64>,
+        /// In the body, unit.
+        carried: Vector3<f64>,
+        /// Of the angle between them.
+        cosine: f64,
+    },
+    /// Of a subspace whose displacements add up: `normal · g = value`.
+    Flat {
+        /// In the coordinates of [`flat`].
+        normal: [f64; 2],
+        /// In their units.
+        value: f64,
+    },
+}
+
+/// The two numbers of a displacement that adds up: angle and advance, or a translation.
+pub fn flat(g: &Displacement) -> [f64; 2] {
+    match g {
+        Displacement::Cylindrical(g) => [g.angle, g.advance],
+        Displacement::Translational(t) => [t.re, t.im],
+        Displacement::Planar(_) | Displacement::Spherical(_) => {
+            unreachable!("planar and spherical displacements do not add up")
+        }
+    }
+}
+
+/// What one unit of each joint adds, of a chain whose displacements add up.
+pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
+    match chain {
+        Chain::Cylindrical(chain) => Some(chain.joints().map(|joint| [joint.turn, joint.advance])),
+        Chain::Translational(chain) => Some(chain.slides().map(|slide| [slide.re, slide.im])),
+        Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
+    }
+}
+
+/// A rotation about `axis` by a turn.
+pub fn rotation(axis: &Vector3<f64>, turn: Complex<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (turn.re, turn.im);
+    Matrix3::from_diagonal_element(cos)
+        + axis.cross_matrix() * sin
+        + axis * axis.transpose() * (1.0 - cos)
+}
+
+impl Condition {
+    /// What the joint `held` alone asks of the chain's displacement; `None` of a spherical joint, no part
+    /// of which asks for one equation.
+    pub fn new(chain: &Chain, held: usize, amount: Amount) -> Option<Self> {
+        match chain {
+            Chain::Planar(chain) => Some(planar(&chain.joints(), held, amount)),
+            Chain::Spherical(chain) => Some(spherical(chain.axes(), held, amount)),
+            Chain::Ball(_) => None,
+            Chain::Cylindrical(_) | Chain::Translational(_) => {
+                let joints = flat_joints(chain)?;
+                let ([a, b], [p, q]) = (joints[held], joints[1 - held]);
+                let normal = [q, -p];
+                Some(Self::Flat { normal, value: (normal[0] * a + normal[1] * b) * amount.value() })
+            }
+        }
+    }
+
+    /// The same condition, lengths times a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Circle { point, centre, radius } => Self::Circle {
+                point: point * factor,
+                centre: centre * factor,
+                radius: radius * factor,
+            },
+            Self::Line { point, normal, offset } => {
+                Self::Line { point: point * factor, normal, offset: offset * factor }
+            }
+            Self::CarriedLine { point, normal, offset } => {
+                Self::CarriedLine { point: point * factor, normal, offset: offset * factor }
+            }
+            Self::Heading { .. } | Self::Cone { .. } | Self::Flat { .. } => self,
+        }
+    }
+
+    /// The condition on `g` that this one is on `g · h`.
+    #[must_use]
+    pub fn before(self, h: &Displacement) -> Self {
+        match (self, h) {
+            (Self::Circle { point, centre, radius }, Displacement::Planar(h)) => {
+                Self::Circle { point: h.apply(point), centre, radius }
+            }
+            (Self::Line { point, normal, offset }, Displacement::Planar(h)) => {
+                Self::Line { point: h.apply(point), normal, offset }
+            }
+            (Self::CarriedLine { point, normal, offset }, Displacement::Planar(h)) => {
+                // normal · h⁻¹ z = (h normal) · (z − translation)
+                let normal = h.rotation * normal;
+                Self::CarriedLine { point, normal, offset: offset + dot(normal, h.translation) }
+            }
+            (Self::Heading { rotation }, Displacement::Planar(h)) => {
+                Self::Heading { rotation: rotation * h.rotation.conj() }
+            }
+            (Self::Cone { fixed, carried, cosine }, Displacement::Spherical(h)) => {
+                Self::Cone { fixed, carried: h * carried, cosine }
+            }
+            (Self::Flat { normal, value }, h) => {
+                let [a, b] = flat(h);
+                Self::Flat { normal, value: value - normal[0] * a - normal[1] * b }
+            }
+            _ => unreachable!("a condition and a displacement of two kinds of subspace"),
+        }
+    }
+
+    /// The condition on `g` that this one is on `h⁻¹ · g`.
+    #[must_use]
+    pub fn after(self, h: &Displacement) -> Self {
+        match (self, h) {
+            (Self::Circle { point, centre, radius }, Displacement::Planar(h)) => {
+                Self::Circle { point, centre: h.apply(centre), radius }
+            }
+            (Self::Line { point, normal, offset }, Displacement::Planar(h)) => {
+                let normal = h.rotation * normal;
+                Self::Line { point, normal, offset: offset + dot(normal, h.translation) }
+            }
+            (Self::CarriedLine { point, normal, offset }, Displacement::Planar(h)) => {
+                Self::CarriedLine { point: h.apply(point), normal, offset }
+            }
+            (Self::Heading { rotation }, Displacement::Planar(h)) => {
+                Self::Heading { rotation: rotation * h.rotation }
+            }
+            (Self::Cone { fixed, carried, cosine }, Displacement::Spherical(h)) => {
+                Self::Cone { fixed: h * fixed, carried, cosine }
+            }
+            (Self::Flat { normal, value }, h) => {
+                let [a, b] = flat(h);
+                Self::Flat { normal, value: value + normal[0] * a + normal[1] * b }
+            }
+            _ => unreachable!("a condition and a displacement of two kinds of subspace"),
+        }
+    }
+}
+
+/// `a · b`, as vectors of the plane.
+#[inline]
+pub fn dot(a: Complex<f64>, b: Complex<f64>) -> f64 {
+    a.re * b.re + a.im * b.im
+}
+
+/// The length of a vector of the plane, without the care that overflow takes.
+#[inline]
+pub fn length(z: Complex<f64>) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+fn planar(joints: &[PlanarJoint; 3], held: usize, amount: Amount) -> Condition {
+    let known = joints[held].displacement(amount);
+    let none = PlanarDisplacement::IDENTITY;
+    let (before, first, second, after) = match held {
+        0 => (known, joints[1], joints[2], none),
+        1 => (none, joints[0], carried(&known, &joints[2]), known),
+        _ => (none, joints[0], joints[1], known),
+    };
+    let inner = after.inverse();
+    match (first, second) {
+        (PlanarJoint::Revolute { at: x, .. }, PlanarJoint::Revolute { at: y, .. }) => {
+            let (point, centre) = (inner.apply(y), before.apply(x));
+            Condition::Circle { point, centre, radius: length(y - x) }
+        }
+        (PlanarJoint::Prismatic { along }, PlanarJoint::Revolute { at: y, .. }) => {
+            let normal = QUARTER * before.rotation * along;
+            let offset = dot(normal, before.apply(y));
+            Condition::Line { point: inner.apply(y), normal, offset }
+        }
+        (PlanarJoint::Revolute { at: x, .. }, PlanarJoint::Prismatic { along }) => {
+            let normal = QUARTER * inner.rotation * along;
+            let offset = dot(normal, inner.apply(x));
+            Condition::CarriedLine { point: before.apply(x), normal, offset }
+        }
+        (PlanarJoint::Prismatic { .. }, PlanarJoint::Prismatic { .. }) => {
+            Condition::Heading { rotation: before.rotation * after.rotation }
+        }
+    }
+}
+
+fn carried(g: &PlanarDisplacement, joint: &PlanarJoint) -> PlanarJoint {
+    match *joint {
+        PlanarJoint::Revolute { at, reversed } => {
+            PlanarJoint::Revolute { at: g.apply(at), reversed }
+        }
+        PlanarJoint::Prismatic { along } => PlanarJoint::Prismatic { along: g.rotation * along },
+    }
+}
+
+fn spherical(axes: &[Vector3<f64>; 3], held: usize, amount: Amount) -> Condition {
+    let known = rotation(&axes[held], amount.turn());
+    let (fixed, carried, cosine) = match held {
+        0 => (known * axes[1], axes[2], axes[1].dot(&axes[2])),
+        1 => {
+            let third = known * axes[2];
+            (axes[0], axes[2], axes[0].dot(&third))
+        }
+        _ => (axes[0], known.tr_mul(&axes[1]), axes[0].dot(&axes[1])),
+    };
+    Condition::Cone { fixed, carried, cosine }
+}

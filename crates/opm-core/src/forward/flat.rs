@@ -1,0 +1,109 @@
+//! Two sections whose displacements add up (cylindrical, translational plane): the legs' equations are
+//! linear in the pose, and are solved once for all actuated joints. For the 2-PPR + PPH manipulator this
+//! is the 3×3 system of its three sliders (Eqs. 27-28 of the paper).
+
+use super::along::direction;
+use super::condition::{Condition, flat_joints};
+use super::plan::HeldLeg;
+use crate::chain::Amount;
+use crate::manipulator::{CompiledLeg, Section};
+use crate::task::{Displacement, SubspaceKind, Task};
+use nalgebra::{DMatrix, DVector};
+
+/// A diagonal entry of the triangular factor this small beside the largest: the equations are dependent.
+const DEPENDENT: f64 = 1e-9;
+
+/// `v` and `b` as linear functions of the actuated joints' displacements from home.
+#[derive(Clone, Debug)]
+pub struct Flat {
+    /// Rows: the two numbers of `v`, the two of `b`; columns: actuated joints.
+    matrix: DMatrix<f64>,
+}
+
+/// A row of the system: coefficients of `v`, `b`, the legs' τ and, on the right, the actuated joints.
+struct Row {
+    left: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Flat {
+    /// Solves the system; `None` where the legs do not fix the pose.
+    pub fn new(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], size: f64) -> Option<Self> {
+        let drives = held.iter().map(|leg| leg.lower.len() + leg.upper.len()).sum();
+        let mut rows = vec![Row {
+            // b has no share of the intersection motion: v takes it all.
+            left: {
+                let mut left = vec![0.0; 4 + legs.len()];
+                left[2..4].copy_from_slice(&direction(&task.upper_cut));
+                left
+            },
+            right: vec![0.0; drives],
+        }];
+        for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
+            for section in [Section::Lower, Section::Upper] {
+                let compiled = leg.section(section);
+                let (first, held, cut, sign) = match section {
+                    Section::Lower => (0, &held.lower, &task.lower_cut, 1.0),
+                    Section::Upper => (2, &held.upper, &task.upper_cut, -1.0),
+                };
+                let joints = flat_joints(&compiled.chain)?;
+                let cut_slot = (section == leg.cut).then_some(match section {
+                    Section::Lower => 1,
+                    Section::Upper => 0,
+                });
+                for slot in held.iter().copied().chain(cut_slot) {
+                    let one = Condition::new(&compiled.chain, slot, Amount::Value(1.0))?;
+                    let Condition::Flat { normal: [a, b], .. } = one else { return None };
+                    let mut row = Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; drives] };
+                    row.left[first] = a;
+                    row.left[first + 1] = b;
+                    let [p, q] = direction(cut);
+                    // v + I τ, or b − I τ, is what the real joints make; in a chain with the cut, the
+                    // row of its other joint is square to I.
+                    row.left[4 + number] = sign * (a * p + b * q);
+                    if Some(slot) != cut_slot {
+                        let drive = compiled.slots[slot]?.drive?;
+                        let [p, q] = joints[slot];
+                        row.right[drive] = a * p + b * q;
+                    }
+                    rows.push(row);
+                }
+            }
+        }
+        // Lengths in sizes: then no row or column is small by its units alone.
+        let lengths = |kind: SubspaceKind| match kind {
+            SubspaceKind::Cylindrical => [1.0, size],
+            _ => [size, size],
+        };
+        let mut scale = lengths(task.lower.kind).to_vec();
+        scale.extend(lengths(task.upper.kind));
+        scale.extend(vec![size; legs.len()]);
+        let columns = scale.len();
+        let mut left = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i].left[j] * scale[j]);
+        let mut right = DMatrix::from_fn(rows.len(), drives, |i, j| rows[i].right[j]);
+        for i in 0..rows.len() {
+            let largest = left.row(i).amax();
+            if largest > 0.0 {
+                left.row_mut(i).unscale_mut(largest);
+                right.row_mut(i).unscale_mut(largest);
+            }
+        }
+        if rows.len() < columns {
+            return None;
+        }
+        let qr = left.qr();
+        let triangle = qr.r();
+        let diagonal = triangle.diagonal().abs();
+        if diagonal.min() <= DEPENDENT * diagonal.max() {
+            return None;
+        }
+        let solution = triangle.solve_upper_triangular(&qr.q().tr_mul(&right))?;
+        Some(Self { matrix: DMatrix::from_fn(4, drives, |i, j| solution[(i, j)] * scale[i]) })
+    }
+
+    /// `v` and `b` for displacements of the actuated joints from home.
+    pub fn solve(&self, task: &Task, actuated: &[f64]) -> [Displacement; 2] {
+        let x = &self.matrix * DVector::from_column_slice(actuated);
+        [task.lower.kind.flat(x[0], x[1]), task.upper.kind.flat(x[2], x[3])]
+    }
+}

@@ -1,0 +1,231 @@
+//! In which order the sections of a mechanism are solved forwards: found once, from which joints are
+//! actuated and what the two subspaces are.
+
+use super::along::direction;
+use super::condition::{Condition, flat_joints};
+use super::flat::Flat;
+use super::track::Track;
+use crate::chain::{Amount, Chain};
+use crate::manipulator::{CompiledLeg, CompiledSection, Section};
+use crate::task::{SubspaceKind, Task};
+
+/// Why a mechanism's forward kinematics have no closed form here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoClosedForm {
+    /// No set of legs fixes where the intersection motion takes place.
+    #[error("its legs do not fix the lower section apart from the upper one")]
+    Lower,
+    /// Too few legs act on the upper section once the lower one is known.
+    #[error("its legs do not fix the upper section once the lower one is known")]
+    Upper,
+    /// A spherical joint with a motor.
+    #[error("it drives a spherical joint")]
+    Ball,
+}
+
+/// The order.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What each leg holds.
+    pub legs: Vec<HeldLeg>,
+    /// How `v` is found, up to the intersection motion.
+    pub anchor: Anchor,
+}
+
+/// The slots of a leg's two chains whose joints are actuated.
+#[derive(Clone, Debug)]
+pub struct HeldLeg {
+    pub lower: Vec<usize>,
+    pub upper: Vec<usize>,
+}
+
+/// What fixes `v`, up to the intersection motion.
+#[derive(Clone, Debug)]
+pub enum Anchor {
+    /// A leg whose lower joints are all actuated.
+    Leg(usize),
+    /// Two legs, each of which keeps the axis of the shared rotation on a track.
+    Tracks([Tracked; 2]),
+    /// A leg that keeps `v` on a level along which the intersection motion moves: the slot that does.
+    Level { leg: usize, slot: usize },
+    /// Legs whose imaginary joints move as one, `functional · b`: taken as the origin of the intersection
+    /// motion, it leaves as many conditions on `v` as there are freedoms.
+    Together { functional: [f64; 2], legs: Vec<usize> },
+    /// All displacements add up: a linear system.
+    Flat(Flat),
+}
+
+/// A leg that keeps the axis on a track.
+#[derive(Clone, Copy, Debug)]
+pub struct Tracked {
+    pub leg: usize,
+    /// The one lower slot that is free, of a leg without the cut there; the one that is held, with it.
+    pub slot: usize,
+}
+
+impl Plan {
+    pub fn new(task: &Task, legs: &[CompiledLeg], size: f64) -> Result<Self, NoClosedForm> {
+        let held: Vec<HeldLeg> = legs
+            .iter()
+            .map(|leg| HeldLeg { lower: held(&leg.lower), upper: held(&leg.upper) })
+            .collect();
+        let ball = |section: &CompiledSection, held: &[usize]| {
+            matches!(section.chain, Chain::Ball(_)) && !held.is_empty()
+        };
+        if legs
+            .iter()
+            .zip(&held)
+            .any(|(leg, held)| ball(&leg.lower, &held.lower) || ball(&leg.upper, &held.upper))
+        {
+            return Err(NoClosedForm::Ball);
+        }
+        if adds_up(task.lower.kind) && adds_up(task.upper.kind) {
+            let flat = Flat::new(task, legs, &held, size).ok_or(NoClosedForm::Lower)?;
+            return Ok(Self { legs: held, anchor: Anchor::Flat(flat) });
+        }
+        let anchors = anchors(task, legs, &held);
+        let found = !anchors.is_empty();
+        let enough = |anchor: &Anchor| fixes_upper(task, legs, &held, anchor);
+        match anchors.into_iter().find(enough) {
+            Some(anchor) => Ok(Self { legs: held, anchor }),
+            None if found => Err(NoClosedForm::Upper),
+            None => Err(NoClosedForm::Lower),
+        }
+    }
+}
+
+pub fn adds_up(kind: SubspaceKind) -> bool {
+    match kind {
+        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => true,
+        SubspaceKind::Planar | SubspaceKind::Spherical => false,
+    }
+}
+
+fn held(section: &CompiledSection) -> Vec<usize> {
+    let driven = |slot: &usize| section.slots[*slot].is_some_and(|slot| slot.drive.is_some());
+    (0..3).filter(driven).collect()
+}
+
+/// The ways in which `v` can be found, the simplest first.
+fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
+    let mut found = Vec::new();
+    let whole = |(leg, held): (&CompiledLeg, &HeldLeg)| {
+        let real = leg.lower.chain.freedoms() - usize::from(leg.cut == Section::Lower);
+        held.lower.len() == real
+    };
+    found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
+    if adds_up(task.lower.kind) {
+        let cut = direction(&task.lower_cut);
+        found.extend((0..legs.len()).find_map(|leg| {
+            let level = |slot: &&usize| {
+                let c = Condition::new(&legs[leg].lower.chain, **slot, Amount::Value(0.0));
+                matches!(c, Some(Condition::Flat { normal: [a, b], .. })
+                    if (a * cut[0] + b * cut[1]).abs() <= LEVEL * a.hypot(b))
+            };
+            let slot = *held[leg].lower.iter().find(level)?;
+            Some(Anchor::Level { leg, slot })
+        }));
+        return found;
+    }
+    if task.cut_point.is_some() {
+        let tracked: Vec<Tracked> =
+            (0..legs.len()).filter_map(|leg| tracked(leg, &legs[leg], &held[leg])).collect();
+        if let [first, second, ..] = *tracked {
+            found.push(Anchor::Tracks([first, second]));
+        }
+    }
+    if adds_up(task.upper.kind) {
+        found.extend(together(task, legs, held));
+    }
+    found
+}
+
+/// The sine of an angle between a condition's normal and the intersection motion that counts as a right
+/// one's complement: both are exact up to rounding.
+const LEVEL: f64 = 1e-12;
+
+fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> {
+    let slot = match leg.cut {
+        Section::Upper if held.lower.len() == 2 => {
+            (0..3).find(|slot| !held.lower.contains(slot))?
+        }
+        Section::Lower if held.lower.len() == 1 => held.lower[0],
+        _ => return None,
+    };
+    // Of a chain with the cut there may be one that leaves the axis where it likes.
+    let amounts = [Amount::Value(0.0); 3];
+    let track = match leg.cut {
+        Section::Upper => Track::of_chain(&leg.lower.chain, slot, &amounts),
+        Section::Lower => {
+            let condition = Condition::new(&leg.lower.chain, slot, amounts[0])?;
+            Track::of_condition(&condition)
+        }
+    };
+    track.map(|_| Tracked { leg: number, slot })
+}
+
+/// The functional of `b` that the cuts of most legs follow.
+fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
+    let cut = direction(&task.upper_cut);
+    // With its one upper joint passive, a leg's cut is what b has beside that joint's motion.
+    let functional = |leg: &CompiledLeg, held: &HeldLeg| {
+        if leg.cut == Section::Lower || !held.upper.is_empty() {
+            return None;
+        }
+        let [_, [p, q]] = flat_joints(&leg.upper.chain)?;
+        let along = q * cut[0] - p * cut[1];
+        Some([q / along, -p / along])
+    };
+    let functionals: Vec<_> =
+        legs.iter().zip(held).map(|(leg, held)| functional(leg, held)).collect();
+    let follows = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
+        other.is_some_and(|[a, b]| {
+            (a - wanted[0]).abs().max((b - wanted[1]).abs()) <= LEVEL * wanted[0].hypot(wanted[1])
+        })
+    };
+    let group = |wanted: &[f64; 2]| -> Vec<usize> {
+        (0..legs.len())
+            .filter(|&i| {
+                let driven = legs[i].cut == Section::Upper && !held[i].upper.is_empty();
+                follows(&functionals[i], wanted) || driven
+            })
+            .collect()
+    };
+    let conditions = |group: &[usize]| -> usize {
+        let own = |i: &usize| legs[*i].cut == Section::Lower || group.contains(i);
+        (0..legs.len()).filter(own).map(|i| held[i].lower.len()).sum()
+    };
+    let best = functionals.iter().flatten().max_by_key(|wanted| conditions(&group(wanted)))?;
+    let members = group(best);
+    (conditions(&members) >= task.lower.dimension())
+        .then_some(Anchor::Together { functional: *best, legs: members })
+}
+
+/// Whether the legs' conditions on `b` are enough once `v` is known.
+fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anchor) -> bool {
+    let mut count = 0;
+    let mut normals: Vec<[f64; 2]> = Vec::new();
+    for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
+        let known = match anchor {
+            Anchor::Leg(anchor) if *anchor == number => true,
+            Anchor::Together { legs, .. } if legs.contains(&number) => true,
+            _ => !held.lower.is_empty(),
+        };
+        let cut = (leg.cut == Section::Upper && known).then_some(0);
+        for slot in cut.into_iter().chain(held.upper.iter().copied()) {
+            count += 1;
+            if let Some(Condition::Flat { normal, .. }) =
+                Condition::new(&leg.upper.chain, slot, Amount::Value(0.0))
+            {
+                normals.push(normal);
+            }
+        }
+    }
+    if !adds_up(task.upper.kind) {
+        return count >= task.upper.dimension();
+    }
+    normals.iter().enumerate().any(|(i, [a, b])| {
+        let across = |[p, q]: &[f64; 2]| (a * q - b * p).abs() > LEVEL * a.hypot(*b) * p.hypot(*q);
+        normals[..i].iter().any(across)
+    })
+}

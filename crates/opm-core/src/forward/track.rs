@@ -1,0 +1,147 @@
+//! Where legs that hold all but one of their lower joints let the axis of the intersection motion go,
+//! and where two such tracks meet: two circles or lines in the plane, two cones about a centre.
+
+use super::VERGE;
+use super::condition::{Condition, QUARTER, dot, rotation};
+use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
+use crate::chain::{Amount, Chain};
+use crate::task::Displacement;
+use nalgebra::{Complex, Matrix3, Vector3};
+
+/// Where the axis of a rotation that two subspaces share can be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Track {
+    /// Its foot in the plane is at a distance from a point.
+    Circle { centre: Complex<f64>, radius: f64 },
+    /// Its foot is on the line `normal · z = offset`.
+    Line { normal: Complex<f64>, offset: f64 },
+    /// It makes an angle with a direction.
+    Cone { axis: Vector3<f64>, cosine: f64 },
+}
+
+impl Track {
+    /// From a condition on `g` that the intersection motion, applied first, does not change.
+    pub fn of_condition(condition: &Condition) -> Option<Self> {
+        match *condition {
+            Condition::Circle { centre, radius, .. } => Some(Self::Circle { centre, radius }),
+            Condition::Line { normal, offset, .. } => Some(Self::Line { normal, offset }),
+            Condition::Cone { fixed, cosine, .. } => Some(Self::Cone { axis: fixed, cosine }),
+            Condition::CarriedLine { .. } | Condition::Heading { .. } | Condition::Flat { .. } => {
+                None
+            }
+        }
+    }
+
+    /// Of a chain that holds every joint but `free`.
+    pub fn of_chain(chain: &Chain, free: usize, amounts: &[Amount; 3]) -> Option<Self> {
+        match chain {
+            Chain::Planar(chain) => {
+                let joints = chain.joints();
+                let held = |range: std::ops::Range<usize>| {
+                    range.fold(PlanarDisplacement::IDENTITY, |g, i| {
+                        g.after(&joints[i].displacement(amounts[i]))
+                    })
+                };
+                let (before, after) = (held(0..free), held(free + 1..3));
+                let foot = after.translation;
+                Some(match joints[free] {
+                    PlanarJoint::Revolute { at, .. } => {
+                        Self::Circle { centre: before.apply(at), radius: (foot - at).norm() }
+                    }
+                    PlanarJoint::Prismatic { along } => {
+                        let normal = QUARTER * before.rotation * along;
+                        Self::Line { normal, offset: dot(normal, before.apply(foot)) }
+                    }
+                })
+            }
+            Chain::Spherical(chain) => {
+                let axes = chain.axes();
+                let held = |range: std::ops::Range<usize>| {
+                    range
+                        .fold(Matrix3::identity(), |g, i| g * rotation(&axes[i], amounts[i].turn()))
+                };
+                let axis = held(free + 1..3) * Vector3::z();
+                let cosine = axes[free].dot(&axis);
+                Some(Self::Cone { axis: held(0..free) * axes[free], cosine })
+            }
+            Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => None,
+        }
+    }
+
+    /// Displacements that bring the axis to where two tracks meet: at most two.
+    pub fn meetings(&self, other: &Self, size: f64) -> Option<Vec<Displacement>> {
+        match (self, other) {
+            (Self::Circle { centre: c, radius: a }, Self::Circle { centre: d, radius: b }) => {
+                // On the radical axis, which is square to the line of the centres.
+                let apart = d - c;
+                let square = apart.norm_sqr();
+                if square <= VERGE * VERGE * size * size {
+                    return None;
+                }
+                let share = 0.5 * (1.0 + (a * a - b * b) / square);
+                Some(on_line(c + apart * share, QUARTER * apart / square.sqrt(), *c, *a, size))
+            }
+            (Self::Circle { centre, radius }, Self::Line { normal, offset })
+            | (Self::Line { normal, offset }, Self::Circle { centre, radius }) => {
+                let foot = centre + normal * (offset - dot(*normal, *centre));
+                Some(on_line(foot, QUARTER * normal, *centre, *radius, size))
+            }
+            (Self::Line { normal: n, offset: p }, Self::Line { normal: m, offset: q }) => {
+                let determinant = n.re * m.im - n.im * m.re;
+                if determinant.abs() <= VERGE {
+                    return None;
+                }
+                let z = Complex::new(p * m.im - q * n.im, n.re * q - m.re * p) / determinant;
+                Some(vec![translation(z)])
+            }
+            (Self::Cone { axis: a, cosine: p }, Self::Cone { axis: b, cosine: q }) => {
+                let (across, cosine) = (a.cross(b), a.dot(b));
+                let square = across.norm_squared();
+                if square <= VERGE {
+                    return None;
+                }
+                let middle = (a * (p - cosine * q) + b * (q - cosine * p)) / square;
+                let left = 1.0 - middle.norm_squared();
+                if left < -2.0 * VERGE {
+                    return Some(vec![]);
+                }
+                let aside = across * (left.max(0.0) / square).sqrt();
+                let signs: &[f64] = if left > 0.0 { &[1.0, -1.0] } else { &[1.0] };
+                Some(signs.iter().map(|sign| pointing(&(middle + aside * *sign))).collect())
+            }
+            _ => unreachable!("tracks in two kinds of subspace"),
+        }
+    }
+}
+
+/// Where the line through `foot`, the point of it nearest to `centre`, is at a distance from that.
+fn on_line(
+    foot: Complex<f64>,
+    along: Complex<f64>,
+    centre: Complex<f64>,
+    radius: f64,
+    size: f64,
+) -> Vec<Displacement> {
+    let square = radius * radius - (foot - centre).norm_sqr();
+    if square < -2.0 * VERGE * size * size {
+        return vec![];
+    }
+    let step = along * square.max(0.0).sqrt();
+    let mut found = vec![translation(foot + step)];
+    if square > 0.0 {
+        found.push(translation(foot - step));
+    }
+    found
+}
+
+fn translation(z: Complex<f64>) -> Displacement {
+    Displacement::Planar(PlanarDisplacement { rotation: Complex::new(1.0, 0.0), translation: z })
+}
+
+/// A rotation that brings the third direction to `u`.
+fn pointing(u: &Vector3<f64>) -> Displacement {
+    let u = u.normalize();
+    let beside = if u.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let first = (beside - u * u.dot(&beside)).normalize();
+    Displacement::Spherical(Matrix3::from_columns(&[first, u.cross(&first), u]))
+}

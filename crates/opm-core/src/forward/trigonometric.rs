@@ -1,0 +1,394 @@
+//! Trigonometric polynomials of degree up to four, and all of their real roots.
+
+use nalgebra::Complex;
+
+/// Highest degree: that of a planar or a spherical section of three conditions.
+const DEGREE: usize = 4;
+/// Degree in the tangent of the half angle, and coefficients.
+const HALF: usize = 2 * DEGREE;
+const COEFFICIENTS: usize = HALF + 1;
+
+/// A polynomial that stays within this share of the size of what it was computed from is zero there:
+/// what is left of rounding after some twenty products and sums.
+pub const NOISE: f64 = 1e-14;
+
+/// An interval of the half angle's tangent this short is not divided further: two roots in it are
+/// nearer to each other than the rounding of a double root, which is the root of [`NOISE`].
+const SHORTEST: f64 = 1e-8;
+
+/// `f(θ) = Re c₀ + Σ 2 Re(c_k exp(i k θ))`, that is `c₋ₖ` the conjugate of `c_k`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trigonometric {
+    coefficients: [Complex<f64>; DEGREE + 1],
+    degree: usize,
+}
+
+/// The roots that were found, as unit vectors, counter-clockwise from minus a quarter turn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Roots {
+    /// Finitely many.
+    At(Vec<Complex<f64>>),
+    /// The polynomial is zero everywhere.
+    Everywhere,
+}
+
+impl Trigonometric {
+    /// `a + b cos θ + c sin θ`.
+    #[inline]
+    pub fn linear([a, b, c]: [f64; 3]) -> Self {
+        let mut coefficients = [Complex::new(0.0, 0.0); DEGREE + 1];
+        coefficients[0].re = a;
+        coefficients[1] = Complex::new(0.5 * b, -0.5 * c);
+        Self { coefficients, degree: 1 }
+    }
+
+    /// The value at the angle of a unit vector.
+    #[inline]
+    pub fn value(&self, e: Complex<f64>) -> f64 {
+        let mut value = self.coefficients[0].re;
+        let mut power = e;
+        for c in &self.coefficients[1..=self.degree] {
+            value += 2.0 * (c.re * power.re - c.im * power.im);
+            power *= e;
+        }
+        value
+    }
+
+    /// The product; the degrees add up to at most four.
+    #[inline]
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        let (n, m) = (self.degree as isize, other.degree as isize);
+        let mut coefficients = [Complex::new(0.0, 0.0); DEGREE + 1];
+        for (k, sum) in (0..=n + m).zip(&mut coefficients) {
+            for j in (k - m).max(-n)..=n.min(k + m) {
+                *sum += self.coefficient(j) * other.coefficient(k - j);
+            }
+        }
+        Self { coefficients, degree: (n + m) as usize }
+    }
+
+    /// `self − other`.
+    #[inline]
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let mut difference = *self;
+        difference.degree = self.degree.max(other.degree);
+        for (c, o) in difference.coefficients.iter_mut().zip(&other.coefficients) {
+            *c -= o;
+        }
+        difference
+    }
+
+    /// The sum.
+    #[inline]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut sum = *self;
+        sum.degree = self.degree.max(other.degree);
+        for (c, o) in sum.coefficients.iter_mut().zip(&other.coefficients) {
+            *c += o;
+        }
+        sum
+    }
+
+    /// A bound on its values.
+    #[inline]
+    pub fn size(&self) -> f64 {
+        let higher = self.coefficients[1..=self.degree].iter();
+        self.coefficients[0].re.abs() + 2.0 * higher.map(|c| c.re.abs() + c.im.abs()).sum::<f64>()
+    }
+
+    #[inline]
+    fn coefficient(&self, k: isize) -> Complex<f64> {
+        let c = self.coefficients[k.unsigned_abs()];
+        if k < 0 { c.conj() } else { c }
+    }
+
+    /// Every real root of a polynomial that was computed from terms of size `scale`: where it changes
+    /// its sign, and where it touches zero to within [`NOISE`]. Roots nearer to each other than some
+    /// 1e-7 may be given as one, or one that is double as two or three.
+    ///
+    /// With `t = tan(θ/2)`, `(1 + t²)⁴ f` is a polynomial of degree eight in `t`; half of the circle is
+    /// `|t| ≤ 1`, and the other half, turned, too. In Bernstein's basis its coefficients bound it, and
+    /// their differences tell where it is monotonic; what they leave open is halved (de Casteljau).
+    pub fn roots(&self, scale: f64) -> Roots {
+        let noise = NOISE * scale;
+        if self.size() <= noise || !self.size().is_finite() {
+            return Roots::Everywhere;
+        }
+        let mut found = Vec::with_capacity(HALF);
+        // Each halving leaves one interval to come back to, down to the shortest.
+        let mut open = Vec::with_capacity(32);
+        for half in [1.0, -1.0] {
+            let mut turned = *self;
+            for c in turned.coefficients[1..].iter_mut().step_by(2) {
+                *c *= half;
+            }
+            let polynomial = turned.in_half_tangent();
+            open.push((turned.bernstein(), -1.0, 2.0));
+            isolate(&mut open, &polynomial, noise, &mut |t| {
+                let square = t * t;
+                let e = Complex::new(1.0 - square, 2.0 * t) / (1.0 + square);
+                found.push(e * half);
+            });
+        }
+        Roots::At(found)
+    }
+
+    /// Coefficients of `(1 + t²)⁴ f` by rising powers of `t`.
+    fn in_half_tangent(&self) -> [f64; COEFFICIENTS] {
+        self.expanded(&POWERS)
+    }
+
+    /// Coefficients of `(1 + t²)⁴ f` on `-1 ≤ t ≤ 1` in Bernstein's basis.
+    fn bernstein(&self) -> [f64; COEFFICIENTS] {
+        self.expanded(&BERNSTEIN)
+    }
+
+    fn expanded(&self, table: &Table) -> [f64; COEFFICIENTS] {
+        let mut sum = [0.0; COEFFICIENTS];
+        for (k, c) in self.coefficients[..=self.degree].iter().enumerate() {
+            let twice = if k == 0 { 1.0 } else { 2.0 };
+            for (sum, [re, im]) in sum.iter_mut().zip(&table[k]) {
+                *sum += twice * (c.re * re - c.im * im);
+            }
+        }
+        sum
+    }
+}
+
+/// Real and imaginary parts of `(1 + i t)^(4+k) (1 − i t)^(4−k)`, which is `(1 + t²)⁴ exp(i k θ)`: its
+/// coefficients in some basis, for each `k`.
+type Table = [[[f64; 2]; COEFFICIENTS]; DEGREE + 1];
+
+const POWERS: Table = table([[1, 0], [0, 1]], false);
+/// On `-1 ≤ t ≤ 1` the factor `1 + i t` runs from `1 − i` to `1 + i`.
+const BERNSTEIN: Table = table([[1, -1], [1, 1]], true);
+
+/// The product of eight linear factors, `1 + i t` in the basis asked for and its conjugates, in Gaussian
+/// integers; over the binomial coefficients for Bernstein's basis.
+const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
+    let mut table = [[[0.0; 2]; COEFFICIENTS]; DEGREE + 1];
+    let mut k = 0;
+    while k <= DEGREE {
+        let mut product = [[0_i64; 2]; COEFFICIENTS];
+        product[0] = [1, 0];
+        let mut n = 0;
+        while n < HALF {
+            let sign = if n < DEGREE + k { 1 } else { -1 };
+            let mut next = [[0_i64; 2]; COEFFICIENTS];
+            let mut j = 0;
+            while j <= n {
+                let [a, b] = product[j];
+                let mut step = 0;
+                while step < 2 {
+                    let [c, d] = [factor[step][0], sign * factor[step][1]];
+                    next[j + step][0] += a * c - b * d;
+                    next[j + step][1] += a * d + b * c;
+                    step += 1;
+                }
+                j += 1;
+            }
+            product = next;
+            n += 1;
+        }
+        let mut j = 0;
+        let mut binomial = 1;
+        while j <= HALF {
+            let over = if over_binomials { binomial } else { 1 };
+            table[k][j] = [product[j][0] as f64 / over as f64, product[j][1] as f64 / over as f64];
+            binomial = binomial * (HALF - j) as i64 / (j + 1) as i64;
+            j += 1;
+        }
+        k += 1;
+    }
+    table
+}
+
+/// An interval by its low end and its width, and Bernstein coefficients on it.
+type Interval = ([f64; COEFFICIENTS], f64, f64);
+
+/// Finds the roots of a polynomial on the intervals that are open, ascending.
+fn isolate(
+    open: &mut Vec<Interval>,
+    powers: &[f64; COEFFICIENTS],
+    noise: f64,
+    found: &mut impl FnMut(f64),
+) {
+    while let Some((b, low, width)) = open.pop() {
+        let (least, most) =
+            b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
+        if least > noise || most < -noise {
+            continue;
+        }
+        let rising = b.windows(2).all(|pair| pair[1] > pair[0]);
+        if rising || b.windows(2).all(|pair| pair[1] < pair[0]) {
+            // Where neighbours share an end that is a root, it belongs to the right one.
+            let (first, last) = (b[0], b[HALF]);
+            let crosses =
+                if rising { first <= 0.0 && last > 0.0 } else { first >= 0.0 && last < 0.0 };
+            if crosses {
+                found(bracketed(powers, [low, low + width], rising));
+            }
+            continue;
+        }
+        // Lost in the noise, unless it has one bend there: that can be followed to its turning point.
+        let flat = least.abs().max(most.abs()) <= noise && !bends(&b);
+        if width <= SHORTEST || flat {
+            found(low + 0.5 * width);
+            continue;
+        }
+        let (left, right) = halves(&b);
+        open.push((right, low + 0.5 * width, 0.5 * width));
+        open.push((left, low, 0.5 * width));
+    }
+}
+
+/// Whether the second derivative keeps its sign.
+fn bends(b: &[f64; COEFFICIENTS]) -> bool {
+    let second = |w: &[f64]| w[0] - 2.0 * w[1] + w[2];
+    b.windows(3).all(|w| second(w) > 0.0) || b.windows(3).all(|w| second(w) < 0.0)
+}
+
+/// De Casteljau's halves.
+fn halves(b: &[f64; COEFFICIENTS]) -> ([f64; COEFFICIENTS], [f64; COEFFICIENTS]) {
+    let (mut left, mut right) = ([0.0; COEFFICIENTS], *b);
+    for (i, left) in left.iter_mut().enumerate() {
+        *left = right[0];
+        for j in 0..HALF - i {
+            right[j] = 0.5 * (right[j] + right[j + 1]);
+        }
+    }
+    (left, right)
+}
+
+/// The root of a polynomial that is monotonic on an interval with a root: Newton's steps, halving where
+/// they leave it.
+fn bracketed(powers: &[f64; COEFFICIENTS], [mut low, mut high]: [f64; 2], rising: bool) -> f64 {
+    /// Halving alone comes to the last bit in as many.
+    const STEPS: usize = 64;
+    let mut t = 0.5 * (low + high);
+    for _ in 0..STEPS {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for c in powers.iter().rev() {
+            slope = slope * t + value;
+            value = value * t + c;
+        }
+        if (value > 0.0) == rising {
+            high = t;
+        } else {
+            low = t;
+        }
+        let newton = t - value / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - t).abs() <= 4.0 * f64::EPSILON {
+            return next;
+        }
+        t = next;
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::unit;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// `Π sin((θ − r) / 2)` over eight angles: a polynomial of degree four with these roots.
+    fn with_roots(roots: &[f64]) -> Trigonometric {
+        // sin((θ−r)/2) sin((θ−s)/2) = (cos((r−s)/2) − cos(θ − (r+s)/2)) / 2
+        let pair = |r: f64, s: f64| {
+            let (sin, cos) = (0.5 * (r + s)).sin_cos();
+            Trigonometric::linear([0.5 * (0.5 * (r - s)).cos(), -0.5 * cos, -0.5 * sin])
+        };
+        roots.chunks(2).map(|p| pair(p[0], p[1])).reduce(|f, g| f.times(&g)).unwrap()
+    }
+
+    fn angles(found: &Roots) -> Vec<f64> {
+        let Roots::At(found) = found else { panic!("everywhere") };
+        found.iter().map(|e| e.arg()).collect()
+    }
+
+    fn apart(a: f64, b: f64) -> f64 {
+        (unit(a) - unit(b)).norm()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+        /// Roots a hundredth apart are all found, each once, and nothing else is.
+        #[test]
+        fn roots_that_are_apart_are_found_once(start in 0.0..TAU, gaps in proptest::array::uniform8(0.01..1.0_f64)) {
+            let whole: f64 = gaps.iter().sum();
+            let mut at = start;
+            let roots = gaps.map(|gap| { at += gap.max(0.01 * whole) * TAU / (1.1 * whole); at });
+            let f = with_roots(&roots);
+            let found = angles(&f.roots(f.size()));
+            prop_assert_eq!(found.len(), 8);
+            for r in roots {
+                let nearest = found.iter().map(|s| apart(r, *s)).fold(1.0, f64::min);
+                // The neighbours' factors divide the rounding.
+                prop_assert!(nearest < 1e-6, "{} {:e}", r, nearest);
+            }
+        }
+
+        /// A double root is found, although rounding may lift the polynomial off zero there.
+        #[test]
+        fn double_roots_are_found(at in -4.0..4.0_f64, others in proptest::array::uniform6(0.3..1.0_f64), lift in -1.0..1.0_f64) {
+            let mut next = at;
+            let others = others.map(|gap| { next += 0.8 * gap; next });
+            let mut roots = vec![at, at];
+            roots.extend(others);
+            let f = with_roots(&roots);
+            let size = f.size();
+            let lifted = f.plus(&Trigonometric::linear([0.1 * NOISE * size * lift, 0.0, 0.0]));
+            let found = angles(&lifted.roots(size));
+            let near = found.iter().filter(|r| apart(at, **r) < 1e-5).count();
+            prop_assert!((1..=3).contains(&near), "{} near {}, {:?}", near, at, found);
+            prop_assert!(found.len() - near == 6, "{:?}", found);
+        }
+
+        /// What is found is what a scan finds: sign changes between points a ten-thousandth apart.
+        #[test]
+        fn as_many_as_a_scan_finds(c in proptest::array::uniform9(-1.0..1.0_f64)) {
+            let f = Trigonometric {
+                coefficients: [
+                    Complex::new(c[0], 0.0), Complex::new(c[1], c[2]), Complex::new(c[3], c[4]),
+                    Complex::new(c[5], c[6]), Complex::new(c[7], c[8]),
+                ],
+                degree: 4,
+            };
+            let count = 10_000;
+            let at = |i: usize| {
+                let theta = TAU * i as f64 / count as f64;
+                // Straight from the definition.
+                (1..=4).fold(c[0], |sum, k| {
+                    let (sin, cos) = (k as f64 * theta).sin_cos();
+                    sum + 2.0 * (c[2 * k - 1] * cos - c[2 * k] * sin)
+                })
+            };
+            let changes = (0..count).filter(|&i| (at(i) > 0.0) != (at(i + 1) > 0.0)).count();
+            let found = angles(&f.roots(f.size()));
+            let close = found.iter().enumerate().any(|(i, r)| {
+                found[..i].iter().any(|s| apart(*r, *s) < 2e-3)
+            });
+            prop_assert!(found.len() == changes || close, "{} {}", found.len(), changes);
+            for r in &found {
+                prop_assert!(f.value(unit(*r)).abs() < 1e-12, "{:e}", f.value(unit(*r)));
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_zero_everywhere() {
+        let zero = Trigonometric::linear([0.0; 3]);
+        assert_eq!(zero.roots(1.0), Roots::Everywhere);
+        let cosine = Trigonometric::linear([0.0, 1.0, 0.0]);
+        let found = angles(&cosine.roots(1.0));
+        assert_eq!(found.len(), 2, "the ends of the two halves are roots once: {found:?}");
+        assert_eq!(angles(&Trigonometric::linear([2.0, 1.0, 0.0]).roots(3.0)), [0.0; 0]);
+    }
+}

@@ -1,0 +1,140 @@
+//! From two displacements `g = v · b` back to the coordinates of the pose.
+
+use super::{Cut, Displacement, SubspaceKind, Task};
+use crate::chain::Amount;
+use crate::chain::planar::PlanarDisplacement;
+use crate::joint::Quantity;
+use nalgebra::Matrix3;
+use std::f64::consts::TAU;
+
+/// The sine of an angle between two axes that counts as none: the rounding of a rotation.
+const POLE: f64 = 1e-13;
+
+impl Task {
+    /// The coordinates of `v · b`, whatever the share of the intersection motion that is in `v`, angles
+    /// within half a turn of home (but those in a cylinder as they are). Of the two triples of Euler
+    /// angles of a rotation, the one nearer to home; on the pole, both outer angles move alike.
+    ///
+    /// # Panics
+    /// If `v` or `b` is a displacement of another kind of subspace.
+    pub fn pose(&self, v: &Displacement, b: &Displacement) -> Vec<f64> {
+        let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
+        let home = |i: usize| self.coordinates[i].home;
+        // b takes, or gives, all of the intersection motion that is to be in it.
+        let rotation = self.cut_point.is_some();
+        let handed = if rotation { self.turned(v) } else { self.advanced(b).inverse() };
+        let v = self.lower_cut.after(v, handed.inverse());
+        let b = self.upper_cut.before(b, handed);
+        match v {
+            Displacement::Planar(g) => {
+                pose.extend([home(0) + g.translation.re, home(1) + g.translation.im]);
+                if !rotation {
+                    pose.push(home(2) + g.rotation.arg());
+                }
+            }
+            Displacement::Spherical(r) => {
+                let [mu, nu] = tilt_angles(&r);
+                pose.extend([home(0) + mu, home(1) + nu]);
+            }
+            Displacement::Cylindrical(g) if rotation => pose.push(home(0) + g.advance),
+            Displacement::Cylindrical(g) => pose.extend([home(0) + g.angle, home(1) + g.advance]),
+            Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
+        }
+        let home = |i: usize| self.coordinates[self.lower_count + i].home;
+        match b {
+            Displacement::Planar(g) if rotation => pose.extend([
+                home(0) + g.translation.re,
+                home(1) + g.translation.im,
+                home(2) + g.rotation.arg(),
+            ]),
+            Displacement::Planar(g) => {
+                pose.extend([home(0) + g.translation.im, home(1) + g.rotation.arg()]);
+            }
+            Displacement::Spherical(r) => {
+                let absolute = match &self.home_orientation_inverse {
+                    Some(inverse) => r * inverse.transpose(),
+                    None => r,
+                };
+                pose.extend(euler_angles(&absolute, [home(0), home(1), home(2)]));
+            }
+            Displacement::Cylindrical(g) if rotation => {
+                pose.extend([home(0) + g.angle, home(1) + g.advance]);
+            }
+            Displacement::Cylindrical(g) => pose.push(home(0) + g.angle),
+            Displacement::Translational(t) => pose.push(home(0) + t.im),
+        }
+        for (q, c) in pose.iter_mut().zip(&self.coordinates) {
+            let counted = matches!(
+                (c.name, self.lower.kind, self.upper.kind),
+                ("theta", SubspaceKind::Cylindrical, _) | ("phi", _, SubspaceKind::Cylindrical)
+            );
+            if c.quantity == Quantity::Angle && !counted {
+                *q = near(*q, c.home);
+            }
+        }
+        pose
+    }
+
+    /// The turn about the shared axis that `v` has beyond its coordinates.
+    fn turned(&self, v: &Displacement) -> Amount {
+        match v {
+            Displacement::Planar(g) => Amount::Turn(g.rotation),
+            Displacement::Spherical(r) => {
+                // Rx(mu) Ry(nu) without the rest: R = tilt · Rz.
+                let [mu, nu] = tilt_angles(r);
+                let rest = super::tilt(mu, nu).tr_mul(r);
+                Amount::Turn(nalgebra::Complex::new(rest[(0, 0)], rest[(1, 0)]))
+            }
+            Displacement::Cylindrical(g) => Amount::Value(g.angle),
+            Displacement::Translational(_) => Amount::Value(0.0),
+        }
+    }
+
+    /// The way along the shared direction that `b` has beyond its coordinates.
+    fn advanced(&self, b: &Displacement) -> Amount {
+        Amount::Value(match (b, self.upper_cut) {
+            (
+                Displacement::Planar(PlanarDisplacement { translation: t, .. }),
+                Cut::Slide(along),
+            )
+            | (Displacement::Translational(t), Cut::Slide(along)) => {
+                t.re * along.re + t.im * along.im
+            }
+            (Displacement::Cylindrical(g), Cut::Advance) => g.advance,
+            _ => 0.0,
+        })
+    }
+}
+
+/// `mu nu` of the direction that a rotation brings the third one to.
+fn tilt_angles(r: &Matrix3<f64>) -> [f64; 2] {
+    let axis = r.column(2);
+    [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
+}
+
+/// The same angle within half a turn of another.
+fn near(angle: f64, home: f64) -> f64 {
+    angle - TAU * ((angle - home) / TAU).round()
+}
+
+/// `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`, of all triples the one nearest to `home`.
+fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+    let sine = r[(0, 2)].hypot(r[(1, 2)]);
+    if sine < POLE {
+        // Only zeta ± psi is known.
+        let (up, xi) = if r[(2, 2)] > 0.0 { (1.0, 0.0) } else { (-1.0, std::f64::consts::PI) };
+        let sum = near((up * r[(1, 0)]).atan2(up * r[(0, 0)]), home[0] + up * home[2]);
+        let extra = 0.5 * (sum - home[0] - up * home[2]);
+        return [home[0] + extra, xi, home[2] + up * extra];
+    }
+    let plain = [r[(1, 2)].atan2(r[(0, 2)]), sine.atan2(r[(2, 2)]), r[(2, 1)].atan2(-r[(2, 0)])];
+    let half = std::f64::consts::PI;
+    let other = [plain[0] + half, -plain[1], plain[2] + half];
+    let placed =
+        |angles: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| near(angles[i], home[i])) };
+    let distance = |angles: &[f64; 3]| -> f64 {
+        angles.iter().zip(&home).map(|(angle, home)| (angle - home) * (angle - home)).sum()
+    };
+    let (plain, other) = (placed(plain), placed(other));
+    if distance(&other) < distance(&plain) { other } else { plain }
+}

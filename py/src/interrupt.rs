@@ -1,0 +1,50 @@
+//! Long work without the interpreter's lock, which Ctrl-C stops.
+
+use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+use std::num::NonZeroUsize;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use crate::error::{failed, wrong};
+
+/// How often Python's signal handlers are asked.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Does `work` in a thread pool of its own while this thread listens to signals; at the first that
+/// raises, asks the work to stop with `cancel`, waits for it, and gives the exception. A pool a call: one
+/// that outlives it would be lost in a forked process, and the work with it.
+pub fn run<T: Send>(
+    py: Python<'_>,
+    threads: Option<NonZeroUsize>,
+    work: impl FnOnce() -> T + Send,
+    cancel: impl Fn() + Sync,
+) -> PyResult<T> {
+    let threads = threads.map_or(0, NonZeroUsize::get);
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| failed(&e))?;
+    py.detach(|| {
+        std::thread::scope(|scope| {
+            let (sender, receiver) = channel();
+            scope.spawn(move || {
+                // Nobody listens any more where a signal has raised.
+                let _ = sender.send(pool.install(work));
+            });
+            loop {
+                match receiver.recv_timeout(PATIENCE) {
+                    Ok(result) => return Ok(result),
+                    Err(RecvTimeoutError::Timeout) => {
+                        // A function of any lifetime, which the method alone is not.
+                        #[allow(clippy::redundant_closure_for_method_calls)]
+                        let heard = Python::attach(|py| py.check_signals());
+                        if let Err(raised) = heard {
+                            cancel();
+                            return Err(raised);
+                        }
+                    }
+                    // The work has panicked, and so will the scope.
+                    Err(RecvTimeoutError::Disconnected) => return Err(wrong("the work panicked")),
+                }
+            }
+        })
+    })
+}

@@ -1,0 +1,32 @@
+//! The native half of the Python package `opm_kinematics`: NumPy arrays in and out, metres and
+//! radians. The modules mirror those of the crates; what they do is documented there, and for Python
+//! in the package's stubs.
+
+// Arguments come from Python by value.
+#![allow(clippy::needless_pass_by_value)]
+
+mod error;
+mod interrupt;
+mod manipulator;
+mod solutions;
+mod sweep;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::error::OpmError;
+    #[pymodule_export]
+    use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
+    #[pymodule_export]
+    use crate::solutions::Solutions;
+    #[pymodule_export]
+    use crate::sweep::{Sweep, sweep};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

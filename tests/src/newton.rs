@@ -1,0 +1,145 @@
+//! A solver for one leg that knows nothing of subspaces, cuts or chains: damped Gauss-Newton steps
+//! (Levenberg and Marquardt) on the leg's product of exponentials as it stands, six equations in its
+//! joint coordinates, from many random starts.
+
+use fastrand::Rng;
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix6xX, Point3, Vector3, Vector6};
+use opm_core::joint::{JointKind, Quantity};
+use opm_core::leg::Leg;
+use std::f64::consts::PI;
+
+/// What is left of a solution, in radians and in metres of mechanisms of a few metres: rounding.
+const SOLVED: f64 = 1e-11;
+/// Steps from one start.
+const STEPS: usize = 60;
+/// Starts of sliders are within so many metres of home.
+const FAR: f64 = 4.0;
+
+/// A leg that is to bring the platform's point and orientation where `target` takes them.
+pub struct Closure<'a> {
+    /// The leg.
+    pub leg: &'a Leg,
+    /// The platform's point at home.
+    pub point: Point3<f64>,
+    /// The platform's displacement.
+    pub target: Isometry3<f64>,
+}
+
+impl Closure<'_> {
+    /// Every solution that the starts lead to, as displacements of the joints from home; the same one
+    /// many times.
+    pub fn solutions(&self, starts: usize, rng: &mut Rng) -> Vec<DVector<f64>> {
+        let quantities: Vec<Quantity> = self.leg.coordinates().map(|c| c.quantity).collect();
+        let mut found = Vec::new();
+        for _ in 0..starts {
+            let start = quantities.iter().map(|quantity| {
+                let size = if *quantity == Quantity::Angle { PI } else { FAR };
+                size * (rng.f64() * 2.0 - 1.0)
+            });
+            let start = DVector::from_iterator(quantities.len(), start);
+            found.extend(self.solve(start));
+        }
+        found
+    }
+
+    fn solve(&self, mut q: DVector<f64>) -> Option<DVector<f64>> {
+        let (mut miss, mut jacobian) = self.linear(&q, rates);
+        let mut damping = 1e-2;
+        for _ in 0..STEPS {
+            if miss.norm() < SOLVED {
+                return Some(q);
+            }
+            let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
+            let tried = &q + normal.cholesky()?.solve(&jacobian.tr_mul(&miss));
+            let (after, derivative) = self.linear(&tried, rates);
+            if after.norm() < miss.norm() {
+                (q, miss, jacobian) = (tried, after, derivative);
+                damping = (damping * 0.1).max(1e-15);
+            } else {
+                damping *= 10.0;
+                if damping > 1e8 {
+                    return None;
+                }
+            }
+        }
+        None
+    }
+
+    /// Smallest singular value of the leg's Jacobian: near zero where two solutions meet. A ball counts
+    /// by its angular velocity.
+    pub fn sharpness(&self, q: &DVector<f64>) -> f64 {
+        let (_, jacobian) = self.linear(q, |_| Matrix3::identity());
+        let squares = jacobian.tr_mul(&jacobian).symmetric_eigenvalues();
+        squares.min().max(0.0).sqrt()
+    }
+
+    /// What is missing to the target, rotation vector and way of the point, and the twist of the
+    /// platform for a unit rate of each coordinate, with the point's velocity.
+    fn linear(
+        &self,
+        q: &DVector<f64>,
+        rates: impl Fn(&Vector3<f64>) -> Matrix3<f64>,
+    ) -> (Vector6<f64>, Matrix6xX<f64>) {
+        let mut g = Isometry3::identity();
+        let mut lines: Vec<(Vector3<f64>, Point3<f64>, f64, bool)> = Vec::new();
+        let mut rest = q.as_slice();
+        for joint in &self.leg.joints {
+            let (own, after) = rest.split_at(joint.freedoms());
+            rest = after;
+            let (axis, at) = (g * joint.axis.into_inner(), g * joint.point);
+            match joint.kind {
+                JointKind::Revolute => lines.push((axis, at, 0.0, true)),
+                JointKind::Helical { pitch } => lines.push((axis, at, pitch, true)),
+                JointKind::Prismatic => lines.push((axis, at, 1.0, false)),
+                JointKind::Cylindrical => {
+                    lines.extend([(axis, at, 0.0, true), (axis, at, 1.0, false)]);
+                }
+                JointKind::Universal { second } => {
+                    let turn = nalgebra::UnitQuaternion::from_axis_angle(&joint.axis, own[0]);
+                    let second = g * (turn * second.into_inner());
+                    lines.extend([(axis, at, 0.0, true), (second, at, 0.0, true)]);
+                }
+                JointKind::Spherical => {
+                    let rates = rates(&Vector3::from_column_slice(own));
+                    for i in 0..3 {
+                        lines.push((g * rates.column(i).into_owned(), at, 0.0, true));
+                    }
+                }
+            }
+            g *= displacement(joint, own);
+        }
+        let end = g * self.point;
+        let mut jacobian = Matrix6xX::zeros(lines.len());
+        for (i, (axis, at, pitch, turns)) in lines.into_iter().enumerate() {
+            let (turn, way) = if turns {
+                (axis, axis.cross(&(end - at)) + axis * pitch)
+            } else {
+                (Vector3::zeros(), axis)
+            };
+            jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&turn);
+            jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&way);
+        }
+        let turn = (self.target.rotation * g.rotation.inverse()).scaled_axis();
+        let way = self.target * self.point - end;
+        (Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z), jacobian)
+    }
+}
+
+/// A joint's displacement by amounts from home.
+pub fn displacement(joint: &opm_core::joint::Joint, amounts: &[f64]) -> Isometry3<f64> {
+    let values: Vec<f64> =
+        joint.coordinates.iter().zip(amounts).map(|(c, amount)| c.home + amount).collect();
+    joint.displacement(&values)
+}
+
+/// Angular velocity for unit rates of a rotation vector, one a column.
+fn rates(r: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = r.norm();
+    let cross = r.cross_matrix();
+    let (one, two) = if angle < 1e-4 {
+        (0.5, 1.0 / 6.0)
+    } else {
+        ((1.0 - angle.cos()) / angle.powi(2), (angle - angle.sin()) / angle.powi(3))
+    };
+    Matrix3::identity() + cross * one + cross * cross * two
+}

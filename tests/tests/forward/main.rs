@@ -1,0 +1,244 @@
+//! Forward kinematics: what inverse kinematics made of a pose leads back to it, every assembly that is
+//! found is one, none is missing, and where there is none the answer says why.
+
+mod closure;
+mod edges;
+mod near;
+mod pairs;
+
+use closure::Closure;
+use fastrand::Rng;
+use opm_core::forward::{Assembly, RESIDUAL};
+use opm_core::joint::{JointKind, Quantity};
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::mechanism::family::plano_spherical::Home;
+use opm_core::mechanism::{Mechanism, examples, file};
+use opm_tests::paper::{PlanoSpherical, Signs};
+use std::f64::consts::TAU;
+
+/// Two poses are the same: rotation and translation, radians and metres. Far above the rounding of a regular
+/// pose, far below the distance of two assemblies.
+const SAME: f64 = 1e-7;
+
+/// A joint value as inverse kinematics give it back. Some of 10⁵ assemblies are so near a singularity that
+/// they lose half of the digits.
+const BACK: f64 = 1e-6;
+
+fn example(name: &str) -> Manipulator {
+    let text = examples::find(name).unwrap().text;
+    Manipulator::new(unlimited(file::read(text).unwrap().mechanism)).unwrap()
+}
+
+fn unlimited(mut mechanism: Mechanism) -> Mechanism {
+    let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    joints.flat_map(|joint| &mut joint.coordinates).for_each(|c| c.limits = None);
+    mechanism
+}
+
+/// A pose in reach, a mode in which it is, and every joint there.
+struct Reached {
+    pose: Vec<f64>,
+    mode: Mode,
+    joints: Vec<f64>,
+    actuated: Vec<f64>,
+}
+
+impl Reached {
+    fn at(m: &Manipulator, pose: Vec<f64>, mode: Mode) -> Option<Self> {
+        let mut solution = m.solution();
+        if !m.inverse(&pose, mode, &mut solution).unwrap() {
+            return None;
+        }
+        let actuated = m.actuated().iter().map(|&i| solution.joints[i]).collect();
+        Some(Self { pose, mode, joints: solution.joints, actuated })
+    }
+
+    /// At a random pose within `reach` of home, radians and metres, in a random mode.
+    fn random(rng: &mut Rng, m: &Manipulator, reach: [f64; 2]) -> Self {
+        let mut all = m.all_modes();
+        loop {
+            let pose: Vec<f64> = (m.task_coordinates().iter())
+                .map(|c| {
+                    let reach = if c.quantity == Quantity::Length { reach[1] } else { reach[0] };
+                    c.home + reach * (2.0 * rng.f64() - 1.0)
+                })
+                .collect();
+            if m.inverse_all(&pose, &mut all).unwrap() {
+                let modes: Vec<Mode> = all.modes(m).collect();
+                return Self::at(m, pose, modes[rng.usize(..modes.len())]).unwrap();
+            }
+        }
+    }
+
+    fn is_in(&self, m: &Manipulator, list: &[Assembly]) -> bool {
+        list.iter().any(|a| a.mode == self.mode && apart(m, &a.pose, &self.pose) < SAME)
+    }
+}
+
+fn apart(m: &Manipulator, a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (m.task().displacement(a), m.task().displacement(b));
+    let p = m.mechanism().platform;
+    a.rotation.angle_to(&b.rotation) + (a * p - b * p).norm()
+}
+
+/// Distance of two joint values: whole turns aside, but for screws and rotation vectors.
+fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
+    let mut joints = m.mechanism().joints().flat_map(|j| j.coordinates.iter().map(move |_| j.kind));
+    let turns = matches!(
+        joints.nth(coordinate),
+        Some(JointKind::Revolute | JointKind::Universal { .. } | JointKind::Cylindrical)
+    );
+    let off = a - b;
+    match m.coordinates()[coordinate].quantity {
+        Quantity::Angle if turns => (off - TAU * (off / TAU).round()).abs(),
+        Quantity::Angle | Quantity::Length => off.abs(),
+    }
+}
+
+/// What an assembly claims: its legs close, as they stand in the mechanism, with the joints that were given,
+/// and inverse kinematics in its mode give these back.
+fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
+    assert!(a.residual <= RESIDUAL, "{a:?}");
+    let target = m.task().displacement(&a.pose);
+    let mut joints = &a.joints[..];
+    for leg in &m.mechanism().legs {
+        let (own, rest) = joints.split_at(leg.coordinates().count());
+        joints = rest;
+        let end = leg.displacement(own);
+        let way = (end * m.mechanism().platform - target * m.mechanism().platform).norm();
+        // The angle by a root: it has half of the digits. Lengths here are under ten.
+        assert!(
+            end.rotation.angle_to(&target.rotation) < 1e-7 && way < 1e-11,
+            "{} {way:e}",
+            leg.name
+        );
+    }
+    let mut solution = m.solution();
+    assert!(m.inverse(&a.pose, a.mode, &mut solution).unwrap());
+    for (&i, &given) in m.actuated().iter().zip(actuated) {
+        let name = &m.coordinates()[i].name;
+        assert!(off(m, i, a.joints[i], given) < 1e-12, "{name} {} {given}", a.joints[i]);
+        assert!(off(m, i, solution.joints[i], given) < BACK, "{name} {}", solution.joints[i]);
+    }
+}
+
+/// All are assemblies, and no two are the same.
+fn check_all(m: &Manipulator, actuated: &[f64], list: &[Assembly]) {
+    for (number, a) in list.iter().enumerate() {
+        check(m, actuated, a);
+        for other in &list[..number] {
+            let same = other.mode == a.mode && apart(m, &other.pose, &a.pose) < 1e-9;
+            assert!(!same, "twice: {a:?}");
+        }
+    }
+}
+
+/// The paper's manipulator, as printed and with random geometry, ten thousand poses in random modes.
+#[test]
+fn joints_of_a_pose_lead_back_to_it() {
+    let mut rng = Rng::with_seed(1);
+    let printed = example("plano-spherical-5dof");
+    let (mut poses, mut most, mut assemblies, mut worst) = (0, 0, 0, 0.0_f64);
+    let mut run = |rng: &mut Rng, m: &Manipulator, count: usize| {
+        assert_eq!(m.forward_closed_form(), Ok(()));
+        for _ in 0..count {
+            let reached = Reached::random(rng, m, [1.2, 0.15]);
+            let found = m.forward(&reached.actuated).unwrap();
+            assert!(found.loose.is_empty(), "{:?}", reached.pose);
+            let pose = || format!("{:?} {}", reached.pose, m.format_mode(reached.mode));
+            assert!(reached.is_in(m, &found.list), "{}: {:?}", pose(), found.list.len());
+            check_all(m, &reached.actuated, &found.list);
+            poses += 1;
+            assemblies += found.list.len();
+            most = most.max(found.list.len());
+            worst = found.list.iter().map(|a| a.residual).fold(worst, f64::max);
+        }
+    };
+    run(&mut rng, &printed, 4_000);
+    for _ in 0..3_000 {
+        let family =
+            PlanoSpherical::random(&mut rng).family(Home::default(), &Signs::random(&mut rng));
+        let Ok(mechanism) = family.assemble() else { continue };
+        // A few of these homes are singular.
+        let Ok(m) = Manipulator::new(unlimited(mechanism)) else { continue };
+        run(&mut rng, &m, 5);
+    }
+    println!("{poses} poses, {assemblies} assemblies, at most {most}, residuals up to {worst:.1e}");
+    assert!(poses >= 10_000, "{poses}");
+    assert!(most <= 64, "{most}: more than 8 rotations for 8 sets of imaginary joints");
+}
+
+/// Every shipped mechanism that has a closed form.
+#[test]
+fn shipped_mechanisms_are_solved() {
+    let mut rng = Rng::with_seed(2);
+    let mut closed = Vec::new();
+    for shipped in examples::EXAMPLES {
+        let mechanism = unlimited(file::read(shipped.text).unwrap().mechanism);
+        let Ok(m) = Manipulator::new(mechanism) else { continue };
+        if m.forward_closed_form().is_err() {
+            continue;
+        }
+        closed.push(shipped.name);
+        let pitch = if shipped.name == "schoenflies-4dof" { Some(0.01) } else { None };
+        let mut singular = 0;
+        for _ in 0..500 {
+            let mut reached = Reached::random(&mut rng, &m, [0.7, 0.1]);
+            if let Some(pitch) = pitch {
+                // Its height follows whole turns, which the nut does not tell: within half a turn here.
+                let mut pose = reached.pose.clone();
+                pose[3] = m.task().home()[3] + pitch * (TAU * rng.f64() - TAU / 2.0);
+                reached = Reached::at(&m, pose, reached.mode).unwrap();
+            }
+            let found = m.forward(&reached.actuated).unwrap();
+            check_all(&m, &reached.actuated, &found.list);
+            // Two rods of the planar-planar one carry one hinge: side by side they are one.
+            if found.loose.is_empty() {
+                let pose = || format!("{:?} {}", reached.pose, m.format_mode(reached.mode));
+                assert!(reached.is_in(&m, &found.list), "{} {}", shipped.name, pose());
+            } else {
+                assert!(shipped.name.starts_with("planar-planar"), "{}", shipped.name);
+                singular += 1;
+            }
+        }
+        assert!(singular < 400, "{} {singular}", shipped.name);
+    }
+    let open: Vec<_> =
+        examples::EXAMPLES.iter().map(|e| e.name).filter(|n| !closed.contains(n)).collect();
+    assert_eq!(open, ["bennett-double-spherical-6r", "translational-planar-4dof"]);
+}
+
+/// As many assemblies as a numeric solver finds that knows nothing of sections: damped least squares on the
+/// legs' products of exponentials, from thousands of random starts.
+#[test]
+fn none_is_missing() {
+    let mut rng = Rng::with_seed(3);
+    for (name, starts, sets) in [
+        ("plano-spherical-5dof", 3_000, 3),
+        ("double-spherical-5dof", 4_000, 1),
+        ("planar-planar-5dof", 2_000, 2),
+        ("plano-cylindrical-4dof", 600, 3),
+        ("schoenflies-4dof", 300, 3),
+    ] {
+        let m = example(name);
+        for _ in 0..sets {
+            let (reached, found) = loop {
+                let reached = Reached::random(&mut rng, &m, [0.5, 0.08]);
+                let found = m.forward(&reached.actuated).unwrap();
+                if found.loose.is_empty() {
+                    break (reached, found);
+                }
+            };
+            let closure = Closure::new(m.mechanism(), &reached.actuated);
+            let numeric = closure.solutions(&mut rng, starts);
+            // Screws that turn whole turns further are the same here.
+            let known =
+                |joints: &Vec<f64>| found.list.iter().any(|a| closure.same(joints, &a.joints));
+            for joints in &numeric {
+                assert!(known(joints), "{name} {:?}: missing {joints:?}", reached.actuated);
+            }
+            println!("{name}: {} assemblies, {} by least squares", found.list.len(), numeric.len());
+            assert_eq!(numeric.len(), found.list.len(), "{name} {:?}", reached.actuated);
+        }
+    }
+}
