@@ -1,7 +1,8 @@
 //! Every argument of the command line; the doc comments are the help.
 
 use crate::linkage::InputValue;
-use crate::pose::{GridAxis, Number, Pose};
+use crate::plot::{PanelName, PictureSize};
+use crate::pose::{GridAxis, Number, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -38,6 +39,7 @@ Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
+  opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds";
 
 /// Options of every subcommand.
@@ -70,6 +72,7 @@ pub enum Command {
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
+    Plot(PlotArgs),
     Inspect(InspectArgs),
     Examples(ExamplesArgs),
     Completions(CompletionsArgs),
@@ -362,6 +365,48 @@ fn condition_number(text: &str) -> Result<f64, String> {
         Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
         _ => Err(format!("{text:?}, expected a number of at least 1")),
     }
+}
+
+/// Draw a recording as a picture, SVG or PNG
+///
+/// Of a motion: poses, imaginary joints, actuated joints and their velocities over time, what goes
+/// with each other side by side; spans in which the mechanism cannot follow are shaded. Of a workspace:
+/// slices of it, and the values that the imaginary joints take in it, where these were recorded
+/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is in the
+/// recording. What reached an unfinished .partial file can be drawn too.
+///
+/// A picture stays small whatever it is of: curves of more than 32768 samples are drawn by their
+/// extremes in 4096 spans of time; a panel of more than 5000 cells or dots becomes an image in it. The
+/// program brings its own fonts.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm plot cloud.mcap -o cloud.svg
+  opm plot cloud.mcap -o tilted.png --slice zeta=0,psi=0,xi=30deg,xi=60deg
+  opm plot cloud.mcap -o joints.svg --panels imaginary --values theta11,theta12
+  opm plot turn.mcap -o turn.png --values a1,b3 --size 900x300")]
+pub struct PlotArgs {
+    /// MCAP file of `opm workspace`, `opm linkage` or any other command that records
+    #[arg(value_name = "RECORDING", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Where the picture goes; the ending says which format
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What to draw, instead of what suits the recording
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
+    pub panels: Vec<PanelName>,
+    /// Only these values: of a motion, joints or task coordinates; of a workspace, two task
+    /// coordinates to see the slices along, or stored values instead of the imaginary joints
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub values: Vec<String>,
+    /// Slices of a workspace: values at which task coordinates are held, the nearest of the grid. One
+    /// coordinate may have several: a slice each
+    #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
+    pub slice: Vec<SliceValue>,
+    /// Width and height in pixels of a screen, up to 4000 each, instead of what suits the panels; a
+    /// PNG has twice as many
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<PictureSize>,
 }
 
 /// Say what a recording holds

@@ -15,6 +15,7 @@ mod linkage;
 mod load;
 mod motion;
 mod output;
+mod plot;
 mod pose;
 mod progress;
 mod record;
@@ -47,6 +48,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Completions(command) => completions::run(command),

@@ -7,6 +7,7 @@ mod fk;
 mod ik;
 mod inspect;
 mod linkage;
+mod plot;
 mod run;
 mod small;
 mod trajectory;

@@ -75,6 +75,7 @@ fn help_and_version_go_to_standard_output() {
         "linkage",
         "trajectory",
         "workspace",
+        "plot",
         "inspect",
         "examples",
         "completions",
@@ -84,14 +85,33 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
+/// Recordings of the names that the examples of `opm plot` have.
+fn record_for_plots(folder: &Folder) {
+    let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
+    let scalars = ["--scalars", "theta11,theta12,theta13", "-o", &folder.arg("cloud.mcap")];
+    opm(&[&["workspace", PLANO], &grid[..], &scalars].concat()).text();
+}
+
 /// What the help shows works as it stands.
 #[test]
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in
-        ["decompose", "ik", "fk", "velocity", "linkage", "trajectory", "workspace", "examples"]
-    {
+    let commands = [
+        "decompose",
+        "ik",
+        "fk",
+        "velocity",
+        "linkage",
+        "trajectory",
+        "workspace",
+        "plot",
+        "examples",
+    ];
+    for command in commands {
+        if command == "plot" {
+            record_for_plots(&folder);
+        }
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
@@ -107,7 +127,8 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap" | "play.mcap") {
+                let written = [".mcap", ".svg", ".png"].iter().any(|ending| arg.ends_with(ending));
+                if written || *arg == "joints.csv" {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {
