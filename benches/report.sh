@@ -7,7 +7,7 @@ if [ -r /proc/cpuinfo ]; then
 else
   processor=$(sysctl -n machdep.cpu.brand_string 2>/dev/null || true)
 fi
-results=$("${CARGO:-cargo}" bench --quiet -p opm-benches)
+results=$("${CARGO:-cargo}" bench --quiet -p opm-benches -p opm-kinematics)
 peers=$("${PEERS_PYTHON:?a Python with opm_kinematics, NumPy and numba}" benches/peers/sweep.py)
 
 cat <<END
@@ -19,7 +19,7 @@ Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always -
 * System: $(uname -sm), $(rustc --version)
 
 What a table compares was timed in one run, turn and turn about; each number is a median over the rounds. On another
-machine the times differ, the ratios hardly. The code is in \`benches/benches\` and, what compares with NumPy and numba, in
+machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, what compares with NumPy and numba, in
 \`benches/peers\`: there opm is called from Python.
 END
 # A blank line between paragraphs and tables.

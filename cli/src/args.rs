@@ -1,7 +1,8 @@
 //! Every argument of the command line; the doc comments are the help.
 
 use crate::linkage::InputValue;
-use crate::pose::{GridAxis, Number, Pose};
+use crate::plot::{PanelName, PictureSize};
+use crate::pose::{GridAxis, Number, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -35,7 +36,10 @@ Examples:
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+                                                       a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
+  opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds";
 
 /// Options of every subcommand.
@@ -66,7 +70,9 @@ pub enum Command {
     Velocity(VelocityArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
+    Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
+    Plot(PlotArgs),
     Inspect(InspectArgs),
     Examples(ExamplesArgs),
     Completions(CompletionsArgs),
@@ -76,7 +82,8 @@ pub enum Command {
 ///
 /// Splits every leg into a lower part, which moves in one subspace, and an upper part, which moves in
 /// another; the two subspaces share one motion. A leg whose upper part cannot make that motion gets
-/// an imaginary joint. Of several decompositions the preferred one comes first.
+/// an imaginary joint. Of several decompositions the preferred one comes first. The task coordinates are
+/// measured in the frames that are printed; [task] in the file can set them.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -255,6 +262,49 @@ pub struct LinkageArgs {
     pub output: Option<PathBuf>,
 }
 
+/// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
+///
+/// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
+/// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task
+/// coordinates, in seconds, metres and radians), or the name of a shipped motion. The working mode
+/// stays the same, and angles go on across half a turn.
+///
+/// What the mechanism cannot follow is told with its time, its leg or joint and by how much: out of
+/// reach, past a joint's limit, passive ones too, through a singularity. It is found between the
+/// samples as well, wherever a distance falls and rises but once from one sample to the next. The rest
+/// is recorded whole; with --strict the exit status is then 1.
+///
+/// The recording has joints, speeds, accelerations, imaginary joints, pose and condition number to be
+/// plotted, and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of
+/// /bodies in Rerun.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
+pub struct TrajectoryArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The motion: a TOML or CSV file, or the name of a shipped one
+    #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
+    pub motion: PathBuf,
+    /// Record it in this MCAP file
+    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Samples a second, instead of those of the motion file; of a CSV file 100
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = crate::trajectory::rate)]
+    pub rate: Option<f64>,
+    /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+    /// Exit with status 1 if the mechanism cannot follow all of it
+    #[arg(long)]
+    pub strict: bool,
+}
+
 /// Sweep a grid of poses: how many are in reach, and where they are
 ///
 /// Without --grid the grid is fitted to the workspace; with it, a coordinate that is not given stays
@@ -315,6 +365,48 @@ fn condition_number(text: &str) -> Result<f64, String> {
         Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
         _ => Err(format!("{text:?}, expected a number of at least 1")),
     }
+}
+
+/// Draw a recording as a picture, SVG or PNG
+///
+/// Of a motion: poses, imaginary joints, actuated joints and their velocities over time, what goes
+/// with each other side by side; spans in which the mechanism cannot follow are shaded. Of a workspace:
+/// slices of it, and the values that the imaginary joints take in it, where these were recorded
+/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is in the
+/// recording. What reached an unfinished .partial file can be drawn too.
+///
+/// A picture stays small whatever it is of: curves of more than 32768 samples are drawn by their
+/// extremes in 4096 spans of time; a panel of more than 5000 cells or dots becomes an image in it. The
+/// program brings its own fonts.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm plot cloud.mcap -o cloud.svg
+  opm plot cloud.mcap -o tilted.png --slice zeta=0,psi=0,xi=30deg,xi=60deg
+  opm plot cloud.mcap -o joints.svg --panels imaginary --values theta11,theta12
+  opm plot turn.mcap -o turn.png --values a1,b3 --size 900x300")]
+pub struct PlotArgs {
+    /// MCAP file of `opm workspace`, `opm linkage` or any other command that records
+    #[arg(value_name = "RECORDING", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Where the picture goes; the ending says which format
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What to draw, instead of what suits the recording
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
+    pub panels: Vec<PanelName>,
+    /// Only these values: of a motion, joints or task coordinates; of a workspace, two task
+    /// coordinates to see the slices along, or stored values instead of the imaginary joints
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub values: Vec<String>,
+    /// Slices of a workspace: values at which task coordinates are held, the nearest of the grid. One
+    /// coordinate may have several: a slice each
+    #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
+    pub slice: Vec<SliceValue>,
+    /// Width and height in pixels of a screen, up to 4000 each, instead of what suits the panels; a
+    /// PNG has twice as many
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<PictureSize>,
 }
 
 /// Say what a recording holds

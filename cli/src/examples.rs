@@ -1,4 +1,4 @@
-//! `opm examples`: the mechanism files that come with the program.
+//! `opm examples`: the mechanism and motion files that come with the program.
 
 use crate::args::{ExamplesArgs, Format, Output};
 use crate::failure::Failure;
@@ -6,6 +6,7 @@ use crate::load::example_names;
 use crate::output::print_with;
 use crate::text::Table;
 use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::motion::examples::{self as motion, MOTIONS, MotionExample};
 use serde_json::json;
 use std::io::Write;
 
@@ -19,17 +20,33 @@ pub fn run(args: &ExamplesArgs, output: &Output) -> Result<(), Failure> {
         for example in EXAMPLES {
             table.row([example.name, example.description]);
         }
-        return output.print(&json!({ "examples": list }), table);
+        let moving = |motion: &MotionExample| {
+            json!({
+                "name": motion.name,
+                "mechanism": motion.mechanism,
+                "description": motion.description,
+            })
+        };
+        let motions: Vec<_> = MOTIONS.iter().map(moving).collect();
+        let mut moves = Table::new(["motion", "of", "what it is"]);
+        for motion in MOTIONS {
+            moves.row([motion.name, motion.mechanism, motion.description]);
+        }
+        let text = format!("{table}\n{moves}");
+        return output.print(&json!({ "examples": list, "motions": motions }), text);
     };
-    let example = find(name).ok_or_else(|| {
-        Failure::Usage(format!("no example {name:?}; there are {}", example_names()))
+    let mechanism = find(name).map(|example| (example.name, example.description, example.text));
+    let motion =
+        motion::find(name).map(|example| (example.name, example.description, example.text));
+    let (name, description, text) = mechanism.or(motion).ok_or_else(|| {
+        let motions: Vec<_> = MOTIONS.iter().map(|motion| motion.name).collect();
+        let names = format!("{}, {}", example_names(), motions.join(", "));
+        Failure::Usage(format!("no example {name:?}; there are {names}"))
     })?;
     match output.format {
-        Format::Text => print_with(|out| out.write_all(example.text.as_bytes())),
+        Format::Text => print_with(|out| out.write_all(text.as_bytes())),
         Format::Json => {
-            let json = json!({
-                "name": example.name, "description": example.description, "text": example.text,
-            });
+            let json = json!({ "name": name, "description": description, "text": text });
             output.print(&json, "")
         }
     }

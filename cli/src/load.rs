@@ -31,26 +31,12 @@ pub struct Loaded {
 /// Reads a mechanism. An existing path wins over an example of the same name.
 pub fn open(given: &Path) -> Result<Loaded, Failure> {
     let label = given.display().to_string();
-    let failed = |error| Failure::at(&label, &error);
-    let (text, path, file_name) = match File::open(given) {
-        Ok(source) => {
-            let mut bytes = Vec::new();
-            source.take(LONGEST + 1).read_to_end(&mut bytes).map_err(failed)?;
-            if bytes.len() as u64 > LONGEST {
-                return Err(Failure::Work(format!(
-                    "{label}: more than {} MiB, expected a mechanism file",
-                    LONGEST >> 20
-                )));
-            }
-            let text = String::from_utf8(bytes).map_err(|error| {
-                let place = error.utf8_error().valid_up_to();
-                let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
-                Failure::Work(format!("{label}:{line}: not UTF-8, expected a mechanism file"))
-            })?;
+    let (text, path, file_name) = match text(given, LONGEST, "mechanism file")? {
+        Some(text) => {
             let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
             (text, Some(given.to_owned()), name)
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => match find(&label) {
+        None => match find(&label) {
             Some(example) => (example.text.to_owned(), None, format!("{}.toml", example.name)),
             // A bare word is more likely a name than a path.
             None if given.extension().is_none() && given.components().count() == 1 => {
@@ -59,12 +45,34 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
                     example_names()
                 )));
             }
-            None => return Err(failed(error)),
+            None => return Err(Failure::Work(format!("{label}: No such file or directory"))),
         },
-        Err(error) => return Err(failed(error)),
     };
     let file = file::read(&text).map_err(|errors| Failure::Work(errors.in_file(&label)))?;
     Ok(Loaded { label, file_name, path, text, file })
+}
+
+/// The text of a file of at most so many bytes; `None` where there is no such file.
+pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
+    let label = given.display();
+    let failed = |error| Failure::at(&label, &error);
+    let source = match File::open(given) {
+        Ok(source) => source,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(failed(error)),
+    };
+    let mut bytes = Vec::new();
+    source.take(longest + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > longest {
+        let most = longest >> 20;
+        return Err(Failure::Work(format!("{label}: more than {most} MiB, expected a {what}")));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
+        Failure::Work(format!("{label}:{line}: not UTF-8, expected a {what}"))
+    })?;
+    Ok(Some(text))
 }
 
 impl Loaded {

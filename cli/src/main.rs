@@ -13,11 +13,15 @@ mod inspect;
 mod lines;
 mod linkage;
 mod load;
+mod motion;
 mod output;
+mod plot;
 mod pose;
 mod progress;
 mod record;
+mod scene;
 mod text;
+mod trajectory;
 mod transform;
 mod velocity;
 mod workspace;
@@ -42,7 +46,9 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Velocity(command) => velocity::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
+        Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Completions(command) => completions::run(command),

@@ -12,6 +12,13 @@ use std::str::FromStr;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misread(pub String);
 
+impl Misread {
+    /// What is wrong, and what was expected.
+    pub fn new(problem: String) -> Self {
+        Self(problem)
+    }
+}
+
 impl fmt::Display for Misread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
@@ -40,6 +47,24 @@ pub struct GridAxis {
     min: Number,
     max: Number,
     count: u64,
+}
+
+/// A value of one task coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SliceValue {
+    /// The coordinate's name.
+    pub name: String,
+    /// Its value.
+    pub value: Number,
+}
+
+impl FromStr for SliceValue {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let (name, value) = assignment(text, "NAME=VALUE, for example xi=30deg")?;
+        Ok(Self { name: name.to_owned(), value: value.parse()? })
+    }
 }
 
 impl FromStr for Number {

@@ -37,9 +37,6 @@ pub fn watch<T>(
     done: impl Fn() -> u64 + Send,
     work: impl FnOnce() -> T,
 ) -> T {
-    if output.quiet {
-        return work();
-    }
     let bar = match total {
         Some(total) => ProgressBar::new(total).with_style(style(
             "{msg} {wide_bar} {percent}% of {human_len} poses, {rate} poses/s, ETA {eta}",
@@ -47,10 +44,37 @@ pub fn watch<T>(
         None => ProgressBar::no_length()
             .with_style(style("{spinner} {msg}: {human_pos} poses, {rate} poses/s")),
     };
+    show(output, &bar, label, done, work)
+}
+
+/// As [`watch`], for the reading of a recording of so many messages, or of nobody knows how many.
+pub fn watch_reading<T>(
+    output: &Output,
+    total: Option<u64>,
+    done: impl Fn() -> u64 + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    let bar = match total {
+        Some(total) => ProgressBar::new(total)
+            .with_style(style("{msg} {wide_bar} {percent}% of {human_len} messages, ETA {eta}")),
+        None => ProgressBar::no_length().with_style(style("{spinner} {msg}: {human_pos} messages")),
+    };
+    show(output, &bar, "reading", done, work)
+}
+
+fn show<T>(
+    output: &Output,
+    bar: &ProgressBar,
+    label: &'static str,
+    done: impl Fn() -> u64 + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    if output.quiet {
+        return work();
+    }
     bar.set_message(label);
     thread::scope(|scope| {
         let (finished, waiting) = mpsc::channel::<()>();
-        let bar = &bar;
         scope.spawn(move || {
             // The other end says nothing: it goes away when the work is done, even by a panic.
             while waiting.recv_timeout(TICK) == Err(mpsc::RecvTimeoutError::Timeout) {

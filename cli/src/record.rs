@@ -121,7 +121,7 @@ impl Drop for Recorder {
 
 /// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
 /// a person can play what is left.
-fn together(grid: &Grid) -> u64 {
+pub fn together(grid: &Grid) -> u64 {
     let upper = &grid.axes()[grid.lower()..];
     let mut together = 1;
     for axis in &upper[..upper.len() - 1] {
@@ -133,7 +133,7 @@ fn together(grid: &Grid) -> u64 {
 }
 
 /// The name of an unfinished file.
-fn partial(path: &Path) -> PathBuf {
+pub fn partial(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".partial");
     name.into()

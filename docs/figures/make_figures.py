@@ -1,9 +1,10 @@
-"""Draws docs/images from recordings made by `opm workspace`: `make figures`."""
+"""Draws docs/images from recordings made by opm: `make figures`."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import gallery
+import plots
 import schematics
 from drawing import INK, STYLE, home_mark, save, slice_panel, solid
 from recordings import Recording
@@ -45,32 +46,9 @@ def plano_spherical():
     save(figure, "plano-spherical-workspace.png")
 
 
-def translational_helical():
-    recording = Recording(
-        "translational-helical-3dof", ("x", "y", "phi"),
-        x="-450mm:450mm:451", y="-500mm:620mm:561", phi="0:600deg:6",
-    )  # fmt: skip
-    x, y, phi = recording.axes
-    figure, panels = plt.subplots(
-        2, 3, figsize=(8, 6.9), sharex=True, sharey=True, layout="constrained"
-    )
-    for index, panel in enumerate(panels.flat):
-        slice_panel(panel, recording, index, plt.colormaps["viridis"](phi[index] / 640))
-        home_mark(panel)
-        if index > 0:
-            panel.contour(x, y, recording.inside[0], [0.5], colors=[INK], linestyles="dashed", linewidths=1)
-        panel.set_title(f"ϕ = {phi[index]:.0f}°")
-        panel.set_xticks([-400, -200, 0, 200, 400])
-    for panel in panels[-1]:
-        panel.set_xlabel("x (mm)")
-    for panel in panels[:, 0]:
-        panel.set_ylabel("y (mm)")
-    save(figure, "translational-helical-workspace.png")
-
-
 if __name__ == "__main__":
     with plt.rc_context(STYLE):
         plano_spherical()
-        translational_helical()
         gallery.draw()
         schematics.draw()
+    plots.draw()

@@ -32,6 +32,8 @@ def test_a_recording_holds_the_rows_of_the_csv(opm, tmp_path, joint, turns):
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         for schema, channel, record, message in reader.iter_decoded_messages():
             assert schema.name == message.DESCRIPTOR.full_name
+            if channel.topic not in ("/joints", "/imaginary_joints"):
+                continue
             values = [getattr(message, field.name) for field in message.DESCRIPTOR.fields]
             names = [field.name for field in message.DESCRIPTOR.fields]
             {"/joints": joints, "/imaginary_joints": imaginary}[channel.topic].append(

@@ -3,9 +3,12 @@
 use super::Run;
 use crate::args::{Format, LinkageArgs, Output};
 use crate::failure::Failure;
+use crate::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use crate::text::count;
 use csv::WriterBuilder;
 use opm_core::linkage::Position;
+use opm_core::skeleton::{self as core, Cuts};
+use opm_mcap::trajectory::{Posture, Sample};
 use opm_mcap::{Metadata, PartialFile, RecordError, Sink, Trajectory, TrajectoryRecorder};
 use serde_json::json;
 use std::io::{self, Write};
@@ -139,14 +142,23 @@ impl Sweep<'_> {
         let place = path.display();
         let failed = |error: RecordError| Failure::at(&place, &error);
         let steps = u64::from(self.count - 1);
+        let mechanism = linkage.mechanism();
+        let cuts = Cuts {
+            decomposition: linkage.decomposition(),
+            imaginary: std::slice::from_ref(linkage.imaginary()),
+        };
+        let mut scene = Scene::new(mechanism, cuts);
         let trajectory = Trajectory {
-            joints: linkage.coordinates().iter().map(|c| c.name.clone()).collect(),
-            imaginary: vec![linkage.imaginary().name.clone()],
-            mechanism_name: &loaded.file_name,
-            mechanism: loaded.text.as_bytes(),
+            pose: Vec::new(),
+            joints: joint_coordinates(mechanism),
+            imaginary: imaginary_coordinates(cuts.imaginary),
+            rates: false,
+            measures: Vec::new(),
+            bodies: scene.bodies(),
+            files: vec![(&loaded.file_name, loaded.text.as_bytes())],
             run: record([
                 ("command", "linkage".to_owned()),
-                ("mechanism", linkage.mechanism().name.clone()),
+                ("mechanism", mechanism.name.clone()),
                 ("input", input.coordinate().name.clone()),
                 ("range", json!(self.run.intervals()).to_string()),
                 ("branch", input.home_branch().to_string()),
@@ -157,7 +169,20 @@ impl Sweep<'_> {
         let mut recorder = TrajectoryRecorder::create(path, &trajectory).map_err(failed)?;
         let write = |number: u32, position: &Position| {
             let time = u64::from(number) * ROUND / steps;
-            recorder.push(time, &position.joints, &[position.imaginary]).map_err(failed)
+            let (joints, imaginary) = (&position.joints, &[position.imaginary]);
+            let frames = if recorder.shows(time) {
+                let platform = mechanism.legs[0].displacement(joints);
+                scene.frames(&core::Posture { joints, imaginary, platform })
+            } else {
+                &[]
+            };
+            let posture = Posture { joints, imaginary, rates: None, frames };
+            let sample = Sample {
+                valid: position.within_limits,
+                posture: Some(posture),
+                ..Sample::default()
+            };
+            recorder.push(time, &sample).map_err(failed)
         };
         let summary = self.each(write, |failure| failure)?;
         let result = record([

@@ -7,8 +7,10 @@ mod fk;
 mod ik;
 mod inspect;
 mod linkage;
+mod plot;
 mod run;
 mod small;
+mod trajectory;
 mod velocity;
 mod workspace;
 

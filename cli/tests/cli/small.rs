@@ -22,6 +22,20 @@ fn examples_are_listed_and_printed() {
 }
 
 #[test]
+fn motions_are_listed_and_printed() {
+    let list = opm(&["examples", "--format", "json"]).json();
+    let motions = list["motions"].as_array().unwrap();
+    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/motions");
+    assert_eq!(motions.len(), std::fs::read_dir(files).unwrap().count());
+    for motion in motions {
+        assert_eq!(keys(motion), ["name", "mechanism", "description"]);
+        let name = motion["name"].as_str().unwrap();
+        assert!(opm(&["examples"]).text().contains(name));
+        assert!(opm(&["examples", name]).text().contains(&format!("name = \"{name}\"")));
+    }
+}
+
+#[test]
 fn a_printed_example_is_a_mechanism_file() {
     let folder = Folder::new();
     let file = folder.write("mine.toml", opm(&["examples", PLANO]).text());
@@ -59,7 +73,9 @@ fn help_and_version_go_to_standard_output() {
         "fk",
         "velocity",
         "linkage",
+        "trajectory",
         "workspace",
+        "plot",
         "inspect",
         "examples",
         "completions",
@@ -69,12 +85,33 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
+/// Recordings of the names that the examples of `opm plot` have.
+fn record_for_plots(folder: &Folder) {
+    let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
+    let scalars = ["--scalars", "theta11,theta12,theta13", "-o", &folder.arg("cloud.mcap")];
+    opm(&[&["workspace", PLANO], &grid[..], &scalars].concat()).text();
+}
+
 /// What the help shows works as it stands.
 #[test]
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();
     let csv = folder.write("poses.csv", "x\n0\n");
-    for command in ["decompose", "ik", "fk", "velocity", "linkage", "workspace", "examples"] {
+    let commands = [
+        "decompose",
+        "ik",
+        "fk",
+        "velocity",
+        "linkage",
+        "trajectory",
+        "workspace",
+        "plot",
+        "examples",
+    ];
+    for command in commands {
+        if command == "plot" {
+            record_for_plots(&folder);
+        }
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
@@ -90,7 +127,8 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                if matches!(&**arg, "cloud.mcap" | "joints.csv" | "turn.mcap") {
+                let written = [".mcap", ".svg", ".png"].iter().any(|ending| arg.ends_with(ending));
+                if written || *arg == "joints.csv" {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

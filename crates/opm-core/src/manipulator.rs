@@ -321,6 +321,11 @@ impl ImaginaryJoint {
         Self { name: leg.imaginary_name(), leg: number, quantity, home, sign }
     }
 
+    /// The displacement along the intersection motion for a value as it is reported.
+    pub fn displacement(&self, value: f64) -> f64 {
+        self.sign * (value - self.home)
+    }
+
     /// The value to report for a displacement along the intersection motion; of a turn, the one
     /// nearest to `reference`.
     #[inline]

@@ -57,6 +57,7 @@ mod pose;
 mod rotation_vector;
 mod screws;
 mod section;
+mod serial;
 mod singularity;
 
 pub use condition::Conditioning;

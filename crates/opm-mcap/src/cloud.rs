@@ -124,10 +124,7 @@ impl CloudEncoder {
         let template = PointCloud {
             timestamp: None,
             frame_id: layout.frame_id.clone(),
-            pose: Some(Pose {
-                position: Some(Vector3 { x: 0.0, y: 0.0, z: 0.0 }),
-                orientation: Some(Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }),
-            }),
+            pose: Some(identity()),
             point_stride: layout.stride() as u32,
             fields: layout.fields(),
             data: Default::default(),
@@ -222,6 +219,55 @@ impl CloudEncoder {
     /// Starts the next cloud.
     pub fn clear(&mut self) {
         self.buffer.truncate(self.head_room);
+    }
+}
+
+/// A point with a colour of its own.
+pub(crate) struct ColoredPoint {
+    /// Metres.
+    pub at: [f64; 3],
+    /// Red, green, blue, opacity.
+    pub rgba: [u8; 4],
+}
+
+/// A cloud of coloured points as an encoded `foxglove.PointCloud`.
+pub(crate) fn encode_colored(
+    frame_id: &str,
+    time: Timestamp,
+    points: &[ColoredPoint],
+) -> Result<Vec<u8>, RecordError> {
+    let plain = CloudLayout {
+        axes: POSITION_FIELDS.map(String::from),
+        scalars: Vec::new(),
+        color: POSITION_FIELDS[0].into(),
+        color_range: [0.0, 0.0],
+        frame_id: frame_id.into(),
+    };
+    let mut data = Vec::with_capacity(points.len() * plain.stride());
+    for ColoredPoint { at, rgba } in points {
+        data.extend(at.iter().flat_map(|&value| (value as f32).to_le_bytes()));
+        data.extend_from_slice(rgba);
+    }
+    let cloud = PointCloud {
+        timestamp: Some(time),
+        frame_id: plain.frame_id.clone(),
+        pose: Some(identity()),
+        point_stride: plain.stride() as u32,
+        fields: plain.fields(),
+        data: data.into(),
+    };
+    let mut message = Vec::new();
+    cloud
+        .encode(&mut message)
+        .map_err(|reason| RecordError::Layout(format!("the message: {reason}")))?;
+    Ok(message)
+}
+
+/// The pose of a cloud that is given in its frame.
+fn identity() -> Pose {
+    Pose {
+        position: Some(Vector3 { x: 0.0, y: 0.0, z: 0.0 }),
+        orientation: Some(Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }),
     }
 }
 

@@ -1,4 +1,5 @@
-//! Joint values on a topic: one flat protobuf message, with a double a joint.
+//! Named values on a topic: one flat protobuf message, with a double a joint, or whatever else has a
+//! name.
 //!
 //! The message type is made for the joints at hand, `opm.Joints` for instance, so that viewers offer
 //! every joint by its name to be plotted: `/joints.S1`. A protobuf name has letters, digits and

@@ -12,11 +12,14 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 
 use crate::cloud::COLOR_FIELDS;
 use crate::decode::Cloud;
+use crate::flat::Flat;
 use crate::{Metadata, ReadError};
 
 /// Longest record or chunk that is taken for real. Ours are a quarter of it; a length beyond it
 /// in a damaged file must not become an allocation.
 const RECORD_LIMIT: usize = 512 << 20;
+/// How much of the attachments is kept, in the order of the file: more than any mechanism file.
+const ATTACHMENT_LIMIT: usize = 16 << 20;
 
 /// What a recording holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,6 +84,8 @@ pub struct AttachmentInfo {
     pub media_type: String,
     /// Its size in bytes.
     pub size: u64,
+    /// The file itself; `None` where it and the ones before it are more than 16 MiB.
+    pub content: Option<Vec<u8>>,
 }
 
 /// A message of a recording.
@@ -94,6 +99,8 @@ pub struct Message<'a> {
     pub time: u64,
     /// The message, encoded.
     pub data: &'a [u8],
+    /// The names of its values, where its schema says that it is nothing but doubles.
+    pub flat: Option<&'a Flat>,
 }
 
 impl<'a> Message<'a> {
@@ -105,10 +112,23 @@ impl<'a> Message<'a> {
         if self.schema != Cloud::SCHEMA {
             return Ok(None);
         }
-        Cloud::decode(self.data).map(Some).map_err(|reason| ReadError::Malformed {
-            what: format!("{} at {} ns", self.topic, self.time),
-            reason,
-        })
+        Cloud::decode(self.data).map(Some).map_err(|reason| self.malformed(reason))
+    }
+
+    /// Puts the values of a message that is nothing but doubles into `values`, in the order of the
+    /// names of [`Self::flat`]; false, and no values, for any other message.
+    ///
+    /// # Errors
+    /// A message that is not what its schema says.
+    pub fn values(&self, values: &mut Vec<f64>) -> Result<bool, ReadError> {
+        values.clear();
+        let Some(flat) = self.flat else { return Ok(false) };
+        flat.decode(self.data, values).map_err(|reason| self.malformed(reason))?;
+        Ok(true)
+    }
+
+    fn malformed(&self, reason: String) -> ReadError {
+        ReadError::Malformed { what: format!("{} at {} ns", self.topic, self.time), reason }
     }
 }
 
@@ -164,7 +184,7 @@ pub fn read<E: From<ReadError>>(
 /// What was found so far.
 #[derive(Default)]
 struct Contents {
-    schemas: BTreeMap<u16, Arc<str>>,
+    schemas: BTreeMap<u16, Schema>,
     channels: BTreeMap<u16, Channel>,
     time_range: Option<[u64; 2]>,
     extents: Vec<Extent>,
@@ -172,9 +192,15 @@ struct Contents {
     attachments: Vec<AttachmentInfo>,
 }
 
+#[derive(Clone, Default)]
+struct Schema {
+    name: Arc<str>,
+    flat: Option<Arc<Flat>>,
+}
+
 struct Channel {
     topic: Arc<str>,
-    schema: Arc<str>,
+    schema: Schema,
     messages: u64,
     points: Option<u64>,
 }
@@ -187,10 +213,18 @@ impl Contents {
         visit: &mut impl FnMut(&Message<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         match opcode {
-            op::ATTACHMENT => self.attachments.push(attachment(data)?),
+            op::ATTACHMENT => {
+                let kept = self.attachments.iter().filter_map(|a| a.content.as_ref());
+                let room = ATTACHMENT_LIMIT - kept.map(Vec::len).sum::<usize>();
+                self.attachments.push(attachment(data, room)?);
+            }
             op::SCHEMA | op::CHANNEL | op::METADATA | op::MESSAGE => match parse(opcode, data)? {
-                Record::Schema { header, .. } => {
-                    self.schemas.insert(header.id, header.name.into());
+                Record::Schema { header, data } => {
+                    let flat = (header.encoding == Flat::ENCODING)
+                        .then(|| Flat::of(&header.name, &data))
+                        .flatten();
+                    let schema = Schema { name: header.name.into(), flat: flat.map(Arc::new) };
+                    self.schemas.insert(header.id, schema);
                 }
                 Record::Channel(channel) => self.channel(channel),
                 Record::Metadata(record) => self.metadata.push((record.name, record.metadata)),
@@ -207,7 +241,7 @@ impl Contents {
         let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
         self.channels.entry(channel.id).or_insert_with(|| Channel {
             topic: channel.topic.into(),
-            points: (&*schema == Cloud::SCHEMA).then_some(0),
+            points: (&*schema.name == Cloud::SCHEMA).then_some(0),
             schema,
             messages: 0,
         });
@@ -230,7 +264,8 @@ impl Contents {
         channel.messages += 1;
 
         let (topic, schema) = (channel.topic.clone(), channel.schema.clone());
-        let message = Message { topic: &topic, schema: &schema, time, data };
+        let flat = schema.flat.as_deref();
+        let message = Message { topic: &topic, schema: &schema.name, time, data, flat };
         if let Some(cloud) = message.cloud()? {
             *channel.points.get_or_insert(0) += cloud.len() as u64;
             self.extend(&cloud);
@@ -255,7 +290,7 @@ impl Contents {
         let mut topics: Vec<TopicInfo> = (self.channels.into_values())
             .map(|Channel { topic, schema, messages, points }| TopicInfo {
                 name: topic.to_string(),
-                schema: schema.to_string(),
+                schema: schema.name.to_string(),
                 messages,
                 points,
             })
@@ -288,9 +323,9 @@ fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
     })
 }
 
-/// Name, media type and size of an attachment record, whose content stays unread. (The parser of
-/// `mcap` takes for granted that the record is long enough.)
-fn attachment(record: &[u8]) -> Result<AttachmentInfo, ReadError> {
+/// What an attachment record holds, and its content if that is no longer than `room`. (The parser of `mcap` takes for granted that the record is long
+/// enough.)
+fn attachment(record: &[u8], room: usize) -> Result<AttachmentInfo, ReadError> {
     /// Log time and creation time.
     const TIMES: usize = 16;
     fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
@@ -302,11 +337,14 @@ fn attachment(record: &[u8]) -> Result<AttachmentInfo, ReadError> {
     let parts = |mut rest: &[u8]| {
         let name = String::from_utf8_lossy(text(&mut rest)?).into_owned();
         let media_type = String::from_utf8_lossy(text(&mut rest)?).into_owned();
-        let size = u64::from_le_bytes(*rest.first_chunk()?);
-        Some(AttachmentInfo { name, media_type, size })
+        let (size, rest) = rest.split_first_chunk()?;
+        let size = u64::from_le_bytes(*size);
+        let content = rest.get(..usize::try_from(size).ok()?)?;
+        let content = (content.len() <= room).then(|| content.to_vec());
+        Some(AttachmentInfo { name, media_type, size, content })
     };
     record.get(TIMES..).and_then(parts).ok_or_else(|| ReadError::Malformed {
         what: "attachment".into(),
-        reason: format!("{} bytes do not hold its header", record.len()),
+        reason: format!("{} bytes do not hold what its header says", record.len()),
     })
 }

@@ -3,22 +3,60 @@
 mod common;
 
 use common::{MECHANISM, file, record};
-use opm_mcap::trajectory::{IMAGINARY_TOPIC, JOINTS_TOPIC};
+use opm_mcap::scene::{Body, Shape, Solid};
+use opm_mcap::trajectory::*;
 use opm_mcap::workspace::START;
 use opm_mcap::{Message, ReadError, RecordError, Trajectory, TrajectoryRecorder, read};
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// Nanoseconds between the samples.
 const STEP: u64 = 40_000_000;
 
+fn coordinates(names: &[&str], role: Role) -> Vec<Coordinate> {
+    names.iter().map(|&name| Coordinate { name: name.into(), unit: "rad", role }).collect()
+}
+
+/// Joints alone: what a linkage has.
 fn trajectory(imaginary: &[&str]) -> Trajectory<'static> {
     Trajectory {
-        joints: ["a1", "b3", "a.2"].map(String::from).into(),
-        imaginary: imaginary.iter().map(ToString::to_string).collect(),
-        mechanism_name: "test.toml",
-        mechanism: MECHANISM,
+        pose: Vec::new(),
+        joints: coordinates(&["a1", "b3", "a.2"], Role::Passive),
+        imaginary: coordinates(imaginary, Role::Imaginary),
+        rates: false,
+        measures: Vec::new(),
+        bodies: Vec::new(),
+        files: vec![("test.toml", MECHANISM)],
         run: record([("input", "a1")]),
     }
+}
+
+/// Everything that there can be.
+fn whole() -> Trajectory<'static> {
+    let rod = Shape::Cylinder { from: [0.0; 3], to: [0.0, 0.0, 1.0], radius: 0.1 };
+    let body = |frame: &str, parent| Body {
+        frame: frame.into(),
+        parent,
+        solids: vec![Solid { shape: rod, color: [1.0, 0.5, 0.0, 1.0] }],
+        notes: vec![("joint a1".into(), "turn".into())],
+    };
+    let pose = vec![
+        Coordinate { name: "x".into(), unit: "m", role: Role::Task },
+        Coordinate { name: "a1".into(), unit: "m", role: Role::Task },
+    ];
+    Trajectory {
+        pose,
+        rates: true,
+        measures: vec!["condition".into()],
+        bodies: vec![body("base", None), body("arm", Some(0))],
+        files: vec![("test.toml", MECHANISM), ("motion.csv", b"t,x\n")],
+        ..trajectory(&["tau.leg1"])
+    }
+}
+
+fn posture<'a>(joints: &'a [f64], imaginary: &'a [f64]) -> Sample<'a> {
+    let posture = Posture { joints, imaginary, ..Posture::default() };
+    Sample { posture: Some(posture), ..Sample::default() }
 }
 
 /// Joint values of sample `i`; a zero among them, which protobuf would leave out.
@@ -31,7 +69,7 @@ fn recorded(samples: u64) -> Vec<u8> {
     let sink = Cursor::new(&mut bytes);
     let mut recorder = TrajectoryRecorder::new(sink, &trajectory(&["tau.leg1"])).unwrap();
     for i in 0..samples {
-        recorder.push(i * STEP, &joints(i), &[2.0 * i as f64]).unwrap();
+        recorder.push(i * STEP, &posture(&joints(i), &[2.0 * i as f64])).unwrap();
     }
     recorder.finish(&record([("samples", "3")])).unwrap();
     bytes
@@ -52,7 +90,9 @@ fn every_value_comes_back() {
     let path = file(&directory, "t.mcap", &recorded(3));
     let mut seen = Vec::new();
     let recording = read(&path, |message: &Message<'_>| -> Result<(), ReadError> {
-        seen.push((message.topic.to_owned(), message.time, doubles(message.data)));
+        if message.topic != JOINT_STATES_TOPIC {
+            seen.push((message.topic.to_owned(), message.time, doubles(message.data)));
+        }
         Ok(())
     })
     .unwrap();
@@ -69,15 +109,99 @@ fn every_value_comes_back() {
 
     assert!(recording.complete);
     let topics: Vec<_> =
-        recording.topics.iter().map(|t| (&*t.name, &*t.schema, t.messages, t.points)).collect();
-    let expected =
-        [(IMAGINARY_TOPIC, "opm.ImaginaryJoints", 3, None), (JOINTS_TOPIC, "opm.Joints", 3, None)];
+        recording.topics.iter().map(|t| (&*t.name, &*t.schema, t.messages)).collect();
+    let expected = [
+        (IMAGINARY_TOPIC, "opm.ImaginaryJoints", 3),
+        (JOINT_STATES_TOPIC, "foxglove.JointStates", 3),
+        (JOINTS_TOPIC, "opm.Joints", 3),
+        (VIOLATIONS_TOPIC, "foxglove.Log", 0),
+    ];
     assert_eq!(topics, expected);
     assert_eq!(recording.metadata("joints").unwrap()["a_2"], "a.2");
     assert_eq!(recording.metadata("joints").unwrap()["tau_leg1"], "tau.leg1");
     assert_eq!(recording.metadata("run").unwrap()["input"], "a1");
     assert_eq!(recording.metadata("result").unwrap()["complete"], "true");
     assert_eq!(recording.attachments.len(), 1);
+}
+
+/// Out of reach the pose goes on and the joints pause; a joint wins over a task coordinate of its name.
+#[test]
+fn a_motion_has_all_topics() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut bytes = Vec::new();
+    let mut recorder = TrajectoryRecorder::new(Cursor::new(&mut bytes), &whole()).unwrap();
+    let frames = [Frame { translation: [1.0, 2.0, 3.0], rotation: [0.0, 0.0, 0.0, 1.0] }];
+    let rates = Rates { velocities: &[1.0; 3], imaginary: &[2.0], accelerations: &[3.0; 3] };
+    let values = [0.5; 3];
+    let reached =
+        Posture { joints: &values, imaginary: &[0.1], rates: Some(rates), frames: &frames };
+    let at = |valid, posture| Sample {
+        pose: &[1.0, 2.0],
+        pose_velocities: &[3.0, 4.0],
+        measures: &[7.0],
+        valid,
+        posture,
+    };
+    recorder.push(0, &at(true, Some(reached))).unwrap();
+    recorder.mark(STEP / 2, "a1: past its highest value").unwrap();
+    recorder.push(STEP, &at(false, None)).unwrap();
+    recorder.describe("violation.1", &record([("kind", "limit")])).unwrap();
+    recorder.finish(&record([])).unwrap();
+
+    let path = file(&directory, "t.mcap", &bytes);
+    let (mut judged, mut last) = (Vec::new(), 0);
+    let recording = read(&path, |message: &Message<'_>| -> Result<(), ReadError> {
+        assert!(message.time >= last, "time goes back");
+        last = message.time;
+        if message.topic == CONDITION_TOPIC {
+            judged.push(doubles(message.data));
+        }
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!(judged, [[7.0, 1.0], [7.0, 0.0]]);
+    let counts: BTreeMap<_, _> = recording.topics.iter().map(|t| (&*t.name, t.messages)).collect();
+    for (topic, count) in [
+        (POSE_TOPIC, 2),
+        (POSE_VELOCITIES_TOPIC, 2),
+        (JOINTS_TOPIC, 1),
+        (VELOCITIES_TOPIC, 1),
+        (ACCELERATIONS_TOPIC, 1),
+        (IMAGINARY_TOPIC, 1),
+        (IMAGINARY_VELOCITIES_TOPIC, 1),
+        (JOINT_STATES_TOPIC, 1),
+        (FRAMES_TOPIC, 1),
+        (SCENE_TOPIC, 1),
+        ("/bodies/base", 1),
+        ("/bodies/arm", 1),
+        (VIOLATIONS_TOPIC, 1),
+    ] {
+        assert_eq!(counts[topic], count, "{topic}");
+    }
+    assert_eq!(recording.metadata("roles").unwrap()["x"], "task");
+    assert_eq!(recording.metadata("roles").unwrap()["a1"], "passive");
+    assert_eq!(recording.metadata("quantities").unwrap()["x"], "m");
+    assert_eq!(recording.metadata("quantities").unwrap()["tau_leg1"], "rad");
+    assert_eq!(recording.metadata("violation.1").unwrap()["kind"], "limit");
+    assert_eq!(recording.attachments.len(), 2);
+}
+
+/// At a thousand samples a second every fifth is shown, and all are written.
+#[test]
+fn pictures_come_no_faster_than_they_are_seen() {
+    let mut bytes = Vec::new();
+    let mut recorder = TrajectoryRecorder::new(Cursor::new(&mut bytes), &trajectory(&[])).unwrap();
+    let mut shown = 0;
+    for i in 0..=1000 {
+        shown += u64::from(recorder.shows(i * 1_000_000));
+        recorder.push(i * 1_000_000, &posture(&joints(i), &[])).unwrap();
+    }
+    recorder.finish(&record([])).unwrap();
+    assert_eq!(shown, 201);
+    let directory = tempfile::tempdir().unwrap();
+    let recording = read::<ReadError>(&file(&directory, "t.mcap", &bytes), |_| Ok(())).unwrap();
+    assert_eq!(recording.topic(JOINTS_TOPIC).unwrap().messages, 1001);
+    assert_eq!(recording.topic(JOINT_STATES_TOPIC).unwrap().messages, 201);
 }
 
 #[test]
@@ -90,7 +214,7 @@ fn without_imaginary_joints_their_topic_is_left_out() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("t.mcap");
     let mut recorder = TrajectoryRecorder::create(&path, &trajectory(&[])).unwrap();
-    recorder.push(0, &joints(0), &[]).unwrap();
+    recorder.push(0, &posture(&joints(0), &[])).unwrap();
     assert!(!path.exists(), "only a whole recording gets its name");
     recorder.finish(&record([])).unwrap();
     let recording = read::<ReadError>(&path, |_| Ok(())).unwrap();
@@ -111,15 +235,15 @@ fn what_does_not_fit_ends_the_recording() {
     ];
     for (time, joints, imaginary) in wrong {
         let mut recorder = TrajectoryRecorder::create(&path, &trajectory(&["tau.leg1"])).unwrap();
-        recorder.push(STEP, &all, &[0.0]).unwrap();
-        let error = recorder.push(time, joints, imaginary).unwrap_err();
+        recorder.push(STEP, &posture(&all, &[0.0])).unwrap();
+        let error = recorder.push(time, &posture(joints, imaginary)).unwrap_err();
         assert!(matches!(error, RecordError::Time { .. } | RecordError::Row { .. }), "{error}");
-        let after = recorder.push(2 * STEP, &all, &[0.0]);
+        let after = recorder.push(2 * STEP, &posture(&all, &[0.0]));
         assert!(matches!(after, Err(RecordError::AfterFailure)));
         assert!(recorder.finish(&record([])).is_err());
         assert!(!path.exists());
     }
-    let twice = Trajectory { joints: vec!["a".into(), "a".into()], ..trajectory(&[]) };
+    let twice = Trajectory { joints: coordinates(&["a", "a"], Role::Passive), ..trajectory(&[]) };
     let error = TrajectoryRecorder::create(&path, &twice).err().unwrap();
     assert!(error.to_string().contains("joint a is given twice"), "{error}");
 }

@@ -122,8 +122,18 @@ pub fn spherical(conditions: &[Condition; 3]) -> Solutions<Matrix3<f64>> {
         _ => unreachable!("not of the sphere"),
     };
     // The widest cone is parametrised best.
-    let narrowness = |i: &usize| cone(*i).2.abs();
-    let first = (0..3).min_by(|a, b| narrowness(a).total_cmp(&narrowness(b))).unwrap_or(0);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| cone(a).2.abs().total_cmp(&cone(b).2.abs()));
+    solve(&order, |first, found| on_cone(conditions, first, cone, found))
+}
+
+/// Finds solutions with one cone satisfied by two angles.
+fn on_cone(
+    conditions: &[Condition; 3],
+    first: usize,
+    cone: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64),
+    found: &mut Vec<Matrix3<f64>>,
+) -> Found {
     let (fixed, carried, cosine) = cone(first);
     let (from, to) = (triad(&fixed), triad(&carried));
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -147,7 +157,7 @@ pub fn spherical(conditions: &[Condition; 3]) -> Solutions<Matrix3<f64>> {
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
         from * turn(theta) * tilt * turn(phi) * to.transpose()
     };
-    torus(&rest, conditions, place)
+    torus(&rest, conditions, place, found)
 }
 
 fn turn(e: Complex<f64>) -> Matrix3<f64> {
@@ -163,13 +173,27 @@ fn triad(axis: &Vector3<f64>) -> Matrix3<f64> {
 
 /// The displacements of the plane that satisfy three conditions, whose lengths are over the size.
 pub fn planar(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
-    let radius = |i: &usize| match conditions[*i] {
+    let radius = |i: usize| match conditions[i] {
         Condition::Circle { radius, .. } => radius,
         _ => f64::NEG_INFINITY,
     };
-    let first = (0..3).max_by(|a, b| radius(a).total_cmp(&radius(b))).unwrap_or(0);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| radius(b).total_cmp(&radius(a)));
+    let circles = order.iter().filter(|&&i| radius(i) >= 0.0).count();
+    match circles {
+        0 => lines(conditions),
+        _ => solve(&order[..circles], |first, found| from_circle(conditions, first, found)),
+    }
+}
+
+/// Finds solutions with one circle satisfied by two angles.
+fn from_circle(
+    conditions: &[Condition; 3],
+    first: usize,
+    found: &mut Vec<PlanarDisplacement>,
+) -> Found {
     let Condition::Circle { point, centre, radius } = conditions[first] else {
-        return lines(conditions);
+        unreachable!("only circles are asked for")
     };
     // g point = centre + radius e(θ), turned by e(φ).
     let rest = [(first + 1) % 3, (first + 2) % 3]
@@ -178,7 +202,7 @@ pub fn planar(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
         rotation: phi,
         translation: centre + theta * radius - phi * point,
     };
-    torus(&rest, conditions, place)
+    torus(&rest, conditions, place, found)
 }
 
 /// A condition on a body whose `point` is at `centre + radius e(θ)` and that is turned by `e(φ)`.
@@ -243,12 +267,41 @@ fn on_circle(
     Bilinear { coefficients: bilinear, size }
 }
 
+/// What one way of eliminating has found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Found {
+    /// Everything.
+    All,
+    /// Roots that are all but double: there may be more to them.
+    Doubtful,
+    /// The conditions are not independent.
+    Dependent,
+}
+
+/// Eliminates with one condition after the other as the first. Two solutions at one θ, or near it, are a
+/// double root of one polynomial, and as a rule not of the others.
+fn solve<G: Group>(
+    order: &[usize],
+    eliminate: impl Fn(usize, &mut Vec<G>) -> Found,
+) -> Solutions<G> {
+    let mut found = Vec::with_capacity(8);
+    for &first in order {
+        match eliminate(first, &mut found) {
+            Found::All => break,
+            Found::Doubtful => {}
+            Found::Dependent => return Solutions::Dependent,
+        }
+    }
+    Solutions::At(found)
+}
+
 /// Two equations in two angles.
 fn torus<G: Group>(
     rest: &[Bilinear; 2],
     conditions: &[Condition; 3],
     place: impl Fn(Complex<f64>, Complex<f64>) -> G,
-) -> Solutions<G> {
+    found: &mut Vec<G>,
+) -> Found {
     let [[c1, a1, b1], [c2, a2, b2]] = rest.map(|equation| {
         let m = equation.coefficients;
         let column = |j: usize| Trigonometric::linear([m[(0, j)], m[(1, j)], m[(2, j)]]);
@@ -263,16 +316,17 @@ fn torus<G: Group>(
     let z = minor(&a1, &b2, &a2, &b1);
     let polynomial = x.times(&x).plus(&y.times(&y)).minus(&z.times(&z));
     let product = rest[0].size * rest[1].size;
-    let Roots::At(roots) = polynomial.roots(product * product) else { return Solutions::Dependent };
-    let mut found: Vec<G> = Vec::with_capacity(8);
+    let Roots::At { roots, doubtful } = polynomial.roots(product * product) else {
+        return Found::Dependent;
+    };
     for theta in roots {
         let equations = [[&a1, &b1, &c1], [&a2, &b2, &c2]]
             .map(|equation| equation.map(|coefficient| coefficient.value(theta)));
         for phi in common(&equations, [rest[0].size, rest[1].size]).into_iter().flatten() {
-            collect(polish(place(theta, phi), conditions), &mut found);
+            collect(polish(place(theta, phi), conditions), found);
         }
     }
-    Solutions::At(found)
+    if doubtful { Found::Doubtful } else { Found::All }
 }
 
 /// The turns that satisfy two equations `a cos φ + b sin φ + c = 0`, of which one is a consequence of the
@@ -325,7 +379,7 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     let terms = [0, 1, 2].map(|i| rows[i][2].times(&cofactor(i)));
     let determinant = terms[0].plus(&terms[1]).plus(&terms[2]);
     let scale = rows.iter().map(|row| row.iter().map(Trigonometric::size).sum::<f64>()).product();
-    let Roots::At(roots) = determinant.roots(scale) else { return Solutions::Dependent };
+    let Roots::At { roots, .. } = determinant.roots(scale) else { return Solutions::Dependent };
     let mut found = Vec::with_capacity(8);
     for rotation in roots {
         let at = rows.each_ref().map(|row| row.each_ref().map(|x| x.value(rotation)));

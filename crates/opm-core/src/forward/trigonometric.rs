@@ -16,6 +16,9 @@ pub const NOISE: f64 = 1e-14;
 /// nearer to each other than the rounding of a double root, which is the root of [`NOISE`].
 const SHORTEST: f64 = 1e-8;
 
+/// Roots nearer to each other than this are in doubt: four of them, and a polynomial is lost in its noise.
+const NEAR: f64 = 1e-3;
+
 /// `f(θ) = Re c₀ + Σ 2 Re(c_k exp(i k θ))`, that is `c₋ₖ` the conjugate of `c_k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigonometric {
@@ -26,8 +29,14 @@ pub struct Trigonometric {
 /// The roots that were found, as unit vectors, counter-clockwise from minus a quarter turn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Roots {
-    /// Finitely many.
-    At(Vec<Complex<f64>>),
+    /// Finitely many; `doubtful` if some lie so near to each other that rounding has a say in how many they
+    /// are and where.
+    At {
+        /// Unit vectors.
+        roots: Vec<Complex<f64>>,
+        /// Roots all but double.
+        doubtful: bool,
+    },
     /// The polynomial is zero everywhere.
     Everywhere,
 }
@@ -118,7 +127,8 @@ impl Trigonometric {
         }
         // (1 + t²)⁴ is 16 at the ends.
         let noise = 16.0 * NOISE * scale;
-        let mut found = Vec::with_capacity(HALF);
+        let mut roots: Vec<Complex<f64>> = Vec::with_capacity(HALF);
+        let mut doubtful = false;
         // Each halving leaves one interval to come back to, down to the shortest.
         let mut open = Vec::with_capacity(32);
         for half in [1.0, -1.0] {
@@ -128,13 +138,15 @@ impl Trigonometric {
             }
             let polynomial = turned.in_half_tangent();
             open.push((turned.bernstein(), -1.0, 2.0));
-            isolate(&mut open, &polynomial, noise, &mut |t| {
+            isolate(&mut open, &polynomial, noise, &mut |t, simple| {
                 let square = t * t;
-                let e = Complex::new(1.0 - square, 2.0 * t) / (1.0 + square);
-                found.push(e * half);
+                let e = Complex::new(1.0 - square, 2.0 * t) * half / (1.0 + square);
+                doubtful |=
+                    !simple || roots.last().is_some_and(|r| (r - e).norm_sqr() < NEAR * NEAR);
+                roots.push(e);
             });
         }
-        Roots::At(found)
+        Roots::At { roots, doubtful }
     }
 
     /// Coefficients of `(1 + t²)⁴ f` by rising powers of `t`.
@@ -210,12 +222,13 @@ const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
 /// An interval by its low end and its width, and Bernstein coefficients on it.
 type Interval = ([f64; COEFFICIENTS], f64, f64);
 
-/// Finds the roots of a polynomial on the intervals that are open, ascending.
+/// Finds the roots of a polynomial on the intervals that are open, ascending, and says of each whether it is
+/// known to be a simple one.
 fn isolate(
     open: &mut Vec<Interval>,
     powers: &[f64; COEFFICIENTS],
     noise: f64,
-    found: &mut impl FnMut(f64),
+    found: &mut impl FnMut(f64, bool),
 ) {
     while let Some((b, low, width)) = open.pop() {
         let (least, most) =
@@ -230,14 +243,14 @@ fn isolate(
             let crosses =
                 if rising { first <= 0.0 && last > 0.0 } else { first >= 0.0 && last < 0.0 };
             if crosses {
-                found(bracketed(powers, [low, low + width], rising));
+                found(bracketed(powers, [low, low + width], rising), true);
             }
             continue;
         }
         // Lost in the noise, unless it has one bend there: that can be followed to its turning point.
         let flat = least.abs().max(most.abs()) <= noise && !bends(&b);
         if width <= SHORTEST || flat {
-            found(low + 0.5 * width);
+            found(low + 0.5 * width, false);
             continue;
         }
         let (left, right) = halves(&b);
@@ -309,7 +322,7 @@ mod tests {
     }
 
     fn angles(found: &Roots) -> Vec<f64> {
-        let Roots::At(found) = found else { panic!("everywhere") };
+        let Roots::At { roots: found, .. } = found else { panic!("everywhere") };
         found.iter().map(|e| e.arg()).collect()
     }
 

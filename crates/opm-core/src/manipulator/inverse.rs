@@ -72,6 +72,20 @@ pub(crate) struct Place {
     pub b: Displacement,
 }
 
+impl Solution {
+    /// Takes over what another solution of the same manipulator holds, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.joints.clone_from(&other.joints);
+        self.imaginary.clone_from(&other.imaginary);
+        self.cuts.clone_from(&other.cuts);
+        self.place.pose.clone_from(&other.place.pose);
+        (self.place.v, self.place.b) = (other.place.v, other.place.b);
+        self.legs.clone_from(&other.legs);
+        self.within_limits = other.within_limits;
+        self.unreachable.clone_from(&other.unreachable);
+    }
+}
+
 /// The actuated and the imaginary joints of one working mode; made by [`Manipulator::drives`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {

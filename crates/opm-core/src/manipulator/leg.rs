@@ -281,15 +281,16 @@ fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
         let joint = &leg.joints[freedom.joint];
         let screw =
             |axis: Unit<Vector3<f64>>, pitch| ChainJoint::Screw { axis, point: joint.point, pitch };
-        joints.push(match (joint.kind, freedom.index) {
-            (JointKind::Spherical, 0) => ChainJoint::Ball,
-            (JointKind::Spherical, _) => continue,
-            (JointKind::Prismatic, _) | (JointKind::Cylindrical, 1) => {
-                ChainJoint::Slide { axis: joint.axis }
+        joints.push(match joint.kind {
+            JointKind::Spherical if freedom.index > 0 => continue,
+            JointKind::Spherical => ChainJoint::Ball,
+            JointKind::Prismatic => ChainJoint::Slide { axis: joint.axis },
+            JointKind::Cylindrical if freedom.index == 1 => ChainJoint::Slide { axis: joint.axis },
+            JointKind::Universal { second } if freedom.index == 1 => screw(second, 0.0),
+            JointKind::Helical { pitch } => screw(joint.axis, pitch),
+            JointKind::Revolute | JointKind::Cylindrical | JointKind::Universal { .. } => {
+                screw(joint.axis, 0.0)
             }
-            (JointKind::Universal { second }, 1) => screw(second, 0.0),
-            (JointKind::Helical { pitch }, _) => screw(joint.axis, pitch),
-            _ => screw(joint.axis, 0.0),
         });
     }
     joints

@@ -57,7 +57,7 @@ pub(super) mod writer;
 pub use problem::{FileErrors, Place, Places, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 
-pub(super) use reader::Table;
+pub(crate) use reader::{LARGEST, Reader, Table, Value};
 
 use super::Mechanism;
 use super::family::{
@@ -65,7 +65,6 @@ use super::family::{
 };
 use crate::chain::Branch;
 use crate::joint::Quantity;
-use reader::Reader;
 use toml::de::DeTable;
 
 /// The format that this version reads.
@@ -91,31 +90,39 @@ pub struct MechanismFile {
 /// # Errors
 /// Every problem of the file. Where the text is not TOML: the parser's problems only.
 pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
+    let (file, places) = document(text, "mechanism", read_document)?;
+    Ok(MechanismFile { places: places.in_text(text), ..file })
+}
+
+/// Reads a TOML text that should be a file of this kind, with `read` for what is in it.
+pub(crate) fn document<T>(
+    text: &str,
+    kind: &str,
+    read: impl FnOnce(&Table<'_>) -> Option<T>,
+) -> Result<T, FileErrors> {
     let reader = Reader::new();
     let (document, syntax) = DeTable::parse_recoverable(text);
     for error in &syntax {
         reader.report(error.span().map_or(0, |span| span.start), error.message());
     }
-    let file = if syntax.is_empty() {
-        read_document(&Table::new(document.get_ref(), 0, &reader))
-    } else {
-        None
-    };
+    let file =
+        if syntax.is_empty() { read(&Table::new(document.get_ref(), 0, &reader)) } else { None };
     match (reader.into_errors(text), file) {
-        (None, Some((file, places))) => Ok(MechanismFile { places: places.in_text(text), ..file }),
+        (None, Some(file)) => Ok(file),
         (Some(errors), _) => Err(errors),
         (None, None) => Err(FileErrors {
             problems: vec![Problem {
                 line: 1,
                 column: 1,
-                message: "not a mechanism, expected a mechanism file".into(),
+                message: format!("not a {kind}, expected a {kind} file"),
             }],
         }),
     }
 }
 
-/// The file, its places still to be told, and these as byte offsets.
-fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
+/// What every file begins with: its format, which must be the one that is read here; its name,
+/// empty where that is wrong; and its units, which from now on are those of the reader.
+pub(crate) fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
     let format = root.require("format", &format!("format = {FORMAT}"))?;
     let number = format.integer()?;
     if number != FORMAT {
@@ -123,12 +130,17 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
         return None;
     }
     let name = root
-        .require("name", "the mechanism's name")
+        .require("name", &format!("the {kind}'s name"))
         .and_then(|value| value.name())
         .unwrap_or_default();
-    let units = read_units(root);
-    root.reader.set_units(units);
+    root.reader.set_units(read_units(root));
+    Some(name)
+}
 
+/// The file, its places still to be told, and these as byte offsets.
+fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
+    let name = head(root, "mechanism")?;
+    let units = root.reader.units();
     let Some(family) = root.get("family") else {
         let (mechanism, noted) = joints::read(root, name);
         let places = Places::default();

@@ -13,38 +13,38 @@ use toml::de::{DeTable, DeValue};
 
 /// Larger than any machine, in metres or radians; beyond it squares and products lose their digits
 /// to overflow, and what is computed from them would no longer be a number.
-const LARGEST: f64 = 1e9;
+pub(crate) const LARGEST: f64 = 1e9;
 
 /// The problems found so far, and the units in force.
-pub(in crate::mechanism) struct Reader {
+pub(crate) struct Reader {
     problems: RefCell<Vec<(usize, String)>>,
     units: Cell<FileUnits>,
 }
 
 impl Reader {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { problems: RefCell::default(), units: Cell::default() }
     }
 
-    pub(in crate::mechanism) fn report(&self, at: usize, message: impl Into<String>) {
+    pub(crate) fn report(&self, at: usize, message: impl Into<String>) {
         self.problems.borrow_mut().push((at, message.into()));
     }
 
-    pub(in crate::mechanism) fn units(&self) -> FileUnits {
+    pub(crate) fn units(&self) -> FileUnits {
         self.units.get()
     }
 
-    pub(super) fn set_units(&self, units: FileUnits) {
+    pub(crate) fn set_units(&self, units: FileUnits) {
         self.units.set(units);
     }
 
     /// Whether a problem was reported at this place.
-    pub(super) fn has_problem(&self, at: usize) -> bool {
+    pub(crate) fn has_problem(&self, at: usize) -> bool {
         self.problems.borrow().iter().any(|&(other, _)| other == at)
     }
 
     /// The problems in the order of their places, if there are any.
-    pub(super) fn into_errors(self, text: &str) -> Option<FileErrors> {
+    pub(crate) fn into_errors(self, text: &str) -> Option<FileErrors> {
         let lines = Lines::new(text);
         let mut problems: Vec<_> = self
             .problems
@@ -63,11 +63,11 @@ impl Reader {
 
 /// One value, and the key that people know it by.
 #[derive(Clone, Copy)]
-pub(in crate::mechanism) struct Value<'a> {
+pub(crate) struct Value<'a> {
     value: &'a DeValue<'a>,
     key: &'a str,
     /// Byte offset.
-    pub(in crate::mechanism) at: usize,
+    pub(crate) at: usize,
     reader: &'a Reader,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Value<'a> {
     }
 
     /// Reports `KEY PROBLEM` here.
-    pub(in crate::mechanism) fn report(&self, problem: impl AsRef<str>) {
+    pub(crate) fn report(&self, problem: impl AsRef<str>) {
         self.reader.report(self.at, format!("`{}` {}", self.key, problem.as_ref()));
     }
 
@@ -95,11 +95,11 @@ impl<'a> Value<'a> {
         None
     }
 
-    pub(super) fn boolean(&self) -> Option<bool> {
+    pub(crate) fn boolean(&self) -> Option<bool> {
         self.value.as_bool().or_else(|| self.wrong_type("true or false"))
     }
 
-    pub(in crate::mechanism) fn string(&self) -> Option<&'a str> {
+    pub(crate) fn string(&self) -> Option<&'a str> {
         match self.value {
             DeValue::String(text) => Some(text),
             _ => self.wrong_type("a string"),
@@ -108,7 +108,7 @@ impl<'a> Value<'a> {
 
     /// A name: not empty, and without what commas, equals signs, quotes and line ends would break
     /// where names stand on command lines and in headers of tables.
-    pub(in crate::mechanism) fn name(&self) -> Option<&'a str> {
+    pub(crate) fn name(&self) -> Option<&'a str> {
         let name = self.string()?;
         let breaks = |c: char| c.is_control() || matches!(c, ',' | '=' | '"');
         if name.trim().is_empty() || name.trim() != name || name.contains(breaks) {
@@ -121,7 +121,7 @@ impl<'a> Value<'a> {
     }
 
     /// One of the given words.
-    pub(super) fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+    pub(crate) fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let text = self.string()?;
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
         if found.is_none() {
@@ -131,7 +131,7 @@ impl<'a> Value<'a> {
         found
     }
 
-    pub(super) fn integer(&self) -> Option<i64> {
+    pub(crate) fn integer(&self) -> Option<i64> {
         match self.value {
             DeValue::Integer(integer) => {
                 let value = i64::from_str_radix(integer.as_str(), integer.radix()).ok();
@@ -145,7 +145,7 @@ impl<'a> Value<'a> {
     }
 
     /// A finite number without a unit; integers are welcome.
-    fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         let value = match self.value {
             DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
             // Through i128, so that hexadecimal and the like are read too; then rounded to double.
@@ -166,7 +166,7 @@ impl<'a> Value<'a> {
     }
 
     /// An angle or a length, in the file's unit; SI is returned.
-    pub(in crate::mechanism) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
         let units = self.reader.units();
         let value = units.si(self.number()?, quantity);
         if value.abs() > LARGEST {
@@ -180,12 +180,12 @@ impl<'a> Value<'a> {
         Some(value)
     }
 
-    pub(in crate::mechanism) fn length(&self) -> Option<f64> {
+    pub(crate) fn length(&self) -> Option<f64> {
         self.quantity(Quantity::Length)
     }
 
     /// The values of an array; `expected` says what it should be.
-    pub(super) fn items(&self, expected: &str) -> Option<Vec<Value<'a>>> {
+    pub(crate) fn items(&self, expected: &str) -> Option<Vec<Value<'a>>> {
         match self.value {
             DeValue::Array(items) => {
                 Some(items.iter().map(|item| Value::new(self.key, item, self.reader)).collect())
@@ -214,13 +214,13 @@ impl<'a> Value<'a> {
     }
 
     /// A point of the plane or of space.
-    pub(in crate::mechanism) fn point<const N: usize>(&self) -> Option<[f64; N]> {
+    pub(crate) fn point<const N: usize>(&self) -> Option<[f64; N]> {
         let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
         self.each(expected, Self::length)
     }
 
     /// A direction: three numbers without a unit, of any size but zero; returned with size 1.
-    pub(super) fn direction(&self) -> Option<nalgebra::Unit<nalgebra::Vector3<f64>>> {
+    pub(crate) fn direction(&self) -> Option<nalgebra::Unit<nalgebra::Vector3<f64>>> {
         let [x, y, z] = self.each("a direction [x, y, z]", Value::number)?;
         let vector = nalgebra::Vector3::new(x, y, z);
         let largest = vector.amax();
@@ -233,7 +233,7 @@ impl<'a> Value<'a> {
     }
 
     /// `N` values, one a coordinate; a single one stands alone, without brackets.
-    pub(super) fn per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<f64>> {
+    pub(crate) fn per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<f64>> {
         if let [quantity] = quantities {
             return Some(vec![self.quantity(*quantity)?]);
         }
@@ -243,7 +243,7 @@ impl<'a> Value<'a> {
     }
 
     /// Lowest and highest value: one pair a coordinate; a single one stands alone.
-    pub(super) fn limits_per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<[f64; 2]>> {
+    pub(crate) fn limits_per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<[f64; 2]>> {
         if let [quantity] = quantities {
             return Some(vec![self.limits(*quantity)?]);
         }
@@ -254,7 +254,7 @@ impl<'a> Value<'a> {
     }
 
     /// Lowest and highest value, both included.
-    pub(in crate::mechanism) fn limits(&self, quantity: Quantity) -> Option<[f64; 2]> {
+    pub(crate) fn limits(&self, quantity: Quantity) -> Option<[f64; 2]> {
         let [low, high] = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
         if low > high {
             let units = self.reader.units();
@@ -268,15 +268,25 @@ impl<'a> Value<'a> {
         Some([low, high])
     }
 
+    /// Whether it is a table.
+    pub(crate) fn is_table(&self) -> bool {
+        matches!(self.value, DeValue::Table(_))
+    }
+
+    /// Whether it is an array.
+    pub(crate) fn is_array(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
+    }
+
     /// A table; every key that is not one of these is reported.
-    pub(in crate::mechanism) fn table(&self, keys: &[&str]) -> Option<Table<'a>> {
+    pub(crate) fn table(&self, keys: &[&str]) -> Option<Table<'a>> {
         let table = self.open_table()?;
         table.allow(keys);
         Some(table)
     }
 
     /// A table whose keys are still to be checked.
-    pub(super) fn open_table(&self) -> Option<Table<'a>> {
+    pub(crate) fn open_table(&self) -> Option<Table<'a>> {
         match self.value {
             DeValue::Table(entries) => Some(Table::new(entries, self.at, self.reader)),
             _ => self.wrong_type("a table"),
@@ -286,20 +296,20 @@ impl<'a> Value<'a> {
 
 /// A table.
 #[derive(Clone, Copy)]
-pub(in crate::mechanism) struct Table<'a> {
+pub(crate) struct Table<'a> {
     entries: &'a DeTable<'a>,
     /// Byte offset of its header, or of its opening brace.
-    pub(in crate::mechanism) at: usize,
-    pub(in crate::mechanism) reader: &'a Reader,
+    pub(crate) at: usize,
+    pub(crate) reader: &'a Reader,
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn new(entries: &'a DeTable<'a>, at: usize, reader: &'a Reader) -> Self {
+    pub(crate) fn new(entries: &'a DeTable<'a>, at: usize, reader: &'a Reader) -> Self {
         Self { entries, at, reader }
     }
 
     /// Reports every key that is not one of these.
-    pub(in crate::mechanism) fn allow(&self, keys: &[&str]) {
+    pub(crate) fn allow(&self, keys: &[&str]) {
         for key in self.entries.keys() {
             let name: &str = key.get_ref();
             if !keys.contains(&name) {
@@ -310,13 +320,13 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that may be left out.
-    pub(in crate::mechanism) fn get(&self, key: &str) -> Option<Value<'a>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         let (key, value) = self.entries.get_key_value(key)?;
         Some(Value::new(key.get_ref(), value, self.reader))
     }
 
     /// The value of a key that must be there; `expected` says what it stands for.
-    pub(in crate::mechanism) fn require(&self, key: &str, expected: &str) -> Option<Value<'a>> {
+    pub(crate) fn require(&self, key: &str, expected: &str) -> Option<Value<'a>> {
         let value = self.get(key);
         if value.is_none() {
             self.reader.report(self.at, format!("`{key}` is missing, expected {expected}"));
@@ -325,12 +335,12 @@ impl<'a> Table<'a> {
     }
 
     /// Where a problem with a key belongs: at its value, or at the table where it is missing.
-    pub(in crate::mechanism) fn place_of(&self, key: &str) -> usize {
+    pub(crate) fn place_of(&self, key: &str) -> usize {
         self.get(key).map_or(self.at, |value| value.at)
     }
 
     /// The tables of an array of tables; empty where the key is missing.
-    pub(in crate::mechanism) fn tables(&self, key: &str, keys: &[&str]) -> Vec<Table<'a>> {
+    pub(crate) fn tables(&self, key: &str, keys: &[&str]) -> Vec<Table<'a>> {
         let Some(value) = self.get(key) else { return Vec::new() };
         let Some(items) = value.items(&format!("an array of tables [[{key}]]")) else {
             return Vec::new();
@@ -340,7 +350,7 @@ impl<'a> Table<'a> {
 }
 
 /// Names of one kind of thing, each to be used once.
-pub(super) struct UniqueNames {
+pub(crate) struct UniqueNames {
     what: &'static str,
     seen: HashSet<String>,
     /// Names that other things have, and what these are.
@@ -348,7 +358,7 @@ pub(super) struct UniqueNames {
 }
 
 impl UniqueNames {
-    pub(super) fn new(what: &'static str) -> Self {
+    pub(crate) fn new(what: &'static str) -> Self {
         Self { what, seen: HashSet::new(), reserved: HashMap::new() }
     }
 
@@ -358,7 +368,7 @@ impl UniqueNames {
     }
 
     /// Reports a name that was there before, or that is reserved.
-    pub(super) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
+    pub(crate) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
         let what = self.what;
         if let Some(other) = self.reserved.get(name) {
             let problem = format!("{name:?} is the name of {other}, expected another for {what}");
@@ -371,6 +381,6 @@ impl UniqueNames {
 
 /// The values, if there are all. Every one is read before the first failure ends it: each has its
 /// own problem to report.
-pub(super) fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+pub(crate) fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     read.collect::<Vec<_>>().into_iter().collect()
 }

@@ -1,0 +1,59 @@
+//! Motions, by path or by the name of a shipped example.
+
+use crate::failure::Failure;
+use crate::load;
+use opm_core::manipulator::Manipulator;
+use opm_core::motion::{Motion, examples, file, table};
+use std::path::{Path, PathBuf};
+
+/// Longest table of poses: some millions of lines.
+const LONGEST: u64 = 1 << 30;
+
+/// A motion that was read.
+pub struct LoadedMotion {
+    /// What messages call it: the path or the name as given.
+    pub label: String,
+    /// The file's own name, to attach it under.
+    pub file_name: String,
+    /// Its path; `None` for a shipped example.
+    pub path: Option<PathBuf>,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub motion: Motion,
+}
+
+/// Reads a motion: a table of poses where the name ends in `.csv`, a motion file otherwise. An existing
+/// path wins over an example of the same name.
+pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Failure> {
+    let label = given.display().to_string();
+    let source = match load::text(given, LONGEST, "motion file")? {
+        Some(text) => {
+            let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
+            (text, name, Some(given.to_owned()))
+        }
+        None => {
+            let example = examples::find(&label).ok_or_else(|| unknown(given, &label))?;
+            (example.text.to_owned(), format!("{}.toml", example.name), None)
+        }
+    };
+    let (text, file_name, path) = source;
+    let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
+    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let motion =
+        if table { table::read(&text, &stem, manipulator) } else { file::read(&text, manipulator) };
+    let motion = motion.map_err(|errors| Failure::Work(errors.in_file(&label)))?;
+    Ok(LoadedMotion { label, file_name, path, text, motion })
+}
+
+fn unknown(given: &Path, label: &str) -> Failure {
+    let names: Vec<_> = examples::MOTIONS.iter().map(|example| example.name).collect();
+    // A bare word is more likely a name than a path.
+    if given.extension().is_none() && given.components().count() == 1 {
+        let names = names.join(", ");
+        return Failure::Work(format!(
+            "{label}: no such file, and no such motion; there are {names}"
+        ));
+    }
+    Failure::Work(format!("{label}: no such file"))
+}

@@ -1,0 +1,134 @@
+//! Which slices are shown: what is seen, what is held, what differs from tile to tile.
+
+use super::layout::{Coordinate, Layout};
+use crate::args::PlotArgs;
+use crate::failure::Failure;
+use opm_core::joint::Quantity;
+use opm_workspace::Axis;
+
+/// Most slices that --slice may ask for.
+const MOST: usize = 36;
+/// Values of the grid and of home that differ by less are the same.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a coordinate has several values on its grid.
+pub fn several(coordinate: &Coordinate) -> bool {
+    coordinate.axis.as_ref().is_some_and(|axis| axis.count > 1)
+}
+
+/// The first two of the recording's axes that vary.
+pub fn fast(layout: &Layout) -> [usize; 2] {
+    let varies = |number: &&usize| {
+        layout.coordinates[**number].axis.as_ref().is_none_or(|axis| axis.count > 1)
+    };
+    let mut order: Vec<usize> = layout.axes.iter().filter(varies).copied().collect();
+    order.extend(layout.axes.iter().filter(|number| !varies(number)));
+    [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
+}
+
+/// The number of the grid value that is nearest to an SI value.
+pub fn nearest(axis: &Axis, value: f64) -> u64 {
+    let share = (value - axis.min) / (axis.max - axis.min).max(f64::MIN_POSITIVE);
+    // A cast saturates.
+    ((share * (axis.count - 1) as f64).round() as u64).min(axis.count - 1)
+}
+
+/// The value nearest to home; of what has none, the middle.
+pub fn home(coordinate: &Coordinate) -> u64 {
+    match (&coordinate.axis, coordinate.home) {
+        (Some(axis), Some(home)) => nearest(axis, home),
+        (Some(axis), None) => axis.count / 2,
+        (None, _) => 0,
+    }
+}
+
+/// Whether a value of the grid is as near to home as any could be.
+pub fn is_home(coordinate: &Coordinate, value: u64) -> bool {
+    let (Some(axis), Some(home)) = (&coordinate.axis, coordinate.home) else { return false };
+    let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
+    let slack = ROUNDING * axis.max.abs().max(axis.min.abs()).max(1.0);
+    (axis.value(value) - home).abs() <= 0.5 * step + slack
+}
+
+/// What `--slice` asks for: coordinates with numbers of their grids' values.
+pub fn asked(
+    layout: &Layout,
+    args: &PlotArgs,
+    view: [usize; 2],
+) -> Result<Vec<(usize, Vec<u64>)>, Failure> {
+    let wrong = |problem: String| Err(Failure::flag("--slice", problem));
+    let mut asked: Vec<(usize, Vec<u64>)> = vec![];
+    for given in &args.slice {
+        let name = &given.name;
+        let Some(number) = layout.find(name) else {
+            if layout.lost.contains(name) {
+                return wrong(format!("{name} is not stored with the points of this recording"));
+            }
+            return wrong(format!("{name:?} is none of {}", layout.names()));
+        };
+        if view.contains(&number) {
+            return wrong(format!("{name} is an axis of the slices; --values chooses others"));
+        }
+        let c = &layout.coordinates[number];
+        let Some(axis) = &c.axis else {
+            return wrong(format!("{name} is on no grid"));
+        };
+        let value = match c.quantity {
+            Some(quantity) => given.value.value_of(name, quantity),
+            None => given.value.value_of(name, Quantity::Length),
+        };
+        let value = value.map_err(|error| Failure::flag("--slice", error))?;
+        let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
+        if value < axis.min - 0.5 * step || value > axis.max + 0.5 * step {
+            let (min, max) = (axis.min, axis.max);
+            return wrong(format!("{name} = {value}: the grid goes from {min} to {max}"));
+        }
+        let value = nearest(axis, value);
+        match asked.iter_mut().find(|(known, _)| *known == number) {
+            Some((_, values)) if values.contains(&value) => {}
+            Some((_, values)) => values.push(value),
+            None => asked.push((number, vec![value])),
+        }
+    }
+    if let Some((number, values)) = asked.iter().find(|(_, values)| values.len() > MOST) {
+        let name = &layout.coordinates[*number].name;
+        return wrong(format!("{} values of {name}, expected at most {MOST}", values.len()));
+    }
+    Ok(asked)
+}
+
+/// The coordinate that has another value in each tile: the one that was given several, or one that
+/// was given none, the cloud's third axis before others.
+pub fn varied(
+    layout: &Layout,
+    free: &[usize],
+    asked: &[(usize, Vec<u64>)],
+) -> Result<Option<usize>, Failure> {
+    let several: Vec<usize> = asked.iter().filter(|a| a.1.len() > 1).map(|a| a.0).collect();
+    if let [a, b, ..] = several[..] {
+        let [a, b] = [a, b].map(|number| &layout.coordinates[number].name);
+        let problem = format!("several values of both {a} and {b}, expected of one coordinate");
+        return Err(Failure::flag("--slice", problem));
+    }
+    if let [one] = several[..] {
+        return Ok(Some(one));
+    }
+    let open = || free.iter().copied().filter(|n| !asked.iter().any(|(known, _)| known == n));
+    // The third axis of the cloud, or what its colours show.
+    let color = layout.colored.as_deref().and_then(|name| layout.find(name));
+    let third = [layout.axes.get(2).copied(), color].into_iter().flatten();
+    let third = third.into_iter().find(|third| open().any(|number| number == *third));
+    let count = |number: &usize| layout.coordinates[*number].axis.as_ref().map_or(0, |a| a.count);
+    Ok(third.or_else(|| open().max_by_key(count)))
+}
+
+/// Tiles in a row.
+pub fn columns(tiles: usize) -> usize {
+    match tiles {
+        0..=3 => tiles.max(1),
+        4 => 2,
+        5 | 6 | 9 => 3,
+        7 | 8 => 4,
+        _ => tiles.div_ceil(4).min(6),
+    }
+}

@@ -1,0 +1,147 @@
+//! What is known of the points of a recorded workspace.
+
+use super::source::Source;
+use crate::record::together;
+use opm_core::joint::Quantity;
+use opm_mcap::cloud::POSITION_FIELDS;
+use opm_workspace::{Axis, Grid};
+
+/// What a recorded workspace is made of.
+pub struct Layout {
+    /// What can be known of a point: task coordinates, stored values.
+    pub coordinates: Vec<Coordinate>,
+    /// The whole grid, in the order of the task coordinates.
+    pub grid: Vec<(Quantity, Axis)>,
+    /// Names of task coordinates of which a point's value is not stored.
+    pub lost: Vec<String>,
+    /// What x, y and z of the cloud are, by their numbers among the coordinates.
+    pub axes: Vec<usize>,
+    /// Names of the values stored with every point.
+    pub scalars: Vec<String>,
+    /// What the recording's colours show.
+    pub colored: Option<String>,
+    /// The same, if it is stored with the points, and its values at the ends of the colours.
+    pub color: Option<(String, [f64; 2])>,
+}
+
+/// One coordinate of the points.
+pub struct Coordinate {
+    pub name: String,
+    pub quantity: Option<Quantity>,
+    /// SI.
+    pub home: Option<f64>,
+    /// Its values on the grid, SI; `None` of the platform's point, which is on no grid.
+    pub axis: Option<Axis>,
+    pub place: Place,
+}
+
+/// Where the value of a point's coordinate is found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In a field of the cloud.
+    Field(String),
+    /// In the number of the slice, divided by this.
+    Slice(u64),
+}
+
+impl Layout {
+    pub fn new(source: &Source<'_>) -> Self {
+        let run = source.metadata("run");
+        let clouds = source.metadata("clouds");
+        let list = |key: &str| -> Vec<String> {
+            let text = clouds.get(key).map_or("", |text| text);
+            text.split(',').filter(|name| !name.is_empty()).map(str::to_owned).collect()
+        };
+        let scalars = list("scalars");
+        let names = match list("axes") {
+            none if none.is_empty() => POSITION_FIELDS.map(str::to_owned).into(),
+            names => names,
+        };
+        let field = |name: &str| {
+            let axis = names.iter().position(|axis| axis == name);
+            let axis = axis.and_then(|i| POSITION_FIELDS.get(i));
+            let scalar = scalars.iter().find(|scalar| *scalar == name);
+            axis.map(|field| (*field).to_owned()).or_else(|| scalar.cloned())
+        };
+        let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
+        let mut layout = Self {
+            coordinates: vec![],
+            grid: vec![],
+            lost: vec![],
+            axes: vec![],
+            scalars: scalars.clone(),
+            colored: clouds.get("color").cloned(),
+            color: None,
+        };
+
+        let manipulator = source.manipulator();
+        let grid = manipulator.and_then(|manipulator| {
+            let axes = manipulator.task_coordinates().iter().map(|c| axis(c.name));
+            Grid::new(manipulator, axes.collect::<Option<_>>()?).ok()
+        });
+        if let (Some(manipulator), Some(grid)) = (manipulator, grid) {
+            let together = together(&grid);
+            let mut product = 1;
+            for (i, (c, axis)) in manipulator.task_coordinates().iter().zip(grid.axes()).enumerate()
+            {
+                layout.grid.push((c.quantity, axis.clone()));
+                // The slices of the first axes of the upper section may have been recorded as one.
+                let place = if i < grid.lower() {
+                    field(c.name).map(Place::Field)
+                } else {
+                    let slice = (product >= together).then(|| Place::Slice(product / together));
+                    product *= axis.count;
+                    slice.or_else(|| field(c.name).map(Place::Field))
+                };
+                let Some(place) = place else {
+                    if axis.count > 1 {
+                        layout.lost.push(c.name.to_owned());
+                    }
+                    continue;
+                };
+                layout.coordinates.push(Coordinate {
+                    name: c.name.to_owned(),
+                    quantity: Some(c.quantity),
+                    home: Some(c.home),
+                    axis: Some(axis.clone()),
+                    place,
+                });
+            }
+        }
+        // The platform's point; or of an unknown mechanism, the axes as they are called.
+        for (name, field) in names.iter().zip(POSITION_FIELDS) {
+            if layout.find(name).is_none() {
+                layout.coordinates.push(Coordinate {
+                    name: name.clone(),
+                    quantity: name.starts_with("tip.").then_some(Quantity::Length),
+                    home: None,
+                    axis: axis(name),
+                    place: Place::Field(field.to_owned()),
+                });
+            }
+        }
+        layout.axes = names.iter().filter_map(|name| layout.find(name)).collect();
+        let number = |key: &str| clouds.get(key).and_then(|text| text.parse().ok());
+        layout.color = clouds
+            .get("color")
+            .filter(|name| scalars.contains(name))
+            .and_then(|name| Some((name.clone(), [number("color_min")?, number("color_max")?])));
+        layout
+    }
+
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.coordinates.iter().position(|c| c.name == name)
+    }
+
+    pub fn names(&self) -> String {
+        self.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A grid axis from the metadata: its ends and the number of its values.
+fn axis(name: &str, text: &str) -> Option<Axis> {
+    let mut parts = text.split(':');
+    let mut number = || parts.next()?.parse::<f64>().ok().filter(|number| number.is_finite());
+    let (min, max, count) = (number()?, number()?, number()?);
+    (min <= max && (1.0..=1e15).contains(&count)).then(|| Axis::new(name, min, max, count as u64))
+}

@@ -1,0 +1,327 @@
+//! The picture of a motion: everything over time.
+
+use super::source::{Rate, Source, Stop};
+use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
+use super::violations::{listed, violations};
+use super::workspace::value_label;
+use super::{PanelName, drawn};
+use crate::args::PlotArgs;
+use crate::failure::Failure;
+use crate::text::count;
+use opm_core::joint::Quantity;
+use opm_mcap::Flat;
+use opm_mcap::trajectory::VALID;
+use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
+use std::collections::BTreeMap;
+
+/// Nanoseconds in a second.
+const SECOND: f64 = 1e9;
+
+pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
+    if let Some(slices) = args.slice.first() {
+        let problem = format!("{}: {} is no workspace", slices.name, source.label);
+        return Err(Failure::flag("--slice", problem));
+    }
+    let topics = || source.recording.topics.iter();
+    if !topics().any(|topic| TOPICS.iter().any(|known| known.name == topic.name)) {
+        let mut names: Vec<&str> = topics().map(|topic| &*topic.name).collect();
+        names.truncate(8);
+        let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+        return Err(Failure::Work(format!(
+            "{}: nothing to draw: it holds {found}, expected /workspace/slices or /joints, as opm \
+             records them",
+            source.label
+        )));
+    }
+    let wanted = Wanted::new(args)?;
+    let mut motion = Motion::new(source);
+    source.messages(|message| {
+        let known = TOPICS.iter().position(|topic| topic.name == message.topic);
+        if let (Some(topic), Some(flat)) = (known, message.flat) {
+            let mut values = std::mem::take(&mut motion.values);
+            message.values(&mut values)?;
+            motion.add(topic, flat, message.time, &values);
+            motion.values = values;
+        }
+        Ok::<(), Stop>(())
+    })?;
+    motion.finish();
+    if motion.instants == 0 {
+        return Err(Failure::Work(format!("{}: no sample to draw", source.label)));
+    }
+    let figure = motion.figure(&wanted, args)?;
+    drawn(args, |size| figure.draw(size))
+}
+
+/// What `--panels` asks for.
+struct Wanted {
+    groups: Option<Vec<Group>>,
+    rates: Vec<Rate>,
+}
+
+impl Wanted {
+    fn new(args: &PlotArgs) -> Result<Self, Failure> {
+        let (mut groups, mut rates) = (vec![], vec![]);
+        for panel in &args.panels {
+            match panel {
+                PanelName::Pose => groups.push(Group::Pose),
+                PanelName::Imaginary => groups.push(Group::Imaginary),
+                PanelName::Actuated => groups.extend([Group::Actuated, Group::Joints]),
+                PanelName::Passive => groups.push(Group::Passive),
+                PanelName::Condition => groups.extend([Group::Condition, Group::Singularity]),
+                PanelName::Positions => rates.push(Rate::Position),
+                PanelName::Velocities => rates.push(Rate::Velocity),
+                PanelName::Accelerations => rates.push(Rate::Acceleration),
+                PanelName::Slices => {
+                    let problem = format!("{} are of a workspace, not of a motion", panel.name());
+                    return Err(Failure::flag("--panels", problem));
+                }
+            }
+        }
+        if rates.is_empty() {
+            rates = vec![Rate::Position, Rate::Velocity];
+        }
+        Ok(Self { groups: (!groups.is_empty()).then_some(groups), rates })
+    }
+
+    /// Without --panels, passive joints are drawn where --values names them.
+    fn has(&self, group: Group, args: &PlotArgs) -> bool {
+        match &self.groups {
+            Some(groups) => groups.contains(&group),
+            None => group != Group::Passive || !args.values.is_empty(),
+        }
+    }
+}
+
+/// Everything over time.
+struct Motion<'a> {
+    source: &'a Source<'a>,
+    /// Time of the first message, in nanoseconds.
+    start: u64,
+    /// Time of the motion at that message, in seconds.
+    offset: f64,
+    /// The traces of every topic, once it has been seen.
+    traces: Vec<Option<Vec<Trace>>>,
+    /// Time of the messages that are being read.
+    now: Option<u64>,
+    /// Topics with a message at that time.
+    heard: [bool; TOPICS.len()],
+    instants: u64,
+    end: u64,
+    invalid: Vec<[f64; 2]>,
+    valid: bool,
+    values: Vec<f64>,
+}
+
+impl<'a> Motion<'a> {
+    fn new(source: &'a Source<'a>) -> Self {
+        let run = source.metadata("run");
+        let offset =
+            run.get("start").and_then(|start| start.parse().ok()).filter(|s: &f64| s.is_finite());
+        Self {
+            source,
+            offset: offset.unwrap_or(0.0),
+            start: source.recording.time_range.map_or(0, |range| range[0]),
+            traces: TOPICS.iter().map(|_| None).collect(),
+            now: None,
+            heard: [false; TOPICS.len()],
+            instants: 0,
+            end: 0,
+            invalid: vec![],
+            valid: true,
+            values: vec![],
+        }
+    }
+
+    fn seconds(&self, time: u64) -> f64 {
+        self.offset + time.saturating_sub(self.start) as f64 / SECOND
+    }
+
+    fn add(&mut self, topic: usize, flat: &Flat, time: u64, values: &[f64]) {
+        if self.now != Some(time) {
+            self.finish();
+            self.now = Some(time);
+            self.instants += 1;
+            self.end = time;
+        }
+        self.heard[topic] = true;
+        let seconds = self.seconds(time);
+        if TOPICS[topic].kind == TopicKind::Condition {
+            let valid = flat.names.iter().position(|name| name == VALID);
+            self.judge(seconds, valid.is_none_or(|valid| values[valid] != 0.0));
+        }
+        let source = self.source;
+        let traces = self.traces[topic].get_or_insert_with(|| traces(source, TOPICS[topic], flat));
+        let values = flat.names.iter().zip(values).filter(|(name, _)| !skipped(topic, name));
+        for (trace, (_, value)) in traces.iter_mut().zip(values) {
+            trace.curve.push(seconds, value / trace.factor);
+        }
+    }
+
+    /// Ends an instant. What had values before and has none now has a gap.
+    fn finish(&mut self) {
+        let Some(time) = self.now.take() else { return };
+        let seconds = self.seconds(time);
+        for (traces, heard) in self.traces.iter_mut().zip(&mut self.heard) {
+            if !std::mem::take(heard) {
+                for trace in traces.iter_mut().flatten() {
+                    trace.curve.push(seconds, f64::NAN);
+                }
+            }
+        }
+    }
+
+    fn judge(&mut self, seconds: f64, valid: bool) {
+        match (valid, self.valid, self.invalid.last_mut()) {
+            (false, false, Some(span)) => span[1] = seconds,
+            (false, ..) => self.invalid.push([seconds; 2]),
+            (true, ..) => {}
+        }
+        self.valid = valid;
+    }
+
+    fn figure(self, wanted: &Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
+        let seconds = self.seconds(self.end);
+        let heading = self.heading(seconds - self.offset);
+        let Self { source, traces, mut invalid, offset, .. } = self;
+        let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
+        check_names(args, &all)?;
+        let violations = violations(source);
+        let mut notes = listed(&violations);
+        // Between samples, too, where the recording tells.
+        invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
+        if !invalid.is_empty() {
+            notes.insert(0, "Shaded: the mechanism cannot follow.".to_owned());
+        }
+        if let Some(thinned) = all.iter().find(|trace| trace.curve.is_thinned()) {
+            notes.push(format!(
+                "Each curve is drawn by the extremes of its {} samples in thousands of spans of time.",
+                count(thinned.curve.samples())
+            ));
+        }
+        // Rows in order; in each, positions and what follows from them.
+        let mut rows: BTreeMap<(Group, u8), Vec<Trace>> = BTreeMap::new();
+        for trace in all {
+            let named = args.values.is_empty() || args.values.contains(&trace.name);
+            if named && wanted.has(trace.group, args) && wanted.rates.contains(&trace.rate) {
+                let order = match trace.quantity {
+                    Some(Quantity::Length) => 0,
+                    Some(Quantity::Angle) => 1,
+                    None => 2,
+                };
+                rows.entry((trace.group, order)).or_default().push(trace);
+            }
+        }
+        if rows.is_empty() {
+            let label = &source.label;
+            return Err(Failure::Work(format!(
+                "{label}: it holds none of what --panels and --values ask for"
+            )));
+        }
+        // Columns that nothing is in are left out.
+        let rates: Vec<Rate> = [Rate::Position, Rate::Velocity, Rate::Acceleration]
+            .into_iter()
+            .filter(|rate| rows.values().flatten().any(|trace| trace.rate == *rate))
+            .collect();
+        let rows = rows.into_iter().map(|((group, _), traces)| row(source, group, traces, &rates));
+        let notes = [notes, source.notes()].concat();
+        Ok(TimeFigure {
+            heading: Heading { notes, ..heading },
+            time: [offset, seconds],
+            rows: rows.collect(),
+            invalid,
+            marks: violations.iter().map(|violation| violation.start).collect(),
+        })
+    }
+
+    fn heading(&self, seconds: f64) -> Heading {
+        let run = self.source.metadata("run");
+        let mut parts = vec![];
+        for (key, label) in
+            [("motion", "motion "), ("mode", "mode "), ("input", "input "), ("branch", "branch ")]
+        {
+            if let Some(value) = run.get(key).filter(|value| !value.is_empty()) {
+                parts.push(format!("{label}{value}"));
+            }
+        }
+        parts.push(format!("{} samples in {} s", count(self.instants), value_label(seconds)));
+        let lines = vec![format!("{}; {}", parts.join(", "), self.source.units_line())];
+        Heading { title: self.source.title(), lines, notes: vec![] }
+    }
+}
+
+fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
+    let mut known: Vec<&str> = all.iter().map(|trace| &*trace.name).collect();
+    for name in &args.values {
+        if !known.contains(&&**name) {
+            let mut seen = Vec::new();
+            known.retain(|name| {
+                !seen.contains(name) && {
+                    seen.push(*name);
+                    true
+                }
+            });
+            let problem = format!("{name:?} is none of {}", known.join(", "));
+            return Err(Failure::flag("--values", problem));
+        }
+    }
+    Ok(())
+}
+
+fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) -> Row {
+    let mut names: Vec<String> = Vec::new();
+    let mut columns: Vec<Vec<Trace>> = rates.iter().map(|_| vec![]).collect();
+    for trace in traces {
+        if !names.contains(&trace.name) {
+            names.push(trace.name.clone());
+        }
+        if let Some(column) = rates.iter().position(|rate| *rate == trace.rate) {
+            columns[column].push(trace);
+        }
+    }
+    let number = |name: &str| names.iter().position(|known| known == name).unwrap_or(0);
+    let panel = |traces: Vec<Trace>| {
+        let (quantity, rate) = traces.first().map(|trace| (trace.quantity, trace.rate))?;
+        let (Measure { name, unit }, _) =
+            source.measure(axis(group, quantity, rate), quantity, rate);
+        let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
+        let scale = match group {
+            Group::Condition => Scale::Logarithmic,
+            _ => Scale::Linear,
+        };
+        Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves })
+    };
+    let panels = columns.into_iter().map(panel).collect();
+    Row { names, panels }
+}
+
+/// What an axis is called.
+fn axis(group: Group, quantity: Option<Quantity>, rate: Rate) -> &'static str {
+    match (rate, quantity) {
+        (Rate::Position, Some(Quantity::Angle)) => "angle",
+        (Rate::Position, Some(Quantity::Length)) => "length",
+        (Rate::Position, None) if group == Group::Condition => "condition",
+        (Rate::Position, None) => "value",
+        (Rate::Velocity, _) => "velocity",
+        (Rate::Acceleration, _) => "acceleration",
+    }
+}
+
+fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
+    let what = match (group, quantity) {
+        (Group::Pose, Some(Quantity::Length)) if rate == Rate::Position => "Platform position",
+        (Group::Pose, Some(Quantity::Length)) => "Platform",
+        (Group::Pose, _) => "Platform orientation",
+        (Group::Imaginary, _) => "Imaginary joints",
+        (Group::Actuated, _) => "Actuated joints",
+        (Group::Passive, _) => "Passive joints",
+        (Group::Joints, _) => "Joints",
+        (Group::Condition, _) => "Condition number",
+        (Group::Singularity, _) => "Singularity measures",
+    };
+    match rate {
+        Rate::Position => what.to_owned(),
+        Rate::Velocity => format!("{what}, velocity"),
+        Rate::Acceleration => format!("{what}, acceleration"),
+    }
+}

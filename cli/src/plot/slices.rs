@@ -1,0 +1,347 @@
+//! Slices of a workspace: what is reachable while all but two coordinates are held.
+
+use super::choice::{asked, columns, fast, home, is_home, nearest, several, varied};
+use super::layout::{Layout, Place};
+use super::source::{Rate, Source, Stop};
+use super::workspace::value_label;
+use crate::args::PlotArgs;
+use crate::failure::Failure;
+use opm_mcap::Cloud as Points;
+use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
+use opm_plot::color::Map;
+use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
+
+/// Most slices that are chosen without --slice.
+const CHOSEN: u64 = 8;
+/// Share of the colours that the slices take: the brightest is left to no one.
+const COLORS: f64 = 0.95;
+
+/// Slices in the making.
+pub struct Slices<'a> {
+    layout: &'a Layout,
+    view: [Seen; 2],
+    /// Coordinates that are held, each at a value of its grid.
+    held: Vec<(usize, u64)>,
+    /// The coordinate that has another value in each tile.
+    varied: Option<usize>,
+    /// The tiles, by the value of the varied coordinate.
+    tiles: Vec<(u64, Content)>,
+    /// What colours the cells: the field, its ends, by what it is divided.
+    color: Option<Colored>,
+    /// The place of home, if it is in the picture.
+    home: Option<[f64; 2]>,
+}
+
+struct Colored {
+    field: String,
+    measure: Measure,
+    factor: f64,
+    range: [f64; 2],
+}
+
+/// A coordinate that is an axis of the picture.
+struct Seen {
+    number: usize,
+    measure: Measure,
+    factor: f64,
+}
+
+impl<'a> Slices<'a> {
+    /// Decides what to show, which may take reading the recording.
+    pub fn new(
+        layout: &'a Layout,
+        source: &Source<'_>,
+        args: &PlotArgs,
+        view: Option<[usize; 2]>,
+    ) -> Result<Self, Failure> {
+        let view = view.unwrap_or_else(|| fast(layout));
+        let asked = asked(layout, args, view)?;
+        let free: Vec<usize> = (0..layout.coordinates.len())
+            .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
+            .collect();
+        let varied = varied(layout, &free, &asked)?;
+        let held: Vec<(usize, u64)> = free
+            .iter()
+            .filter(|number| Some(**number) != varied)
+            .map(|&number| {
+                let given = asked.iter().find(|(asked, _)| *asked == number);
+                let value = given.map_or_else(|| home(&layout.coordinates[number]), |g| g.1[0]);
+                (number, value)
+            })
+            .collect();
+        let seen = |number: usize| {
+            let c = &layout.coordinates[number];
+            let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
+            Seen { number, measure, factor }
+        };
+        let color = layout.color.as_ref().map(|(field, range)| {
+            let (measure, factor) =
+                source.measure(field, source.joint_quantity(field), Rate::Position);
+            let range = range.map(|value| value / factor);
+            Colored { field: field.clone(), measure, factor, range }
+        });
+        let mut slices =
+            Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
+        let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
+            (None, _) => vec![0],
+            (_, Some((_, values))) => values,
+            (Some(number), None) => slices.spread(source, number)?,
+        };
+        let extents = &source.recording.extents;
+        let content = |slices: &Self| slices.content(extents);
+        slices.tiles = values.into_iter().map(|value| (value, content(&slices))).collect();
+        let [a, b] = view.map(|number| &layout.coordinates[number]);
+        slices.home =
+            a.home.zip(b.home).map(|(a, b)| [a / slices.view[0].factor, b / slices.view[1].factor]);
+        Ok(slices)
+    }
+
+    /// Values of a coordinate, evenly spread over those at which anything is reachable.
+    fn spread(&self, source: &Source<'_>, varied: usize) -> Result<Vec<u64>, Failure> {
+        let mut ends: Option<[u64; 2]> = None;
+        let mut extend = |value: u64| {
+            let [first, last] = ends.unwrap_or([value; 2]);
+            ends = Some([first.min(value), last.max(value)]);
+        };
+        source.messages(|message| {
+            if message.topic != SLICES_TOPIC {
+                return Ok::<(), Stop>(());
+            }
+            if let (Some(cloud), Some(slice)) = (message.cloud()?, slice_at(message.time)) {
+                self.each(&cloud, slice, Some(varied), |_, value| extend(value));
+            }
+            Ok(())
+        })?;
+        let Some([first, last]) = ends else { return Ok(vec![]) };
+        // Equal steps from home, if that is among them.
+        let step = (last - first).div_ceil(CHOSEN - 1).max(1);
+        let home = home(&self.layout.coordinates[varied]);
+        let start =
+            if (first..=last).contains(&home) { first + (home - first) % step } else { first };
+        Ok((start..=last).step_by(step as usize).collect())
+    }
+
+    /// An empty tile.
+    fn content(&self, extents: &[opm_mcap::Extent]) -> Content {
+        let [a, b] = &self.view;
+        let spacing = |seen: &Seen| {
+            let axis = self.layout.coordinates[seen.number].axis.as_ref()?;
+            let ends = [axis.min, axis.max].map(|value| value / seen.factor);
+            Some(Spacing::between(ends, usize::try_from(axis.count).ok()?))
+        };
+        if let (Some(x), Some(y)) = (spacing(a), spacing(b)) {
+            let paint = match &self.color {
+                Some(color) => Paint::Values(Map::Viridis, color.range),
+                None => Paint::Plain([0; 3]),
+            };
+            return Content::Cells(Cells::new(x, y, self.color.as_ref().map(|_| ())), paint);
+        }
+        let range = |seen: &Seen| {
+            let field = match &self.layout.coordinates[seen.number].place {
+                Place::Field(field) => extents.iter().find(|extent| extent.field == *field),
+                Place::Slice(_) => None,
+            };
+            field.map_or([0.0, 1.0], |e| [e.min / seen.factor, e.max / seen.factor])
+        };
+        Content::Cloud(Cloud::new(range(a), range(b)))
+    }
+
+    /// Adds the points of a message of slice `slice`.
+    pub fn add(&mut self, cloud: &Points<'_>, slice: u64) {
+        let mut tiles = std::mem::take(&mut self.tiles);
+        let [a, b] = &self.view;
+        let value = |seen: &Seen| self.values(cloud, slice, seen.number);
+        let (Some(x), Some(y)) = (value(a), value(b)) else {
+            self.tiles = tiles;
+            return;
+        };
+        let color = self.color.as_ref().and_then(|color| {
+            let column: Vec<f64> = cloud.column(&color.field)?.map(|v| v / color.factor).collect();
+            Some(column)
+        });
+        self.each(cloud, slice, self.varied, |point, value| {
+            let Some((_, content)) = tiles.iter_mut().find(|tile| tile.0 == value) else { return };
+            let (x, y) = (x.get(point) / a.factor, y.get(point) / b.factor);
+            match content {
+                Content::Cells(cells, _) => {
+                    let value = color.as_ref().map_or(0.0, |color| color[point]);
+                    cells.push(x, y, value);
+                }
+                Content::Cloud(cloud) => cloud.push(x, y),
+                Content::Histogram(_) => {}
+            }
+        });
+        self.tiles = tiles;
+    }
+
+    /// Visits the points at which the held coordinates have their values, with the number of the
+    /// value that the varied one has.
+    fn each(
+        &self,
+        cloud: &Points<'_>,
+        slice: u64,
+        varied: Option<usize>,
+        mut visit: impl FnMut(usize, u64),
+    ) {
+        let mut held = vec![];
+        for &(number, wanted) in &self.held {
+            match self.numbers(cloud, slice, number) {
+                Some(Numbers::All(found)) if found == wanted => {}
+                Some(Numbers::Each(found)) => held.push((found, wanted)),
+                _ => return,
+            }
+        }
+        let varied = match varied {
+            None => Numbers::All(0),
+            Some(number) => match self.numbers(cloud, slice, number) {
+                Some(numbers) => numbers,
+                None => return,
+            },
+        };
+        for point in 0..cloud.len() {
+            if held.iter().all(|(found, wanted)| found[point] == *wanted) {
+                match &varied {
+                    Numbers::All(value) => visit(point, *value),
+                    Numbers::Each(values) => visit(point, values[point]),
+                }
+            }
+        }
+    }
+
+    /// Which value of its grid a coordinate has at every point.
+    fn numbers(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Numbers> {
+        let coordinate = &self.layout.coordinates[number];
+        let axis = coordinate.axis.as_ref()?;
+        match &coordinate.place {
+            Place::Slice(divisor) => Some(Numbers::All(slice / divisor % axis.count)),
+            Place::Field(field) => {
+                let column = cloud.column(field)?;
+                Some(Numbers::Each(column.map(|value| nearest(axis, value)).collect()))
+            }
+        }
+    }
+
+    fn values(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Values> {
+        let coordinate = &self.layout.coordinates[number];
+        match &coordinate.place {
+            Place::Slice(divisor) => {
+                let axis = coordinate.axis.as_ref()?;
+                Some(Values::All(axis.value(slice / divisor % axis.count)))
+            }
+            Place::Field(field) => Some(Values::Each(cloud.column(field)?.collect())),
+        }
+    }
+
+    /// The finished tiles.
+    pub fn section(self, source: &Source<'_>) -> Section {
+        let coordinates = &self.layout.coordinates;
+        let name = |number: usize, value: u64| {
+            let c = &coordinates[number];
+            let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
+            let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
+            format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
+        };
+        let mut title = "Reachable poses".to_owned();
+        if !self.held.is_empty() {
+            let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
+            title = format!("Reachable at {}", held.join(", "));
+        }
+        let positions = self.view.iter().all(|seen| coordinates[seen.number].axis.is_some());
+        if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
+            let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
+            title.push_str(&format!(", at any {names}"));
+        }
+        let [a, b] = &self.view;
+        let columns = columns(self.tiles.len());
+        let marks: Vec<Option<[f64; 2]>> =
+            self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
+        let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
+        let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
+            let share = COLORS * value as f64 / (total - 1).max(1) as f64;
+            let content = match content {
+                Content::Cells(cells, Paint::Plain(_)) => {
+                    Content::Cells(cells, Paint::Plain(Map::Viridis.color(share)))
+                }
+                other => other,
+            };
+            Tile {
+                title: self.varied.map_or_else(String::new, |number| name(number, value)),
+                x: a.measure.clone(),
+                y: b.measure.clone(),
+                content,
+                mark,
+            }
+        };
+        let bar = self.color.as_ref().map(|color| Bar {
+            measure: color.measure.clone(),
+            range: color.range,
+            map: Map::Viridis,
+            scale: Scale::Linear,
+        });
+        let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let tiles = self.tiles.into_iter().zip(marks).map(tile).collect();
+        Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+    }
+
+    /// The place of home, if it is in the tile of this value.
+    fn mark(&self, value: u64) -> Option<[f64; 2]> {
+        let value_of = |number: usize| {
+            let held = self.held.iter().find(|(held, _)| *held == number).map(|held| held.1);
+            held.or_else(|| (self.varied == Some(number)).then_some(value)).unwrap_or(0)
+        };
+        let seen = |number: usize| self.view.iter().any(|seen| seen.number == number);
+        let others = (0..self.layout.coordinates.len()).filter(|number| !seen(*number));
+        let mut others = others.map(|number| (&self.layout.coordinates[number], value_of(number)));
+        self.home.filter(|_| others.all(|(coordinate, value)| is_home(coordinate, value)))
+    }
+
+    /// What has to be said of the picture.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = vec![];
+        let coordinates = &self.layout.coordinates;
+        if let Some(varied) = self.varied
+            && let Some(axis) = &coordinates[varied].axis
+            && (self.tiles.len() as u64) < axis.count
+        {
+            notes.push(format!(
+                "Slices: {} of the {} values of {} on the grid.",
+                self.tiles.len(),
+                axis.count,
+                axis.name
+            ));
+        }
+        let coarse = |tile: &(u64, Content)| match &tile.1 {
+            Content::Cells(cells, _) => cells.is_coarse(),
+            _ => false,
+        };
+        if self.tiles.iter().any(coarse) {
+            notes.push(
+                "A cell holds several values of the grid, at least one of them reachable."
+                    .to_owned(),
+            );
+        }
+        if self.tiles.iter().any(|(value, _)| self.mark(*value).is_some()) {
+            notes.push("The cross is home.".to_owned());
+        }
+        notes
+    }
+}
+
+enum Numbers {
+    All(u64),
+    Each(Vec<u64>),
+}
+
+enum Values {
+    All(f64),
+    Each(Vec<f64>),
+}
+
+impl Values {
+    fn get(&self, point: usize) -> f64 {
+        match self {
+            Self::All(value) => *value,
+            Self::Each(values) => values[point],
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! A recording that is to be drawn, and what is known of its mechanism.
+
+use crate::args::Output;
+use crate::failure::Failure;
+use crate::progress::watch_reading;
+use crate::text::count;
+use opm_core::joint::Quantity;
+use opm_core::linkage::Linkage;
+use opm_core::manipulator::{ImaginaryJoint, Manipulator};
+use opm_core::mechanism::file::{AngleUnit, FileUnits, MechanismFile, read as read_mechanism};
+use opm_mcap::workspace::SLICES_TOPIC;
+use opm_mcap::{Message, Metadata, ReadError, Recording, read};
+use opm_plot::{Measure, Steps, Unit};
+use opm_workspace::Progress;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Differences of SI values below this are noise of the arithmetic.
+const NOISE: f64 = 1e-9;
+/// Messages between two looks at whether somebody pressed Ctrl-C.
+const PORTION: u64 = 64;
+
+/// A recording, read once.
+pub struct Source<'a> {
+    /// What messages call it.
+    pub label: String,
+    path: &'a Path,
+    pub recording: Recording,
+    /// The mechanism, where the recording has a file that says what it is.
+    pub mechanism: Option<Mechanism>,
+    output: &'a Output,
+    progress: &'a Progress,
+}
+
+/// What moves.
+pub struct Mechanism {
+    pub file: MechanismFile,
+    pub kind: Kind,
+}
+
+/// What can be computed of it.
+pub enum Kind {
+    Manipulator(Box<Manipulator>),
+    Linkage(Box<Linkage>),
+    Other,
+}
+
+/// Why reading stops early.
+pub enum Stop {
+    Read(ReadError),
+    Interrupted,
+}
+
+impl From<ReadError> for Stop {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
+    }
+}
+
+impl<'a> Source<'a> {
+    /// Reads a recording to see what is in it.
+    pub fn open(
+        path: &'a Path,
+        output: &'a Output,
+        progress: &'a Progress,
+    ) -> Result<Self, Failure> {
+        let label = path.display().to_string();
+        // It is read more than once.
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Err(Failure::Work(format!(
+                "{label}: not a regular file, expected a recording"
+            )));
+        }
+        let recording = Recording {
+            topics: vec![],
+            time_range: None,
+            extents: vec![],
+            metadata: vec![],
+            attachments: vec![],
+            complete: false,
+        };
+        let mut source = Self { label, path, recording, mechanism: None, output, progress };
+        source.recording = source.each(None, |_| Ok(()))?;
+        source.mechanism = source.find_mechanism();
+        Ok(source)
+    }
+
+    /// Shows every message.
+    pub fn messages(
+        &self,
+        visit: impl FnMut(&Message<'_>) -> Result<(), Stop>,
+    ) -> Result<(), Failure> {
+        let total = self.recording.topics.iter().map(|topic| topic.messages).sum();
+        self.each(Some(total), visit).map(|_| ())
+    }
+
+    fn each(
+        &self,
+        total: Option<u64>,
+        mut visit: impl FnMut(&Message<'_>) -> Result<(), Stop>,
+    ) -> Result<Recording, Failure> {
+        let seen = AtomicU64::new(0);
+        let look = |message: &Message<'_>| {
+            let number = seen.fetch_add(1, Ordering::Relaxed);
+            if number.is_multiple_of(PORTION) && self.progress.is_cancelled() {
+                return Err(Stop::Interrupted);
+            }
+            visit(message)
+        };
+        let done = || seen.load(Ordering::Relaxed);
+        let found = watch_reading(self.output, total, done, || read(self.path, look));
+        found.map_err(|stop| match stop {
+            Stop::Interrupted => {
+                let seen = count(done());
+                Failure::Interrupted(format!("interrupted while reading; messages so far: {seen}"))
+            }
+            Stop::Read(error) => match &error {
+                ReadError::Io { source, .. } => Failure::at(&self.label, source),
+                ReadError::NotMcap { .. } => {
+                    Failure::Work(format!("{}: not an MCAP file", self.label))
+                }
+                _ => Failure::at(&self.label, &error),
+            },
+        })
+    }
+
+    /// The first attachment that is a mechanism file.
+    fn find_mechanism(&self) -> Option<Mechanism> {
+        let texts = self.recording.attachments.iter().filter_map(|attached| {
+            let content = attached.content.as_deref()?;
+            std::str::from_utf8(content).ok()
+        });
+        let file = texts.filter_map(|text| read_mechanism(text).ok()).next()?;
+        let kind = match Manipulator::new(file.mechanism.clone()) {
+            Ok(manipulator) => Kind::Manipulator(Box::new(manipulator)),
+            Err(_) => match Linkage::new(&file.mechanism) {
+                Ok(linkage) => Kind::Linkage(Box::new(linkage)),
+                Err(_) => Kind::Other,
+            },
+        };
+        Some(Mechanism { file, kind })
+    }
+
+    /// The mechanism, where it has inverse kinematics.
+    pub fn manipulator(&self) -> Option<&Manipulator> {
+        match &self.mechanism.as_ref()?.kind {
+            Kind::Manipulator(manipulator) => Some(manipulator),
+            Kind::Linkage(_) | Kind::Other => None,
+        }
+    }
+
+    /// Its imaginary joints.
+    pub fn imaginary(&self) -> &[ImaginaryJoint] {
+        self.manipulator().map(Manipulator::imaginary).unwrap_or_default()
+    }
+
+    /// What an imaginary or other joint of this name measures, as far as the mechanism says.
+    pub fn joint_quantity(&self, name: &str) -> Option<Quantity> {
+        let imaginary = self.imaginary().iter().map(|joint| (&*joint.name, joint.quantity));
+        let coordinates = self.manipulator().map(Manipulator::coordinates).unwrap_or_default();
+        let joints = coordinates.iter().map(|c| (&*c.name, c.quantity));
+        imaginary.chain(joints).find(|(known, _)| *known == name).map(|(_, quantity)| quantity)
+    }
+
+    pub fn is_workspace(&self) -> bool {
+        self.recording.topic(SLICES_TOPIC).is_some_and(|topic| topic.points.is_some())
+    }
+
+    /// A metadata record; nothing where it is not there.
+    pub fn metadata(&self, name: &str) -> Metadata {
+        self.recording.metadata(name).cloned().unwrap_or_default()
+    }
+
+    /// What is drawn: the mechanism's name, or the file's.
+    pub fn title(&self) -> String {
+        let run = self.metadata("run");
+        let name = self.mechanism.as_ref().map(|mechanism| &mechanism.file.mechanism.name);
+        run.get("mechanism").or(name).unwrap_or(&self.label).clone()
+    }
+
+    /// The units of the numbers in the picture.
+    pub fn units(&self) -> FileUnits {
+        self.mechanism.as_ref().map_or(FileUnits::SI, |mechanism| mechanism.file.units)
+    }
+
+    /// What has to be said below every picture of this recording.
+    pub fn notes(&self) -> Vec<String> {
+        if self.recording.complete {
+            return vec![];
+        }
+        vec!["The recording is unfinished: this is what it holds so far.".to_owned()]
+    }
+
+    /// Says which units the picture is in, and why.
+    pub fn units_line(&self) -> String {
+        let units = self.units();
+        let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| units.symbol(q));
+        match self.mechanism {
+            Some(_) => format!("in {length} and {angle}, the units of the mechanism file"),
+            None => format!("in {length} and {angle}; no mechanism file in the recording"),
+        }
+    }
+
+    /// Values named `name`, and by what their SI values are divided to be in the picture's unit.
+    pub fn measure(&self, name: &str, quantity: Option<Quantity>, rate: Rate) -> (Measure, f64) {
+        let units = self.units();
+        let name = name.to_owned();
+        let Some(quantity) = quantity else { return (Measure { name, unit: Unit::none() }, 1.0) };
+        let symbol = format!("{}{}", units.symbol(quantity), rate.suffix());
+        let turns = quantity == Quantity::Angle && rate == Rate::Position;
+        let degrees = turns && units.angle == AngleUnit::Degree;
+        let factor = units.factor(quantity);
+        let steps = if degrees { Steps::Degrees } else { Steps::Decimal };
+        (Measure { name, unit: Unit { symbol, steps, resolution: NOISE / factor } }, factor)
+    }
+}
+
+/// Which derivative by time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rate {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+impl Rate {
+    fn suffix(self) -> &'static str {
+        match self {
+            Self::Position => "",
+            Self::Velocity => "/s",
+            Self::Acceleration => "/s²",
+        }
+    }
+}
+
+/// The quantity that an SI unit measures.
+pub fn quantity(unit: Option<&str>) -> Option<Quantity> {
+    [Quantity::Angle, Quantity::Length].into_iter().find(|q| Some(q.unit()) == unit)
+}

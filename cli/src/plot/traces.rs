@@ -1,0 +1,141 @@
+//! The topics of a motion, and what each of their values is.
+
+use super::source::{Kind, Rate, Source, quantity};
+use opm_core::joint::Quantity;
+use opm_mcap::Flat;
+use opm_mcap::trajectory::{
+    ACCELERATIONS_TOPIC, CONDITION_TOPIC, IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC,
+    JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC, Role, VALID, VELOCITIES_TOPIC,
+};
+use opm_plot::Curve;
+
+/// Field of `/condition` whose size spans powers of ten.
+const CONDITION: &str = "condition";
+
+/// What a curve belongs to: the rows of the picture, from top to bottom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    Pose,
+    Imaginary,
+    Actuated,
+    Passive,
+    Joints,
+    Condition,
+    Singularity,
+}
+
+/// The topics that are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Topic {
+    pub name: &'static str,
+    pub kind: TopicKind,
+    pub rate: Rate,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TopicKind {
+    Pose,
+    Joints,
+    Imaginary,
+    Condition,
+}
+
+pub const TOPICS: [Topic; 8] = {
+    const fn topic(name: &'static str, kind: TopicKind, rate: Rate) -> Topic {
+        Topic { name, kind, rate }
+    }
+    [
+        topic(POSE_TOPIC, TopicKind::Pose, Rate::Position),
+        topic(POSE_VELOCITIES_TOPIC, TopicKind::Pose, Rate::Velocity),
+        topic(JOINTS_TOPIC, TopicKind::Joints, Rate::Position),
+        topic(VELOCITIES_TOPIC, TopicKind::Joints, Rate::Velocity),
+        topic(ACCELERATIONS_TOPIC, TopicKind::Joints, Rate::Acceleration),
+        topic(IMAGINARY_TOPIC, TopicKind::Imaginary, Rate::Position),
+        topic(IMAGINARY_VELOCITIES_TOPIC, TopicKind::Imaginary, Rate::Velocity),
+        topic(CONDITION_TOPIC, TopicKind::Condition, Rate::Position),
+    ]
+};
+
+/// A value over time.
+pub struct Trace {
+    pub name: String,
+    pub group: Group,
+    pub quantity: Option<Quantity>,
+    pub rate: Rate,
+    /// By what SI values are divided.
+    pub factor: f64,
+    pub curve: Curve,
+}
+
+/// `valid` is not a curve, but what is shaded.
+pub fn skipped(topic: usize, name: &str) -> bool {
+    TOPICS[topic].kind == TopicKind::Condition && name == VALID
+}
+
+/// The traces of a topic's fields.
+pub fn traces(source: &Source<'_>, topic: Topic, flat: &Flat) -> Vec<Trace> {
+    let number = TOPICS.iter().position(|known| *known == topic).unwrap_or(0);
+    let fields = flat.names.iter().filter(|field| !skipped(number, field));
+    fields.map(|field| trace(source, topic, field)).collect()
+}
+
+fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
+    let find = |record: &str| source.metadata(record).get(field).cloned();
+    let (name, quantity, group) = match topic.kind {
+        TopicKind::Condition => {
+            let group = if field == CONDITION { Group::Condition } else { Group::Singularity };
+            (field.to_owned(), None, group)
+        }
+        TopicKind::Pose => {
+            let mut task =
+                source.manipulator().into_iter().flat_map(|m| m.task_coordinates().iter());
+            let known = task.find(|c| c.name == field).map(|c| c.quantity);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            (field.to_owned(), quantity, Group::Pose)
+        }
+        TopicKind::Imaginary => {
+            let name = find("joints").unwrap_or_else(|| field.to_owned());
+            let known = imaginary_quantity(source, &name);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            (name, quantity, Group::Imaginary)
+        }
+        TopicKind::Joints => {
+            let name = find("joints").unwrap_or_else(|| field.to_owned());
+            let (known, group) = joint(source, &name);
+            let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
+            let role = find("roles");
+            let is = |known: Role| role.as_deref() == Some(known.name());
+            let group = group
+                .or_else(|| is(Role::Actuated).then_some(Group::Actuated))
+                .or_else(|| is(Role::Passive).then_some(Group::Passive));
+            (name, quantity, group.unwrap_or(Group::Joints))
+        }
+    };
+    let (_, factor) = source.measure("", quantity, topic.rate);
+    Trace { name, group, quantity, rate: topic.rate, factor, curve: Curve::default() }
+}
+
+fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
+    match &source.mechanism.as_ref()?.kind {
+        Kind::Manipulator(m) => m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity),
+        Kind::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
+        Kind::Other => None,
+    }
+}
+
+/// What the mechanism says of a joint coordinate. In a linkage, all joints belong together.
+fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
+    let Some(mechanism) = &source.mechanism else { return (None, None) };
+    let legs = mechanism.file.mechanism.legs.iter();
+    let mut joints = legs.flat_map(|leg| &leg.joints);
+    let found = joints.find_map(|joint| {
+        let coordinate = joint.coordinates.iter().find(|c| c.name == name)?;
+        let group = if joint.actuated { Group::Actuated } else { Group::Passive };
+        Some((coordinate.quantity, group))
+    });
+    let Some((quantity, group)) = found else { return (None, None) };
+    match mechanism.kind {
+        Kind::Linkage(_) => (Some(quantity), Some(Group::Joints)),
+        Kind::Manipulator(_) | Kind::Other => (Some(quantity), Some(group)),
+    }
+}

@@ -1,0 +1,75 @@
+//! Where a motion could not be followed, as its recording tells.
+
+use super::source::{Rate, Source, quantity};
+use super::workspace::value_label;
+use opm_mcap::Metadata;
+use opm_plot::axis::label;
+
+/// Violations that the notes list.
+const LISTED: usize = 8;
+
+/// What the mechanism could not follow, as its recording tells.
+pub struct Violation {
+    pub start: f64,
+    pub end: f64,
+    /// What, and by how much.
+    text: String,
+}
+
+impl Violation {
+    /// From a metadata record; `None` of one without a time.
+    fn new(source: &Source<'_>, record: &Metadata) -> Option<Self> {
+        let number = |key: &str| record.get(key)?.parse::<f64>().ok().filter(|n| n.is_finite());
+        let word = |key: &str| record.get(key).map(String::as_str);
+        let start = number("start")?;
+        let end = number("end").unwrap_or(start);
+        let section = word("section").map_or(String::new(), |section| format!("{section} "));
+        let what = match word("kind") {
+            Some("limit") => format!(
+                "{} past its {} value",
+                word("joint").unwrap_or("a joint"),
+                word("bound").unwrap_or("last")
+            ),
+            Some("reach") => format!("out of reach in its {section}section"),
+            Some("singularity") => {
+                let kind = word("singularity").map_or(String::new(), |kind| format!("{kind} "));
+                format!("{kind}singularity of the {section}section")
+            }
+            other => other.unwrap_or("violation").to_owned(),
+        };
+        let leg = word("leg").map_or(String::new(), |leg| format!("{leg}: "));
+        let measured = quantity(word("unit")).zip(number("amount"));
+        let by = measured.map_or(String::new(), |(quantity, amount)| {
+            let (measure, factor) = source.measure("", Some(quantity), Rate::Position);
+            format!(" by {} {}", value_label(amount / factor), measure.unit.symbol)
+        });
+        Some(Self { start, end, text: format!("{leg}{what}{by}") })
+    }
+}
+
+/// Violations in the order of their times.
+pub fn violations(source: &Source<'_>) -> Vec<Violation> {
+    let records = source.recording.metadata.iter();
+    let records = records.filter(|(name, _)| name.starts_with("violation."));
+    let mut found: Vec<Violation> =
+        records.filter_map(|(_, record)| Violation::new(source, record)).collect();
+    found.sort_by(|a, b| a.start.total_cmp(&b.start));
+    found
+}
+
+/// Notes that say what the marks are.
+pub fn listed(violations: &[Violation]) -> Vec<String> {
+    let note = |(number, violation): (usize, &Violation)| {
+        let Violation { start, end, text } = violation;
+        let [start, end] = [*start, *end].map(|time| label(time, 3));
+        match start == end {
+            true => format!("{number}: at {start} s, {text}"),
+            false => format!("{number}: {start} to {end} s, {text}"),
+        }
+    };
+    let mut notes: Vec<String> = (1..).zip(violations).take(LISTED).map(note).collect();
+    if violations.len() > LISTED {
+        notes.push(format!("and {} more", violations.len() - LISTED));
+    }
+    notes
+}

@@ -1,0 +1,178 @@
+//! The picture of a workspace: slices of it, and what the imaginary joints do in it.
+
+use super::cloud::JointCloud;
+use super::layout::Layout;
+use super::slices::Slices;
+use super::source::{Rate, Source, Stop};
+use super::{PanelName, drawn};
+use crate::args::{Output, PlotArgs};
+use crate::failure::Failure;
+use crate::text::{count, short};
+use opm_core::joint::Quantity;
+use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
+use opm_plot::{Drawing, Heading, TileFigure};
+use opm_workspace::Axis;
+
+pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
+    let asked = |panel: PanelName| args.panels.contains(&panel);
+    for panel in &args.panels {
+        if !matches!(panel, PanelName::Slices | PanelName::Imaginary) {
+            let problem = format!("{} are of a motion, not of a workspace", panel.name());
+            return Err(Failure::flag("--panels", problem));
+        }
+    }
+    let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
+    if points.unwrap_or(0) == 0 {
+        let label = &source.label;
+        return Err(Failure::Work(format!(
+            "{label}: nothing to draw: no pose of the grid is reachable"
+        )));
+    }
+    let layout = Layout::new(source);
+    let (view, joints) = chosen(&layout, source, args)?;
+    let mut slices = match args.panels.is_empty() || asked(PanelName::Slices) {
+        true => Some(Slices::new(&layout, source, args, view)?),
+        false => None,
+    };
+    let mut cloud = JointCloud::new(source, &joints);
+    if cloud.is_none() && (args.panels.is_empty() || asked(PanelName::Imaginary)) {
+        let hint = missing(source);
+        if asked(PanelName::Imaginary) && slices.is_none() {
+            return Err(Failure::Work(format!("{}: {hint}", source.label)));
+        }
+        output.note(format_args!("{}: {hint}", source.label));
+    }
+    if !args.panels.is_empty() && !asked(PanelName::Imaginary) {
+        cloud = None;
+    }
+
+    source.messages(|message| {
+        if message.topic != SLICES_TOPIC {
+            return Ok::<(), Stop>(());
+        }
+        let (Some(found), Some(slice)) = (message.cloud()?, slice_at(message.time)) else {
+            return Ok(());
+        };
+        if let Some(slices) = &mut slices {
+            slices.add(&found, slice);
+        }
+        if let Some(cloud) = &mut cloud {
+            cloud.add(&found);
+        }
+        Ok(())
+    })?;
+
+    let mut heading = heading(source, &layout);
+    let mut sections = vec![];
+    if let Some(slices) = slices {
+        heading.notes.extend(slices.notes());
+        sections.push(slices.section(source));
+    }
+    if let Some(cloud) = cloud {
+        heading.notes.extend(cloud.notes());
+        sections.push(cloud.section());
+    }
+    heading.notes.extend(source.notes());
+    let figure = TileFigure { heading, sections };
+    drawn(args, |size| figure.draw(size))
+}
+
+/// What `--values` names: two coordinates to see the slices along, and stored values.
+fn chosen(
+    layout: &Layout,
+    source: &Source<'_>,
+    args: &PlotArgs,
+) -> Result<(Option<[usize; 2]>, Vec<String>), Failure> {
+    let wrong = |problem: String| Err(Failure::flag("--values", problem));
+    let (mut view, mut joints) = (vec![], vec![]);
+    for name in &args.values {
+        if view.iter().any(|&i: &usize| layout.coordinates[i].name == *name)
+            || joints.contains(name)
+        {
+            return wrong(format!("{name} is given twice"));
+        }
+        if let Some(number) = layout.find(name) {
+            view.push(number);
+        } else if layout.scalars.contains(name) {
+            joints.push(name.clone());
+        } else {
+            let known = [&[layout.names()], &layout.scalars[..]].concat().join(", ");
+            return wrong(format!("{name:?} is none of {known}"));
+        }
+    }
+    let view = match view[..] {
+        [] => None,
+        [a, b] => Some([a, b]),
+        _ => {
+            let names = layout.names();
+            return wrong(format!("two of {names} are seen at a time, not {}", view.len()));
+        }
+    };
+    if joints.is_empty() {
+        let names = source.imaginary().iter().map(|joint| joint.name.clone());
+        joints = names.filter(|name| layout.scalars.contains(name)).collect();
+    }
+    Ok((view, joints))
+}
+
+/// How to record what is not there.
+fn missing(source: &Source<'_>) -> String {
+    let names: Vec<&str> = source.imaginary().iter().map(|joint| &*joint.name).collect();
+    match &names[..] {
+        [] => "no values of imaginary joints are stored with the points".to_owned(),
+        names => format!(
+            "without the imaginary joints; to draw them too, record with --scalars {}",
+            names.join(",")
+        ),
+    }
+}
+
+fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
+    let (run, result) = (source.metadata("run"), source.metadata("result"));
+    let mut parts = vec![];
+    if let Some(mode) = run.get("mode").filter(|mode| !mode.is_empty()) {
+        parts.push(format!("mode {mode}"));
+    }
+    let number = |text: Option<&String>| text.and_then(|text| text.parse::<u64>().ok());
+    match (number(result.get("reachable")), number(run.get("poses"))) {
+        (Some(reachable), Some(poses)) if poses > 0 => {
+            let share = value_label(100.0 * reachable as f64 / poses as f64);
+            let (reachable, poses) = (count(reachable), count(poses));
+            parts.push(format!("{reachable} of {poses} poses reachable ({share} %)"));
+        }
+        _ => {
+            let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
+            parts.push(format!("{} poses", count(points.unwrap_or(0))));
+        }
+    }
+    let mut lines = vec![format!("{}; {}", parts.join(", "), source.units_line())];
+    let grid: Vec<String> =
+        layout.grid.iter().map(|(quantity, axis)| range(source, *quantity, axis)).collect();
+    if !grid.is_empty() {
+        lines.push(format!("grid (values): {}", grid.join(", ")));
+    }
+    let mut title = source.title();
+    title.push_str(": workspace");
+    Heading { title, lines, notes: vec![] }
+}
+
+/// A grid axis as the heading tells it.
+fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
+    let (measure, factor) = source.measure(&axis.name, Some(quantity), Rate::Position);
+    let [min, max] = [axis.min, axis.max].map(|value| value_label(value / factor));
+    let symbol = &measure.unit.symbol;
+    match axis.count {
+        1 => format!("{} = {min} {symbol}", axis.name),
+        count => format!("{} {min} to {max} {symbol} ({count})", axis.name),
+    }
+}
+
+/// A number to four digits at most, without trailing zeros, with a minus sign.
+pub fn value_label(value: f64) -> String {
+    let text = short(value);
+    let text = match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    text.replace('-', "−")
+}

@@ -1,0 +1,469 @@
+//! `opm plot`: what is in the pictures, against what the other subcommands say.
+
+#[path = "../../../crates/opm-plot/tests/figures/seen.rs"]
+#[allow(dead_code, reason = "the tests of the crate that draws use the rest")]
+mod seen;
+
+use crate::run::{Folder, Run, number, opm};
+use crate::{HELICAL, PLANO};
+use opm_mcap::trajectory::{Coordinate, Posture, Role, Sample};
+use opm_mcap::{
+    CloudLayout, Metadata, Trajectory, TrajectoryRecorder, Workspace, WorkspaceRecorder,
+};
+use roxmltree::Document;
+use seen::{across, assert_legible, class, label, named, paths, pieces, up};
+use std::fs;
+
+const BENNETT: &str = "bennett-double-spherical-6r";
+const MOTION: &str = "plano-spherical-sinusoids";
+
+fn plot(folder: &Folder, recording: &str, args: &[&str]) -> (Run, String) {
+    let output = folder.arg("picture.svg");
+    let run = opm(&[&["plot", recording, "-o", &output], args].concat());
+    run.text();
+    (run, folder.read("picture.svg"))
+}
+
+/// A small workspace of the first manipulator, with its imaginary joints.
+fn workspace(folder: &Folder) -> String {
+    let output = folder.arg("cloud.mcap");
+    let grid = [
+        "--grid",
+        "x=-200mm:200mm:41",
+        "--grid",
+        "y=-120mm:140mm:27",
+        "--grid",
+        "xi=0:90deg:4",
+        "--grid",
+        "psi=-20deg:20deg:3",
+    ];
+    let rest = ["--scalars", "theta11,theta12,theta13", "-o", &output, "--quiet"];
+    opm(&[&["workspace", PLANO], &grid[..], &rest].concat()).text();
+    output
+}
+
+fn turn(folder: &Folder) -> String {
+    let output = folder.arg("turn.mcap");
+    opm(&["linkage", BENNETT, "--sweep", "--count", "73", "-o", &output]).text();
+    output
+}
+
+fn motion(folder: &Folder, args: &[&str]) -> String {
+    let output = folder.arg("motion.mcap");
+    let fixed = ["trajectory", PLANO, "-o", &output, "--quiet"];
+    opm(&[&fixed[..], args].concat()).text();
+    output
+}
+
+fn titles<'a>(document: &'a Document<'a>) -> Vec<&'a str> {
+    class(document.root(), "panel").into_iter().map(label).collect()
+}
+
+fn texts<'a>(document: &'a Document<'a>) -> Vec<&'a str> {
+    class(document.root(), "text").into_iter().map(label).collect()
+}
+
+/// Read by the numbers at the axes, the curves have the values of the CSV, in degrees.
+#[test]
+fn the_curves_of_a_linkage_are_those_of_its_csv() {
+    let folder = Folder::new();
+    let (run, svg) = plot(&folder, &turn(&folder), &[]);
+    assert!(run.stderr.contains("picture.svg: "), "{}", run.stderr);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["Imaginary joints", "Joints"]);
+    assert!(texts(&document).contains(&BENNETT));
+    let csv = opm(&["linkage", BENNETT, "--sweep", "--count", "73"]);
+    let rows: Vec<Vec<&str>> = csv.text().lines().map(|line| line.split(',').collect()).collect();
+    let panels = class(document.root(), "panel");
+    for (column, name) in rows[0].iter().enumerate().take(7) {
+        let panel = panels[usize::from(*name != "tau.leg1")];
+        let (up, across) = (up(panel), across(panels[1]));
+        let curve = named(panel, "curve", name);
+        let points = pieces(paths(curve)[0]).concat();
+        assert_eq!(points.len(), 73);
+        for (i, ([x, y], row)) in points.into_iter().zip(&rows[1..]).enumerate() {
+            let value: f64 = row[column].parse().unwrap();
+            // A hundredth of a pixel is a tenth of a degree at most here.
+            assert!((up(y) - value.to_degrees()).abs() < 0.1, "{name} {i}: {} {value}", up(y));
+            assert!((across(x) - 10.0 * i as f64 / 72.0).abs() < 1e-3, "{name} {i}: {}", across(x));
+        }
+    }
+}
+
+#[test]
+fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
+    let folder = Folder::new();
+    let file = motion(&folder, &["--motion", MOTION]);
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let expected = [
+        "Platform position",
+        "Platform, velocity",
+        "Platform orientation",
+        "Platform orientation, velocity",
+        "Imaginary joints",
+        "Imaginary joints, velocity",
+        "Actuated joints",
+        "Actuated joints, velocity",
+        "Actuated joints",
+        "Actuated joints, velocity",
+        "Condition number",
+    ];
+    assert_eq!(titles(&document)[..expected.len()], expected);
+    let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
+    for unit in ["(mm)", "(deg)", "(mm/s)", "(deg/s)"] {
+        assert!(axes.iter().any(|axis| axis.ends_with(unit)), "{axes:?}");
+    }
+    // The motion file: x = 30 mm · sin(0.2 turns/s · t), sampled a hundred times a second.
+    let panel = class(document.root(), "panel")[0];
+    let points = pieces(paths(named(panel, "curve", "x"))[0]).concat();
+    assert_eq!(points.len(), 1001);
+    let up = up(panel);
+    for (i, [_, y]) in points.into_iter().enumerate() {
+        let x = 30.0 * (std::f64::consts::TAU * 0.2 * 0.01 * i as f64).sin();
+        assert!((up(y) - x).abs() < 0.05, "{i}: {} {x}", up(y));
+    }
+
+    let args = ["--panels", "actuated,accelerations", "--values", "S1,S3"];
+    let (_, svg) = plot(&folder, &file, &args);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["Actuated joints, acceleration"]);
+    let curves: Vec<&str> = class(document.root(), "curve").into_iter().map(label).collect();
+    assert_eq!(curves, ["S1", "S3"]);
+    let (_, svg) = plot(&folder, &file, &["--values", "phi11,theta11"]);
+    let document = Document::parse(&svg).unwrap();
+    let named = ["Imaginary joints", "Passive joints"];
+    assert!(titles(&document).iter().all(|t| named.iter().any(|n| t.starts_with(n))));
+}
+
+/// Where the mechanism cannot follow, the picture is shaded, the curves of the joints pause, and the
+/// notes say what happened and when, as the command that recorded it does.
+#[test]
+fn violations_are_marked() {
+    let folder = Folder::new();
+    let text = "format = 1\nname = \"far\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+        duration = 4\nrate = 50\n[coordinates]\nx = { amplitude = 400, frequency = 0.25 }\n";
+    let far = folder.write("far.toml", text);
+    let file = motion(&folder, &["--motion", &far]);
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let run = opm(&["trajectory", PLANO, "--motion", &far, "--format", "json"]);
+    let violations = run.json()["violations"].as_array().unwrap().clone();
+    assert!(!violations.is_empty());
+    let panels = class(document.root(), "panel");
+    let last = across(panels[panels.len() - 1]);
+    let marks = class(panels[panels.len() - 1], "marks")[0];
+    let at: Vec<f64> = paths(marks).into_iter().map(|line| last(pieces(line)[0][0][0])).collect();
+    assert_eq!(at.len(), violations.len());
+    for (at, violation) in at.iter().zip(&violations) {
+        let start = number(&violation["start"]);
+        assert!((at - start).abs() < 1e-3, "{at} {start}");
+    }
+    assert!(texts(&document).iter().any(|text| text.contains("out of reach")));
+    let joints = panels.iter().find(|panel| label(**panel) == "Actuated joints").unwrap();
+    let curve = named(*joints, "curve", "S1");
+    assert!(pieces(paths(curve)[0]).len() > 1, "a gap");
+    let pose = named(panels[0], "curve", "x");
+    assert_eq!(pieces(paths(pose)[0]).len(), 1, "the pose goes on");
+}
+
+/// A tile has as many cells as a sweep of that slice alone counts poses.
+#[test]
+fn slices_have_the_cells_that_a_sweep_counts() {
+    let folder = Folder::new();
+    let file = workspace(&folder);
+    let (_, svg) = plot(&folder, &file, &["--slice", "psi=20deg"]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let panels = class(document.root(), "panel");
+    let expected = ["xi = 0 deg", "xi = 30 deg", "xi = 60 deg", "xi = 90 deg"];
+    assert_eq!(titles(&document)[..4], expected);
+    let (left, below) = (up(panels[0]), across(panels[2]));
+    let scale = (below(1.0) - below(0.0)) * (left(0.0) - left(1.0));
+    for (panel, xi) in panels.iter().zip([0, 30, 60, 90]) {
+        let boxes = pieces(paths(class(*panel, "points")[0])[0]);
+        let area: f64 = boxes.iter().map(|b| (b[2][0] - b[0][0]) * (b[2][1] - b[0][1])).sum();
+        let xi = format!("xi={xi}deg");
+        let args = [
+            "workspace",
+            PLANO,
+            "--grid",
+            "x=-200mm:200mm:41",
+            "--grid",
+            "y=-120mm:140mm:27",
+            "--grid",
+            &xi,
+            "--grid",
+            "psi=20deg",
+            "--format",
+            "json",
+        ];
+        let counted = number(&opm(&args).json()["reachable"]);
+        let cells = area * scale / 100.0;
+        assert!((cells - counted).abs() < 0.01 * counted, "{xi}: {cells} {counted}");
+    }
+    let joints = &panels[4..];
+    let axes: Vec<&str> = joints.iter().flat_map(|p| class(*p, "x-axis")).map(label).collect();
+    assert_eq!(axes, ["theta11 (deg)", "theta11 (deg)", "theta12 (deg)"]);
+}
+
+#[test]
+fn slices_are_chosen_by_name_and_value() {
+    let folder = Folder::new();
+    let file = workspace(&folder);
+    let (_, svg) = plot(&folder, &file, &["--slice", "xi=31deg,xi=1rad", "--panels", "slices"]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["xi = 30 deg", "xi = 60 deg"]);
+    assert!(texts(&document).contains(&"Reachable at psi = 0 deg"));
+    let args = ["--values", "xi,psi,theta13", "--slice", "x=0,y=10mm"];
+    let (_, svg) = plot(&folder, &file, &args);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["psi over xi", "poses over theta13"]);
+    let (_, svg) = plot(&folder, &file, &["--panels", "imaginary", "--values", "theta12,theta11"]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["theta11 over theta12"]);
+}
+
+#[test]
+fn what_is_not_stored_can_be_recorded() {
+    let folder = Folder::new();
+    let file = folder.arg("bare.mcap");
+    let grid = ["--grid", "x=-20mm:20mm:5", "--grid", "y=-20mm:20mm:5", "--grid", "xi=0:0.2:3"];
+    opm(&[&["workspace", PLANO, "-o", &file, "-q"], &grid[..]].concat()).text();
+    let (run, _) = plot(&folder, &file, &[]);
+    assert!(run.stderr.contains("--scalars theta11,theta12,theta13"), "{}", run.stderr);
+    let output = folder.arg("none.svg");
+    opm(&["plot", &file, "-o", &output, "--panels", "imaginary"])
+        .fails_with_one_line(1, &["bare.mcap", "--scalars theta11,theta12,theta13"]);
+    let (run, svg) = plot(&folder, &file, &["--quiet"]);
+    assert_eq!(run.stderr, "");
+    assert_legible(&svg);
+}
+
+#[test]
+fn every_shipped_mechanism_can_be_drawn() {
+    let folder = Folder::new();
+    let list = opm(&["examples", "--format", "json"]).json();
+    let file = folder.arg("cloud.mcap");
+    for example in list["examples"].as_array().unwrap() {
+        let name = example["name"].as_str().unwrap();
+        if name == BENNETT {
+            continue;
+        }
+        let json =
+            opm(&["workspace", name, "-o", &file, "--axes", "tip", "--format", "json", "-q"]);
+        let ranges = json.json()["imaginary_range"].as_object().unwrap().clone();
+        let (_, svg) = plot(&folder, &file, &["-q"]);
+        assert_legible(&svg);
+        let joints: Vec<&str> = ranges.keys().map(String::as_str).collect();
+        let scalars = joints.join(",");
+        opm(&["workspace", name, "-o", &file, "--scalars", &scalars, "--color", joints[0], "-q"])
+            .text();
+        let (_, svg) = plot(&folder, &file, &[]);
+        assert_legible(&svg);
+        let document = Document::parse(&svg).unwrap();
+        assert!(texts(&document).contains(&&*format!("{name}: workspace")));
+        assert!(svg.len() < 4_000_000, "{name}: {} bytes", svg.len());
+    }
+}
+
+#[test]
+fn a_png_has_twice_the_pixels_and_the_same_bytes_each_time() {
+    let folder = Folder::new();
+    let file = turn(&folder);
+    let [first, second] = ["a.png", "b.png"].map(|name| {
+        let output = folder.arg(name);
+        let args = ["plot", &file, "-o", &output, "--size", "900x400", "--format", "json", "-q"];
+        let found = opm(&args).json();
+        assert_eq!((number(&found["width"]), number(&found["height"])), (1800.0, 800.0));
+        assert_eq!(found["complete"], true);
+        fs::read(output).unwrap()
+    });
+    assert_eq!(first, second);
+    // PNG: eight bytes, then the chunk IHDR begins with width and height.
+    assert_eq!(first[..8], *b"\x89PNG\r\n\x1a\n");
+    let side = |at: usize| u32::from_be_bytes(first[at..at + 4].try_into().unwrap());
+    assert_eq!((side(16), side(20)), (1800, 800));
+    let (_, svg) = plot(&folder, &file, &["--size", "900x400"]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(document.root_element().attribute("width"), Some("900"));
+    assert_eq!(svg, plot(&folder, &file, &["--size", "900x400"]).1);
+    assert_eq!(folder.names(), ["a.png", "b.png", "picture.svg", "turn.mcap"]);
+}
+
+#[test]
+fn an_unfinished_recording_is_drawn_as_far_as_it_goes() {
+    let folder = Folder::new();
+    let whole = fs::read(motion(&folder, &["--motion", MOTION])).unwrap();
+    let cut = folder.write("motion.mcap.partial", &whole[..whole.len() / 2]);
+    let (run, svg) = plot(&folder, &cut, &[]);
+    assert!(run.stderr.contains("unfinished"), "{}", run.stderr);
+    let document = Document::parse(&svg).unwrap();
+    assert!(texts(&document).iter().any(|text| text.contains("unfinished")));
+    let points = pieces(paths(named(document.root(), "curve", "x"))[0]).concat();
+    assert!(points.len() > 100 && points.len() < 900, "{}", points.len());
+    let whole = fs::read(workspace(&folder)).unwrap();
+    let cut = folder.write("cloud.mcap.partial", &whole[..whole.len() * 2 / 3]);
+    let (run, _) = plot(&folder, &cut, &[]);
+    assert!(run.stderr.contains("unfinished"), "{}", run.stderr);
+}
+
+#[test]
+fn what_is_no_recording_is_refused_and_leaves_nothing() {
+    let folder = Folder::new();
+    let output = folder.arg("picture.svg");
+    let text = folder.write("text.mcap", "this is not a recording");
+    opm(&["plot", &text, "-o", &output]).fails_with_one_line(1, &["text.mcap: not an MCAP file"]);
+    let missing = folder.arg("missing.mcap");
+    opm(&["plot", &missing, "-o", &output]).fails_with_one_line(1, &["missing.mcap: No such file"]);
+    opm(&["plot", &folder.arg(""), "-o", &output]).fails_with_one_line(1, &["directory"]);
+    opm(&["plot", "/dev/null", "-o", &output]).fails_with_one_line(1, &["not a regular file"]);
+    let nowhere = folder.arg("far.mcap");
+    let grid = ["--grid", "x=5:6:3", "--grid", "y=0:1:3"];
+    opm(&[&["workspace", PLANO, "-o", &nowhere, "-q"], &grid[..]].concat()).text();
+    opm(&["plot", &nowhere, "-o", &output])
+        .fails_with_one_line(1, &["far.mcap", "no pose of the grid is reachable"]);
+    assert_eq!(folder.names(), ["far.mcap", "text.mcap"]);
+}
+
+#[test]
+fn wrong_usage_names_the_flag() {
+    let folder = Folder::new();
+    let (cloud, turn) = (workspace(&folder), turn(&folder));
+    let svg = folder.arg("p.svg");
+    for (file, args, parts) in [
+        (&cloud, &["-o", "p.jpg"][..], &["--output", "p.jpg", ".svg or .png"][..]),
+        (&cloud, &["-o", "-"], &["--output", ".svg or .png"]),
+        (&cloud, &["-o", &svg, "--values", "theta14"], &["--values", "\"theta14\"", "theta13"]),
+        (&cloud, &["-o", &svg, "--values", "x"], &["--values", "two of x, y"]),
+        (&cloud, &["-o", &svg, "--values", "x,x"], &["--values", "x is given twice"]),
+        (&cloud, &["-o", &svg, "--panels", "pose"], &["--panels", "pose", "workspace"]),
+        (&cloud, &["-o", &svg, "--slice", "x=0"], &["--slice", "x is an axis"]),
+        (&cloud, &["-o", &svg, "--slice", "q=0"], &["--slice", "\"q\"", "xi"]),
+        (&cloud, &["-o", &svg, "--slice", "xi=3"], &["--slice", "xi = 3", "grid"]),
+        (&cloud, &["-o", &svg, "--slice", "xi=3mm"], &["--slice", "xi is an angle"]),
+        (&cloud, &["-o", &svg, "--slice", "xi=0,xi=1,psi=0,psi=0.3"], &["--slice", "xi and psi"]),
+        (&cloud, &["-o", &svg, "--size", "200x100"], &["--size", "200x100", "need at least"]),
+        (&turn, &["-o", &svg, "--values", "c1"], &["--values", "\"c1\"", "a1, b3, a2"]),
+        (&turn, &["-o", &svg, "--panels", "slices"], &["--panels", "slices", "motion"]),
+        (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "no workspace"]),
+    ] {
+        opm(&[&["plot", file], args].concat()).fails_with_one_line(2, parts);
+    }
+    opm(&["plot", &turn, "-o", &svg, "--size", "9"]).fails(2, &["--size", "900x600"]);
+    opm(&["plot", &turn, "-o", &svg, "--size", "9000x10"]).fails(2, &["--size", "4000"]);
+    opm(&["plot", &turn]).fails(2, &["--output"]);
+    opm(&["plot", &turn, "-o", &svg, "--panels", "condition"])
+        .fails_with_one_line(1, &["turn.mcap", "--panels"]);
+    assert_eq!(folder.names(), ["cloud.mcap", "turn.mcap"]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_told_at_once() {
+    let folder = Folder::new();
+    let file = turn(&folder);
+    let nowhere = folder.arg("missing/p.svg");
+    opm(&["plot", &file, "-o", &nowhere]).fails_with_one_line(1, &["missing", "No such file"]);
+    fs::create_dir(folder.path("p.svg")).unwrap();
+    opm(&["plot", &file, "-o", &folder.arg("p.svg")])
+        .fails_with_one_line(1, &["not a regular file"]);
+    let renamed = folder.arg("turn.svg");
+    fs::rename(&file, &renamed).unwrap();
+    opm(&["plot", &renamed, "-o", &renamed])
+        .fails_with_one_line(2, &["--output", "also the input"]);
+    opm(&["plot", HELICAL, "-o", &folder.arg("q.svg")]).fails_with_one_line(1, &[HELICAL]);
+    assert_eq!(folder.names(), ["p.svg", "turn.svg"]);
+}
+
+/// A recording of an unknown mechanism, with two joints.
+fn unknown_motion(path: &str, values: &[[f64; 2]]) {
+    let joint = |name: &str| Coordinate { name: name.into(), unit: "rad", role: Role::Actuated };
+    let trajectory = Trajectory {
+        pose: vec![],
+        joints: vec![joint("a"), joint("b")],
+        imaginary: vec![],
+        rates: false,
+        measures: vec![],
+        bodies: vec![],
+        files: vec![("nonsense.toml", b"nonsense")],
+        run: Metadata::new(),
+    };
+    let mut recorder = TrajectoryRecorder::create(path.as_ref(), &trajectory).unwrap();
+    for (i, joints) in (0..).zip(values) {
+        let posture = Some(Posture { joints, ..Posture::default() });
+        recorder.push(i * 1_000_000, &Sample { posture, ..Sample::default() }).unwrap();
+    }
+    recorder.finish(&Metadata::new()).unwrap();
+}
+
+#[test]
+fn what_is_not_a_number_is_a_gap() {
+    let folder = Folder::new();
+    let file = folder.arg("odd.mcap");
+    let mut values = [[1.0, 1e-17]; 30];
+    for (i, odd) in [(10, f64::NAN), (11, f64::INFINITY), (20, f64::NEG_INFINITY)] {
+        values[i][0] = odd;
+    }
+    unknown_motion(&file, &values);
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let lengths = |name| -> Vec<usize> {
+        pieces(paths(named(document.root(), "curve", name))[0]).iter().map(Vec::len).collect()
+    };
+    assert_eq!((lengths("a"), lengths("b")), (vec![10, 8, 9], vec![30]));
+    assert!(texts(&document).iter().any(|text| text.contains("no mechanism file")));
+    assert!(texts(&document).contains(&"angle (rad)"));
+    for values in [&[[f64::NAN; 2]; 3][..], &[[1.0, 2.0]]] {
+        unknown_motion(&file, values);
+        assert_legible(&plot(&folder, &file, &[]).1);
+    }
+    unknown_motion(&file, &[]);
+    opm(&["plot", &file, "-o", &folder.arg("none.svg")])
+        .fails_with_one_line(1, &["odd.mcap", "no sample to draw"]);
+}
+
+#[test]
+fn points_of_an_unknown_mechanism_are_drawn_as_they_are() {
+    let folder = Folder::new();
+    let file = folder.arg("odd.mcap");
+    let workspace = Workspace {
+        layout: CloudLayout {
+            axes: ["a", "b", "c"].map(String::from),
+            scalars: vec!["s".into()],
+            color: "s".into(),
+            color_range: [0.0, 1.0],
+            frame_id: "f".into(),
+        },
+        mechanism_name: "nonsense.toml",
+        mechanism: b"nonsense",
+        run: Metadata::new(),
+        points: 50,
+        slices: 1,
+    };
+    let rows: Vec<f64> = (0..50).flat_map(|i| [i, i * i, 7, i % 5].map(f64::from)).collect();
+    let mut recorder = WorkspaceRecorder::create(file.as_ref(), &workspace).unwrap();
+    recorder.overview(&rows).unwrap();
+    recorder.push(0, &rows).unwrap();
+    recorder.finish(&Metadata::new()).unwrap();
+    let (run, svg) = plot(&folder, &file, &[]);
+    assert!(run.stderr.contains("no values of imaginary joints"), "{}", run.stderr);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let panel = class(document.root(), "panel")[0];
+    let (across, up) = (across(panel), up(panel));
+    let dots = pieces(paths(class(panel, "points")[0])[0]);
+    assert_eq!(dots.len(), 50);
+    for (i, dot) in dots.iter().enumerate() {
+        let middle = |k: usize| dot.iter().map(|p| p[k]).sum::<f64>() / dot.len() as f64;
+        let (a, b) = (i as f64, (i * i) as f64);
+        assert!((across(middle(0)) - a).abs() < 0.01, "{i}");
+        assert!((up(middle(1)) - b).abs() < 1.0, "{i}");
+    }
+    let (_, svg) = plot(&folder, &file, &["--values", "a,c,s"]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["c over a", "poses over s"]);
+}

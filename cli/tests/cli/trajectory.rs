@@ -1,0 +1,232 @@
+//! `opm trajectory`: motions as they are followed, told and recorded.
+
+use crate::run::{Folder, Run, keys, number, opm};
+use crate::{HELICAL, PLANO};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+const SINUSOIDS: &str = "plano-spherical-sinusoids";
+const HEAD: &str = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\n";
+
+fn trajectory(file: &str, motion: &str, more: &[&str]) -> Run {
+    opm(&[&["trajectory", file, "--motion", motion], more].concat())
+}
+
+fn json(file: &str, motion: &str, more: &[&str]) -> Value {
+    trajectory(file, motion, &[&["--format", "json"], more].concat()).json()
+}
+
+/// A motion file of the helical manipulator whose third slider, `S3 = sin(165 deg) 25 mm - x` (Eq. 27
+/// of the paper), passes its limit of 400 mm by a tenth of a millimetre, between two samples.
+fn short_excursion(folder: &Folder) -> String {
+    let amplitude = 400.1 - 25.0 * (165.0_f64.to_radians()).sin();
+    let x = format!("x = {{ amplitude = {amplitude}, frequency = 0.5, phase = 171 }}");
+    let text = format!("{HEAD}duration = 2\nrate = 10\n[coordinates]\n{x}\n");
+    folder.write("excursion.toml", text)
+}
+
+#[test]
+fn a_shipped_motion_is_followed() {
+    for (file, motion) in [(PLANO, SINUSOIDS), (HELICAL, "translational-helical-sinusoids")] {
+        let found = json(file, motion, &[]);
+        let expected = [
+            "name",
+            "motion",
+            "mode",
+            "start",
+            "duration",
+            "rate",
+            "samples",
+            "reached",
+            "valid",
+            "joints",
+            "imaginary",
+            "condition",
+            "violation_count",
+            "violations",
+        ];
+        assert_eq!(keys(&found), expected);
+        assert_eq!((&found["samples"], &found["valid"]), (&json!(1001), &json!(1001)));
+        assert_eq!(found["violations"], json!([]));
+        assert!(number(&found["condition"]["worst"]) >= 1.0);
+        for ranges in found["joints"].as_object().unwrap().values() {
+            assert_eq!(keys(ranges), ["position", "velocity", "acceleration"]);
+            assert!(number(&ranges["position"][0]) <= number(&ranges["position"][1]));
+        }
+    }
+    let text = trajectory(PLANO, SINUSOIDS, &[]);
+    for part in ["1,001 samples", "S1", "theta11", "condition number at most"] {
+        assert!(text.text().contains(part), "{}", text.stdout);
+    }
+    let strict = trajectory(PLANO, SINUSOIDS, &["--strict", "--quiet"]);
+    assert_eq!((strict.code, &*strict.stderr), (Some(0), ""));
+}
+
+#[test]
+fn what_cannot_be_followed_is_told_between_samples() {
+    let folder = Folder::new();
+    let motion = short_excursion(&folder);
+    let found = json(HELICAL, &motion, &["--quiet"]);
+    assert_eq!(
+        (&found["samples"], &found["valid"]),
+        (&json!(21), &json!(21)),
+        "no sample is past it"
+    );
+    assert_eq!(found["violation_count"], 1);
+    let violation = &found["violations"][0];
+    let expected = ["kind", "start", "end", "worst", "amount", "unit", "leg", "joint", "bound"];
+    assert_eq!(keys(violation), expected);
+    assert_eq!(violation["kind"], "limit");
+    assert_eq!((&violation["leg"], &violation["joint"]), (&json!("leg3"), &json!("S3")));
+    assert_eq!((&violation["unit"], &violation["bound"]), (&json!("m"), &json!("highest")));
+    assert!((number(&violation["amount"]) - 1e-4).abs() < 1e-12, "{violation}");
+    // x is lowest where 180 deg t + 171 deg is 270 deg.
+    assert!((number(&violation["worst"]) - 99.0 / 180.0).abs() < 1e-7, "{violation}");
+    let amplitude = 400.1 - 25.0 * (165.0_f64.to_radians()).sin();
+    let half = ((amplitude - 0.1) / amplitude).acos() / PI;
+    for (end, sign) in [("start", -1.0), ("end", 1.0)] {
+        let expected = 99.0 / 180.0 + sign * half;
+        assert!((number(&violation[end]) - expected).abs() < 1e-10, "{violation}");
+    }
+}
+
+#[test]
+fn strict_fails_after_everything_is_written() {
+    let folder = Folder::new();
+    let motion = short_excursion(&folder);
+    let out = folder.arg("out.mcap");
+    let run = trajectory(HELICAL, &motion, &["-o", &out, "--strict"]);
+    assert_eq!(run.code, Some(1));
+    assert!(run.stdout.contains("S3 past its highest value by 0.100 mm"), "{}", run.stdout);
+    assert!(run.stderr.contains("--strict"), "{}", run.stderr);
+    let lax = trajectory(HELICAL, &motion, &["-o", &out]);
+    assert!(lax.stderr.contains("warning: the mechanism cannot follow all of it: 1 violation"));
+    assert_eq!(lax.code, Some(0));
+    let inside = opm(&["inspect", &out, "--format", "json"]).json();
+    assert_eq!(inside["complete"], true);
+    assert_eq!(inside["metadata"]["violation.1"]["joint"], "S3");
+    assert_eq!(inside["metadata"]["result"]["violations"], "1");
+    assert_eq!(inside["metadata"]["roles"]["S3"], "actuated");
+    assert_eq!(inside["metadata"]["quantities"]["phi"], "rad");
+    let topics = inside["topics"].as_array().unwrap();
+    let messages = |name: &str| {
+        let topic = topics.iter().find(|topic| topic["name"] == name);
+        topic.map_or(0, |topic| topic["messages"].as_u64().unwrap())
+    };
+    for topic in ["/joints", "/velocities", "/accelerations", "/pose", "/condition", "/tf"] {
+        assert_eq!(messages(topic), 21, "{topic}");
+    }
+    assert_eq!((messages("/violations"), messages("/scene")), (2, 1));
+    assert_eq!(folder.names(), ["excursion.toml", "out.mcap"]);
+}
+
+/// A table that says what a motion file says; the knots lie as near as the spline is to be good.
+#[test]
+fn a_table_is_followed_like_its_formula() {
+    let folder = Folder::new();
+    let x = |t: f64| 0.05 * (2.0 * PI * 0.2 * t).sin();
+    // Wrapped at half a turn: a full turn in ten seconds.
+    let phi = |t: f64| (0.2 * PI * t + PI).rem_euclid(2.0 * PI) - PI;
+    let rows: String = (0..=400)
+        .map(|i| f64::from(i) / 40.0)
+        .map(|t| format!("{t},{},{}\n", phi(t), x(t)))
+        .collect();
+    let table = folder.write("poses.csv", format!("t,phi,x\n{rows}"));
+    let turn = "phi = [{ amplitude = 0, frequency = 1 }]";
+    let text = format!("{HEAD}duration = 10\nrate = 100\n[coordinates]\n{turn}\n");
+    let still = folder.write("still.toml", text);
+    let [by_table, at_rest] = [&table, &still].map(|motion| json(HELICAL, motion, &["--quiet"]));
+    assert_eq!(by_table["samples"], 1001);
+    // The helical joint counts whole turns: such an angle is taken as it stands, jump and all.
+    let slide = &by_table["imaginary"]["S"]["position"];
+    assert!(number(&slide[1]) < 0.0201 * PI * 1.2, "{slide}");
+    assert_eq!(at_rest["imaginary"]["S"]["position"], json!([0.0, 0.0]));
+
+    let zeta = |t: f64| (0.2 * PI * t + PI).rem_euclid(2.0 * PI) - PI;
+    let rows: String =
+        (0..=400).map(|i| f64::from(i) / 40.0).map(|t| format!("{t},{}\n", zeta(t))).collect();
+    let table = folder.write("turn.csv", format!("t,zeta\n{rows}"));
+    let found = json(PLANO, &table, &["--quiet"]);
+    let turned = &found["joints"]["s4.z"]["velocity"];
+    // Unwrapped, it turns on at the same speed all the time.
+    for end in 0..2 {
+        assert!((number(&turned[end]) - 0.2 * PI).abs() < 1e-6, "{turned}");
+    }
+}
+
+#[test]
+fn rate_and_mode_win_over_the_file() {
+    let folder = Folder::new();
+    let text = format!("{HEAD}duration = 1\nrate = 10\nmode = \"-+ ++ ++ +\"\n[coordinates]\n");
+    let motion = folder.write("m.toml", text);
+    let found = json(PLANO, &motion, &[]);
+    assert_eq!((&found["mode"], &found["samples"]), (&json!("-+ ++ ++ +"), &json!(11)));
+    let found = json(PLANO, &motion, &["--mode", "home", "--rate", "2.5"]);
+    // At 0, 0.4, 0.8 and the end.
+    assert_eq!((&found["mode"], &found["samples"]), (&json!("++ ++ ++ +"), &json!(4)));
+}
+
+#[test]
+fn a_wrong_motion_is_told_with_its_places() {
+    let folder = Folder::new();
+    let text = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+        duration = 0\nspeed = 3\nmode = \"+\"\n[coordinates]\nyaw = 1\n\
+        x = { amplitud = 3, frequency = \"fast\" }\ny = [1, { amplitude = nan, frequency = 1 }]\n";
+    let motion = folder.write("m.toml", text);
+    trajectory(PLANO, &motion, &[]).fails(
+        1,
+        &[
+            "m.toml:4:12: `duration` is 0, expected a number of seconds, above 0",
+            "m.toml:5:1: unknown key `speed`",
+            "m.toml:6:8: `mode` is \"+\"",
+            "m.toml:8:1: unknown key `yaw`",
+            "m.toml:9:5: `amplitude` is missing",
+            "m.toml:9:7: unknown key `amplitud`, did you mean `amplitude`",
+            "m.toml:9:33: `frequency` is a string, expected a number",
+            "m.toml:10:23: `amplitude` is nan, expected a finite number",
+            "`rate` is missing",
+        ],
+    );
+    for (text, parts) in [
+        ("", &["the file is empty", "zeta, xi, psi"][..]),
+        ("t,x\n", &["0 times, expected at least 3"]),
+        ("t,x\n0,0\n1,0\n", &["poses.csv:3:1: 2 times, expected at least 3"]),
+        ("x,y\n", &["poses.csv:1:1: no column t"]),
+        ("t,x,x\n", &["poses.csv:1:5: x is there twice"]),
+        ("t,yaw\n", &["poses.csv:1:3: no coordinate \"yaw\""]),
+        (
+            "t,x\n0,0\n1,much\n1,inf\n0.5,0,7\n2\n",
+            &[
+                "poses.csv:3:3: \"much\", expected a finite number",
+                "poses.csv:4:1: t is 1 after 1, expected a later time",
+                "poses.csv:4:3: \"inf\"",
+                "poses.csv:5:1: 3 cells, expected 2",
+                "poses.csv:6:1: 1 cells, expected 2",
+            ],
+        ),
+    ] {
+        let table = folder.write("poses.csv", text);
+        trajectory(PLANO, &table, &[]).fails(1, parts);
+    }
+}
+
+#[test]
+fn wrong_usage_names_the_flag() {
+    let folder = Folder::new();
+    trajectory(PLANO, "no-such-motion", &[])
+        .fails_with_one_line(1, &["no-such-motion", "no such motion; there are", SINUSOIDS]);
+    trajectory(PLANO, "none.toml", &[]).fails_with_one_line(1, &["none.toml: no such file"]);
+    for rate in ["0", "-1", "nan", "fast", "1e10"] {
+        trajectory(PLANO, SINUSOIDS, &["--rate", rate]).fails(2, &["--rate"]);
+    }
+    trajectory(PLANO, SINUSOIDS, &["--mode", "+"]).fails_with_one_line(2, &["--mode"]);
+    trajectory(PLANO, SINUSOIDS, &["-o", "-"]).fails_with_one_line(2, &["--output"]);
+    opm(&["trajectory", PLANO]).fails(2, &["--motion"]);
+    let motion = folder.write("m.toml", format!("{HEAD}duration = 1\nrate = 1\n[coordinates]\n"));
+    trajectory(PLANO, &motion, &["-o", &motion]).fails_with_one_line(2, &["--output", "input"]);
+    let nowhere = folder.arg("no/such/folder.mcap");
+    trajectory(PLANO, SINUSOIDS, &["-o", &nowhere]).fails_with_one_line(1, &["folder.mcap"]);
+    // The helical manipulator has no such coordinates.
+    trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "`x`, `y`, `phi`"]);
+    assert_eq!(folder.names(), ["m.toml"]);
+}

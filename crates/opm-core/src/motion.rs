@@ -1,0 +1,169 @@
+//! Motions of the platform: its pose as a function of time, twice differentiable.
+//!
+//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a table of
+//! poses ([`table`]: cubic splines). Either way it is a formula in time, whose derivatives are exact:
+//! nothing is sampled until somebody asks for an instant.
+
+pub mod examples;
+pub mod file;
+mod spline;
+pub mod table;
+
+use crate::manipulator::Mode;
+pub use spline::{Spline, SplineError};
+use std::f64::consts::TAU;
+
+/// `amplitude · sin(2π · frequency · t + phase)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sinusoid {
+    /// Metres or radians.
+    pub amplitude: f64,
+    /// Hertz.
+    pub frequency: f64,
+    /// Radians.
+    pub phase: f64,
+}
+
+/// A constant and sinusoids, added up: one task coordinate as time goes on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Harmonics {
+    /// Metres or radians.
+    pub offset: f64,
+    /// Any number of them; none for a coordinate that stands still.
+    pub sinusoids: Vec<Sinusoid>,
+}
+
+/// How the task coordinates follow time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Path {
+    /// Each a sum of sinusoids.
+    Harmonics(Vec<Harmonics>),
+    /// Each a cubic spline, all on the same knots.
+    Spline(Spline),
+}
+
+/// A motion of the platform, in the task coordinates of one manipulator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Name; a table of poses has none of its own.
+    pub name: String,
+    /// When it starts, seconds.
+    pub start: f64,
+    /// How long it lasts, seconds; positive.
+    pub duration: f64,
+    /// Samples a second that its file asks for.
+    pub rate: Option<f64>,
+    /// The working mode that its file asks for.
+    pub mode: Option<Mode>,
+    /// Where it goes.
+    pub path: Path,
+}
+
+/// Where the platform is, and how that changes: task coordinates in their order, metres and radians
+/// and seconds. Rates of Euler angles are rates of those angles, not an angular velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instant {
+    /// The pose.
+    pub pose: Vec<f64>,
+    /// Its first derivative by time.
+    pub velocity: Vec<f64>,
+    /// Its second derivative by time.
+    pub acceleration: Vec<f64>,
+}
+
+impl Instant {
+    /// A buffer for this many task coordinates.
+    pub fn new(coordinates: usize) -> Self {
+        let zeros = || vec![0.0; coordinates];
+        Self { pose: zeros(), velocity: zeros(), acceleration: zeros() }
+    }
+}
+
+impl Motion {
+    /// The pose and its derivatives at time `t`, seconds. Beyond the ends of a spline, whose formula
+    /// ends there, those at the end.
+    ///
+    /// # Panics
+    /// If `out` is for another number of coordinates.
+    pub fn at(&self, t: f64, out: &mut Instant) {
+        match &self.path {
+            Path::Harmonics(coordinates) => {
+                assert_eq!(coordinates.len(), out.pose.len(), "coordinates of the motion");
+                for (i, harmonics) in coordinates.iter().enumerate() {
+                    let [value, first, second] = harmonics.at(t);
+                    out.pose[i] = value;
+                    out.velocity[i] = first;
+                    out.acceleration[i] = second;
+                }
+            }
+            Path::Spline(spline) => spline.at(t, out),
+        }
+    }
+
+    /// When it ends, seconds.
+    pub fn end(&self) -> f64 {
+        self.start + self.duration
+    }
+}
+
+impl Harmonics {
+    /// Stands still.
+    pub fn constant(offset: f64) -> Self {
+        Self { offset, sinusoids: Vec::new() }
+    }
+
+    /// Value, first and second derivative by time.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let mut sum = [self.offset, 0.0, 0.0];
+        for Sinusoid { amplitude, frequency, phase } in &self.sinusoids {
+            let rate = TAU * frequency;
+            let (sin, cos) = (rate * t + phase).sin_cos();
+            sum[0] += amplitude * sin;
+            sum[1] += amplitude * rate * cos;
+            sum[2] -= amplitude * rate * rate * sin;
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pendulum's numbers: a quarter of a period after the middle it is at its end, at rest.
+    #[test]
+    fn a_sinusoid_is_where_a_pendulum_is() {
+        let swing = Sinusoid { amplitude: 0.5, frequency: 2.0, phase: TAU / 4.0 };
+        let slow = Sinusoid { amplitude: 3.0, frequency: 0.25, phase: 0.0 };
+        let harmonics = Harmonics { offset: 1.0, sinusoids: vec![swing, slow] };
+        let rate = [2.0 * TAU, 0.25 * TAU];
+        // At t = 1 s the swing has made two periods, from its end; the slow one is at its end.
+        let [value, first, second] = harmonics.at(1.0);
+        assert!((value - (1.0 + 0.5 + 3.0)).abs() < 1e-14);
+        assert!(first.abs() < 1e-13);
+        assert!((second + 0.5 * rate[0] * rate[0] + 3.0 * rate[1] * rate[1]).abs() < 1e-11);
+        // An eighth of a second later the swing passes the middle, downwards.
+        let [value, first, _] = harmonics.at(1.125);
+        let angle = rate[1] * 1.125;
+        assert!((value - (1.0 + 3.0 * angle.sin())).abs() < 1e-14);
+        assert!((first - (-0.5 * rate[0] + 3.0 * rate[1] * angle.cos())).abs() < 1e-13);
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_value() {
+        let sinusoid = |i: f64| Sinusoid { amplitude: 1.0 / i, frequency: 0.3 * i, phase: i };
+        let harmonics =
+            Harmonics { offset: -2.0, sinusoids: (1..5).map(|i| sinusoid(f64::from(i))).collect() };
+        const STEP: f64 = 1e-5;
+        // STEP² / 6 times the sum of amplitude · rate⁴, and rounding.
+        const DIFFERENCE: f64 = 1e-7;
+        for i in 0..100 {
+            let t = 0.173 * f64::from(i);
+            let [before, at, after] = [t - STEP, t, t + STEP].map(|t| harmonics.at(t));
+            for order in 0..2 {
+                let difference = (after[order] - before[order]) / (2.0 * STEP);
+                assert!((difference - at[order + 1]).abs() < DIFFERENCE, "{t}: order {order}");
+            }
+        }
+    }
+}

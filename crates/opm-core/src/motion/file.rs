@@ -1,0 +1,140 @@
+//! Motion files: TOML in, a [`Motion`] out, or every problem of the file with its place.
+//!
+//! ```toml
+//! format = 1
+//! name = "figure-of-eight"
+//! units = { length = "mm", angle = "deg" }   # as in mechanism files
+//! duration = 10                              # seconds
+//! rate = 100                                 # samples a second
+//! mode = "++ ++ ++ +"                        # may be left out: home's
+//!
+//! [coordinates]                              # task coordinates, absolute; what is left out stays home
+//! x = { amplitude = 30, frequency = 0.2 }
+//! y = { amplitude = 15, frequency = 0.4, phase = 90, offset = 10 }
+//! zeta = 5
+//! xi = [{ amplitude = 10, frequency = 0.1 }, { amplitude = 2, frequency = 0.7, phase = 45 }]
+//! ```
+//!
+//! A coordinate is a number, which it keeps; one sinusoid; or an array of sinusoids, which are added
+//! up:
+//!
+//! ```text
+//! offset + amplitude · sin(2π · frequency · t + phase)
+//! ```
+//!
+//! Amplitudes and offsets are in the file's unit of what the coordinate measures, phases in its unit
+//! of angle; frequencies are in hertz and times in seconds whatever the units. `phase` and `offset`
+//! are zero where they are not given. Unknown keys are problems, with the nearest known one as a
+//! hint.
+
+use super::{Harmonics, Motion, Path, Sinusoid};
+use crate::joint::Quantity;
+use crate::manipulator::{Manipulator, Mode};
+use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
+
+/// Reads the text of a motion file, in the task coordinates and working modes of `manipulator`.
+///
+/// # Errors
+/// Every problem of the file. Where the text is not TOML: the parser's problems only.
+pub fn read(text: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
+    document(text, "motion", |root| read_document(root, manipulator))
+}
+
+fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Motion> {
+    let name = head(root, "motion")?;
+    root.allow(&["format", "name", "units", "duration", "rate", "mode", "coordinates"]);
+    let positive = |key: &str, expected: &str| {
+        let value = root.require(key, expected)?;
+        let number = value.number()?;
+        if number > 0.0 && number <= LARGEST {
+            return Some(number);
+        }
+        value.report(format!("is {number}, expected {expected}, above 0 and at most {LARGEST:e}"));
+        None
+    };
+    let duration = positive("duration", "a number of seconds");
+    let rate = positive("rate", "a number of samples a second");
+    let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
+    let coordinates = root
+        .require("coordinates", "a table [coordinates] of what moves")
+        .and_then(|value| value.open_table())
+        .map(|table| read_coordinates(&table, manipulator));
+    Some(Motion {
+        name: name.to_owned(),
+        start: 0.0,
+        duration: duration?,
+        rate: Some(rate?),
+        mode,
+        path: Path::Harmonics(coordinates?),
+    })
+}
+
+fn read_mode(value: &Value<'_>, manipulator: &Manipulator) -> Option<Mode> {
+    let text = value.string()?;
+    if text == "home" {
+        return Some(manipulator.home_mode());
+    }
+    let mode = manipulator.parse_mode(text);
+    mode.map_err(|error| {
+        value.report(format!(
+            "is {text:?}: {}, expected `home` or one sign for every choice, a group a leg: {:?}",
+            error.problem, error.example
+        ));
+    })
+    .ok()
+}
+
+fn read_coordinates(table: &Table<'_>, manipulator: &Manipulator) -> Vec<Harmonics> {
+    let coordinates = manipulator.task_coordinates();
+    let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+    table.allow(&names);
+    let read = |c: &crate::task::TaskCoordinate| match table.get(c.name) {
+        Some(value) => read_harmonics(&value, c.quantity),
+        None => Harmonics::constant(c.home),
+    };
+    coordinates.iter().map(read).collect()
+}
+
+fn read_harmonics(value: &Value<'_>, quantity: Quantity) -> Harmonics {
+    let mut sum = Harmonics::default();
+    let mut add = |value: &Value<'_>| {
+        if !value.is_table() {
+            sum.offset += value.quantity(quantity).unwrap_or_default();
+            return;
+        }
+        let Some(table) = value.table(&["amplitude", "frequency", "phase", "offset"]) else {
+            return;
+        };
+        let amplitude = table
+            .require("amplitude", "how far it swings to either side")
+            .and_then(|value| value.quantity(quantity));
+        let frequency = table
+            .require("frequency", "a number of hertz")
+            .and_then(|value| read_frequency(&value));
+        let of = |key: &str, quantity| {
+            let value = table.get(key).and_then(|value| value.quantity(quantity));
+            value.unwrap_or_default()
+        };
+        sum.offset += of("offset", quantity);
+        let phase = of("phase", Quantity::Angle);
+        if let (Some(amplitude), Some(frequency)) = (amplitude, frequency) {
+            sum.sinusoids.push(Sinusoid { amplitude, frequency, phase });
+        }
+    };
+    if value.is_array() {
+        let items = value.items("a number, a sinusoid or an array of sinusoids");
+        items.unwrap_or_default().iter().for_each(&mut add);
+    } else {
+        add(value);
+    }
+    sum
+}
+
+fn read_frequency(value: &Value<'_>) -> Option<f64> {
+    let frequency = value.number()?;
+    if frequency.abs() > LARGEST {
+        value.report(format!("is {frequency:e}, expected at most {LARGEST:e} hertz"));
+        return None;
+    }
+    Some(frequency)
+}

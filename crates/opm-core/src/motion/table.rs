@@ -1,0 +1,209 @@
+//! Motions as CSV: times and poses, with cubic splines between them.
+//!
+//! The first line is a header: `t` and task coordinates, in any order; a coordinate that it does not
+//! name stays at home. Every other line is a pose: seconds, metres and radians. Times increase from
+//! line to line, evenly or not, and there are at least three.
+//!
+//! Between the lines runs the natural cubic spline ([`Spline`]): position, velocity and acceleration
+//! are continuous, and at both ends the acceleration is zero, while the velocity there is whatever
+//! the poses say. Angles are unwrapped first: each is brought within half a turn of the line before,
+//! so that a table that wraps around at ±π moves on and does not spin back. An angle whose whole
+//! turns matter, because a helical joint follows it, is taken as it stands.
+
+use super::{Motion, Path, Spline};
+use crate::joint::Quantity;
+use crate::manipulator::Manipulator;
+use crate::mechanism::file::{FileErrors, LARGEST, Problem};
+use std::f64::consts::TAU;
+
+/// Problems that are told one by one; a file with more of them is another kind of file.
+const MOST_PROBLEMS: usize = 100;
+
+/// Reads the text of a table of poses, in the task coordinates of `manipulator`. The motion has the
+/// name `name`.
+///
+/// # Errors
+/// Every problem of the table with its line and column; from the hundredth on, only how many more.
+pub fn read(text: &str, name: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
+    let mut problems = Problems::default();
+    let motion = read_table(text, name, manipulator, &mut problems);
+    match motion {
+        Some(motion) if problems.list.is_empty() => Ok(motion),
+        _ => Err(problems.into_errors()),
+    }
+}
+
+#[derive(Default)]
+struct Problems {
+    list: Vec<Problem>,
+    more: usize,
+}
+
+impl Problems {
+    fn report(&mut self, line: usize, column: usize, message: impl Into<String>) {
+        if self.list.len() < MOST_PROBLEMS {
+            self.list.push(Problem { line, column, message: message.into() });
+        } else {
+            self.more += 1;
+        }
+    }
+
+    fn into_errors(mut self) -> FileErrors {
+        if self.more > 0 {
+            let last = self.list.last().map_or(1, |problem| problem.line);
+            let message = format!("and {} more problems from here on", self.more);
+            self.list.push(Problem { line: last, column: 1, message });
+        }
+        FileErrors { problems: self.list }
+    }
+}
+
+/// The cells of a line with their columns, counted in characters from 1.
+fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut column = 1;
+    line.split(',').map(move |cell| {
+        let blank = cell.chars().take_while(|c| c.is_whitespace()).count();
+        let at = column + blank;
+        column += cell.chars().count() + 1;
+        let text = cell.trim();
+        let quoted = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        (at, quoted.map_or(text, str::trim))
+    })
+}
+
+fn read_table(
+    text: &str,
+    name: &str,
+    manipulator: &Manipulator,
+    problems: &mut Problems,
+) -> Option<Motion> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line));
+    let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
+    let expected = || {
+        let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+        format!("expected a header of t and of task coordinates ({})", names.join(", "))
+    };
+    let Some((number, header)) = lines.next() else {
+        problems.report(1, 1, format!("the file is empty, {}", expected()));
+        return None;
+    };
+    let columns = read_header(number, header, manipulator, problems, &expected)?;
+
+    let mut times: Vec<f64> = Vec::new();
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); manipulator.task_coordinates().len()];
+    let mut last = number;
+    for (number, line) in lines {
+        last = number;
+        read_row(Row { number, line, columns: &columns }, &mut times, &mut values, problems);
+    }
+    if !problems.list.is_empty() {
+        return None;
+    }
+    for (coordinate, values) in manipulator.task_coordinates().iter().zip(&mut values) {
+        if values.is_empty() {
+            values.resize(times.len(), coordinate.home);
+        }
+        let wraps =
+            coordinate.quantity == Quantity::Angle && !manipulator.counts_turns(coordinate.name);
+        if wraps {
+            unwrap(values);
+        }
+    }
+    let (start, end) = (*times.first().unwrap_or(&0.0), *times.last().unwrap_or(&0.0));
+    match Spline::new(times, values) {
+        Ok(spline) => Some(Motion {
+            name: name.to_owned(),
+            start,
+            duration: end - start,
+            rate: None,
+            mode: None,
+            path: Path::Spline(spline),
+        }),
+        Err(error) => {
+            problems.report(last, 1, error.to_string());
+            None
+        }
+    }
+}
+
+/// What a column of the table is: `None` the time, or the number of a task coordinate.
+type Column = Option<usize>;
+
+fn read_header(
+    number: usize,
+    header: &str,
+    manipulator: &Manipulator,
+    problems: &mut Problems,
+    expected: &dyn Fn() -> String,
+) -> Option<Vec<Column>> {
+    let coordinates = manipulator.task_coordinates();
+    let mut columns: Vec<Column> = Vec::new();
+    for (at, cell) in cells(header) {
+        let column = match coordinates.iter().position(|c| c.name == cell) {
+            _ if cell == "t" => None,
+            Some(coordinate) => Some(coordinate),
+            None => {
+                problems.report(number, at, format!("no coordinate {cell:?}, {}", expected()));
+                continue;
+            }
+        };
+        if columns.contains(&column) {
+            problems.report(number, at, format!("{cell} is there twice, {}", expected()));
+        }
+        columns.push(column);
+    }
+    if !columns.contains(&None) && problems.list.is_empty() {
+        problems.report(number, 1, format!("no column t, {}", expected()));
+    }
+    problems.list.is_empty().then_some(columns)
+}
+
+/// A line to be read.
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    number: usize,
+    line: &'a str,
+    columns: &'a [Column],
+}
+
+fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problems: &mut Problems) {
+    let Row { number, line, columns } = row;
+    let mut found = 0;
+    for (at, cell) in cells(line) {
+        let Some(column) = columns.get(found) else {
+            found += 1;
+            continue;
+        };
+        found += 1;
+        let value: f64 = cell.parse().unwrap_or(f64::NAN);
+        if value.is_nan() || value.abs() > LARGEST {
+            let expected = format!("expected a finite number of at most {LARGEST:e}");
+            problems.report(number, at, format!("{cell:?}, {expected}"));
+            continue;
+        }
+        match column {
+            Some(coordinate) => values[*coordinate].push(value),
+            None => {
+                if let Some(&before) = times.last()
+                    && value <= before
+                {
+                    let problem = format!("t is {value} after {before}, expected a later time");
+                    problems.report(number, at, problem);
+                }
+                times.push(value);
+            }
+        }
+    }
+    if found != columns.len() {
+        let (cells, expected) = (found, columns.len());
+        problems.report(number, 1, format!("{cells} cells, expected {expected} as in the header"));
+    }
+}
+
+/// Brings every angle within half a turn of the one before.
+fn unwrap(angles: &mut [f64]) {
+    for i in 1..angles.len() {
+        angles[i] -= TAU * ((angles[i] - angles[i - 1]) / TAU).round();
+    }
+}

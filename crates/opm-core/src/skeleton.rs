@@ -1,0 +1,427 @@
+//! The bodies of a mechanism: what there is to draw, and where each body is as the joints move.
+//!
+//! A mechanism is given by its joint screws alone; its links have no shapes. This module gives them
+//! shapes that follow from the screws: a pin along the axis of a revolute joint, a rail and a slider
+//! where one translates, a ball, and a rod between two successive joints of a leg. A joint is drawn
+//! at its centre, a point of its axis that both of its bodies hold, so that a drawing in which the
+//! centres coincide is an assembled mechanism.
+//!
+//! | body | what it is |
+//! |---|---|
+//! | `base` | does not move; the parent of all bodies but the imaginary joints' |
+//! | `LEG/JOINT` | the link outward of that joint |
+//! | `platform` | the link outward of every leg's last joint |
+//! | `lower_platform` | the body that the imaginary joints carry, `v` in `g = v · b` |
+//! | `imaginary/NAME` | the link of an imaginary joint; its parent is `lower_platform` |
+//!
+//! At home every body's frame is parallel to the base's, with its origin at the centre of the body's
+//! inner joint (of the platform: at its reference point).
+
+mod centre;
+mod solid;
+
+pub use solid::{Material, Part, Solid};
+
+use crate::decomposition::{Decomposition, Freedom};
+use crate::joint::{Joint, JointKind};
+use crate::manipulator::ImaginaryJoint;
+use crate::mechanism::Mechanism;
+use crate::screw::Screw;
+use crate::subspace::SubspaceClass;
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use solid::Sizes;
+
+/// One body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Name of the body and of its frame, unique.
+    pub name: String,
+    /// The body whose frame this one's is placed in; `None` for the base.
+    pub parent: Option<usize>,
+    /// Origin of its frame at home, base coordinates.
+    pub origin: Point3<f64>,
+    /// What it looks like, in its own frame.
+    pub parts: Vec<Part>,
+    /// The joints that it has a share in, in its own frame.
+    pub seats: Vec<Seat>,
+}
+
+/// A body's share in a joint: where in the body it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seat {
+    /// Name of the joint.
+    pub joint: String,
+    /// What it lets the body do.
+    pub motion: SeatMotion,
+    /// Its centre.
+    pub centre: Point3<f64>,
+    /// Direction of its axis; of a ball or a weld, any.
+    pub axis: Unit<Vector3<f64>>,
+}
+
+/// Where the centres of a joint are, as seen from its two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeatMotion {
+    /// In one place; the axis is one line (revolute).
+    Turn,
+    /// On one line, which is the axis of both (prismatic, cylindrical, helical).
+    Slide,
+    /// In one place (spherical, universal).
+    Ball,
+    /// In one place, and the two bodies move as one.
+    Weld,
+}
+
+impl SeatMotion {
+    /// `turn`, `slide`, `ball` or `weld`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::Slide => "slide",
+            Self::Ball => "ball",
+            Self::Weld => "weld",
+        }
+    }
+
+    fn of(kind: JointKind) -> Self {
+        match kind {
+            JointKind::Revolute => Self::Turn,
+            JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Cylindrical => {
+                Self::Slide
+            }
+            JointKind::Universal { .. } | JointKind::Spherical => Self::Ball,
+        }
+    }
+}
+
+/// Where the joints are: what places the bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct Posture<'a> {
+    /// Every joint coordinate as it is reported, leg by leg.
+    pub joints: &'a [f64],
+    /// Every imaginary joint as it is reported.
+    pub imaginary: &'a [f64],
+    /// The platform's displacement from home.
+    pub platform: Isometry3<f64>,
+}
+
+/// The bodies of a mechanism.
+#[derive(Clone, Debug)]
+pub struct Skeleton {
+    bodies: Vec<Body>,
+    legs: Vec<Vec<Mover>>,
+    platform: usize,
+    imaginary: Vec<ImaginaryBody>,
+    /// Coordinates of all joints together.
+    coordinates: usize,
+}
+
+/// How a joint moves the body outward of it.
+#[derive(Clone, Debug)]
+struct Mover {
+    /// `None` where that is the platform.
+    body: Option<usize>,
+    /// A screw and the value at home, a freedom; a ball's three are one rotation vector.
+    freedoms: Vec<(Screw, f64)>,
+    ball: Option<Point3<f64>>,
+}
+
+/// An imaginary joint's link.
+#[derive(Clone, Debug)]
+struct ImaginaryBody {
+    joint: ImaginaryJoint,
+    screw: Screw,
+    /// Coordinates of the leg's lower section, which are its first.
+    lower: usize,
+}
+
+/// The imaginary joints of a mechanism and the motion that they make.
+#[derive(Clone, Copy, Debug)]
+pub struct Cuts<'a> {
+    /// How the mechanism was decomposed.
+    pub decomposition: &'a Decomposition,
+    /// The imaginary joints as they are reported.
+    pub imaginary: &'a [ImaginaryJoint],
+}
+
+impl Skeleton {
+    /// The bodies of a mechanism and of its imaginary joints.
+    pub fn new(mechanism: &Mechanism, cuts: Cuts<'_>) -> Self {
+        let size = centre::size(mechanism);
+        Builder {
+            mechanism,
+            sizes: Sizes::of(size),
+            centres: centre::centres(mechanism, size),
+            bodies: Vec::new(),
+            movers: Vec::new(),
+        }
+        .build(cuts)
+    }
+
+    /// The bodies; the base is the first.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The transform of every body's frame to its parent's, in the order of [`Skeleton::bodies`]; the
+    /// base's is the identity.
+    ///
+    /// # Panics
+    /// If the posture is of another mechanism.
+    pub fn place(&self, posture: &Posture<'_>, out: &mut Vec<Isometry3<f64>>) {
+        assert_eq!(posture.joints.len(), self.coordinates, "joint coordinates");
+        assert_eq!(posture.imaginary.len(), self.imaginary.len(), "imaginary joints");
+        out.clear();
+        out.resize(self.bodies.len(), Isometry3::identity());
+        let at = |body: usize, displacement: Isometry3<f64>| {
+            displacement * Translation3::from(self.bodies[body].origin.coords)
+        };
+        out[self.platform] = at(self.platform, posture.platform);
+        let mut first = 0;
+        for (number, leg) in self.legs.iter().enumerate() {
+            let mut moved = Isometry3::identity();
+            let mut coordinate = 0;
+            // An imaginary joint's link rides on the last displacement of the lower section.
+            let cut = self.imaginary.iter().position(|i| i.joint.leg == number);
+            let mut lower = Isometry3::identity();
+            for mover in leg {
+                let values = &posture.joints[first + coordinate..];
+                for taken in 0..mover.freedoms.len() {
+                    if cut.is_some_and(|i| self.imaginary[i].lower == coordinate + taken) {
+                        lower = moved * mover.part(values, taken);
+                    }
+                }
+                moved *= mover.part(values, mover.freedoms.len());
+                coordinate += mover.freedoms.len();
+                if let Some(body) = mover.body {
+                    out[body] = at(body, moved);
+                }
+            }
+            if let Some(i) = cut {
+                let ImaginaryBody { joint, screw, .. } = &self.imaginary[i];
+                let tau = joint.displacement(posture.imaginary[i]);
+                let platform = self.platform + 1;
+                if i == 0 {
+                    out[platform] = at(platform, lower * screw.exp(-tau));
+                }
+                let body = platform + 1 + i;
+                let origin = Translation3::from(-self.bodies[platform].origin.coords);
+                out[body] = origin * at(body, screw.exp(tau));
+            }
+            first += coordinate;
+        }
+    }
+}
+
+impl Mover {
+    /// The displacement by the first so many of its freedoms.
+    fn part(&self, values: &[f64], freedoms: usize) -> Isometry3<f64> {
+        let from_home = |i: usize| values[i] - self.freedoms[i].1;
+        match self.ball {
+            Some(point) if freedoms == 3 => {
+                let vector = Vector3::from_fn(|i, _| from_home(i));
+                let rotation = UnitQuaternion::from_scaled_axis(vector);
+                let p = point.coords;
+                Isometry3::from_parts(Translation3::from(p - rotation * p), rotation)
+            }
+            Some(_) => Isometry3::identity(),
+            None => (0..freedoms)
+                .fold(Isometry3::identity(), |g, i| g * self.freedoms[i].0.exp(from_home(i))),
+        }
+    }
+}
+
+/// What a skeleton is put together with.
+struct Builder<'a> {
+    mechanism: &'a Mechanism,
+    sizes: Sizes,
+    /// Of every joint, leg by leg.
+    centres: Vec<Vec<Point3<f64>>>,
+    bodies: Vec<Body>,
+    movers: Vec<Vec<Mover>>,
+}
+
+impl Builder<'_> {
+    fn build(mut self, cuts: Cuts<'_>) -> Skeleton {
+        let mechanism = self.mechanism;
+        self.add("base".into(), None, Point3::origin());
+        for (leg, centres) in mechanism.legs.iter().zip(self.centres.clone()) {
+            let (outer, links) = leg.joints.split_last().unzip();
+            let mut movers = Vec::new();
+            for (joint, &centre) in links.unwrap_or_default().iter().zip(&centres) {
+                let body = self.add(format!("{}/{}", leg.name, joint.name), Some(0), centre);
+                movers.push(Mover::new(joint, Some(body)));
+            }
+            movers.extend(outer.map(|joint: &Joint| Mover::new(joint, None)));
+            self.movers.push(movers);
+        }
+        let platform = self.add("platform".into(), Some(0), mechanism.platform);
+        self.draw_base();
+        for leg in 0..mechanism.legs.len() {
+            self.draw_leg(leg, platform);
+        }
+        let ball = Solid::ball(mechanism.platform, self.sizes.ball);
+        self.draw(platform, ball, Material::Platform);
+        let imaginary = self.imaginary(cuts);
+        Skeleton {
+            coordinates: mechanism.coordinates().count(),
+            bodies: self.bodies,
+            legs: self.movers,
+            platform,
+            imaginary,
+        }
+    }
+
+    fn add(&mut self, name: String, parent: Option<usize>, origin: Point3<f64>) -> usize {
+        let (parts, seats) = (Vec::new(), Vec::new());
+        self.bodies.push(Body { name, parent, origin, parts, seats });
+        self.bodies.len() - 1
+    }
+
+    /// Adds a solid, given in base coordinates at home.
+    fn draw(&mut self, body: usize, solid: Solid, material: Material) {
+        let body = &mut self.bodies[body];
+        body.parts.push(Part { solid: solid.moved(-body.origin.coords), material });
+    }
+
+    /// Two bodies share a joint; its centre is given in base coordinates at home.
+    fn seat(&mut self, bodies: [usize; 2], seat: &Seat) {
+        for body in bodies {
+            let body = &mut self.bodies[body];
+            let centre = seat.centre - body.origin.coords;
+            body.seats.push(Seat { centre, ..seat.clone() });
+        }
+    }
+
+    fn rod(&mut self, body: usize, ends: [Point3<f64>; 2], material: Material) {
+        if (ends[1] - ends[0]).norm() > self.sizes.touch {
+            self.draw(body, Solid::rod(ends, self.sizes.rod), material);
+        }
+    }
+
+    /// A ring of rods from leg to leg.
+    fn draw_base(&mut self) {
+        let feet: Vec<_> = self.centres.iter().filter_map(|leg| leg.first().copied()).collect();
+        let feet = centre::around(feet);
+        let count = if feet.len() > 2 { feet.len() } else { 1 };
+        for i in 0..count {
+            self.rod(0, [feet[i], feet[(i + 1) % feet.len()]], Material::Base);
+        }
+    }
+
+    fn draw_leg(&mut self, number: usize, platform: usize) {
+        let leg = &self.mechanism.legs[number];
+        let centres = self.centres[number].clone();
+        let outer = |i: usize| self.movers[number][i].body.unwrap_or(platform);
+        let bodies: Vec<usize> =
+            std::iter::once(0).chain((0..leg.joints.len()).map(outer)).collect();
+        for (i, joint) in leg.joints.iter().enumerate() {
+            let between = [bodies[i], bodies[i + 1]];
+            let material = |body: usize| match body {
+                0 => Material::Base,
+                body if body == platform => Material::Platform,
+                _ => Material::Link,
+            };
+            for (side, part) in self.sizes.joint(joint, centres[i]) {
+                let driven = if joint.actuated { Material::Actuated } else { Material::Passive };
+                let body = between[usize::from(side.outer)];
+                let material = if side.own { driven } else { material(body) };
+                self.draw(body, part, material);
+            }
+            let next = centres.get(i + 1).copied().unwrap_or(self.mechanism.platform);
+            self.rod(between[1], [centres[i], next], material(between[1]));
+            let motion = SeatMotion::of(joint.kind);
+            let (joint, axis) = (joint.name.clone(), joint.axis);
+            self.seat(between, &Seat { joint, motion, centre: centres[i], axis });
+        }
+    }
+
+    /// The imaginary joints: a shaft on the platform of the lower section, and on it a link for each
+    /// leg, which turns (or slides) by what is reported.
+    fn imaginary(&mut self, cuts: Cuts<'_>) -> Vec<ImaginaryBody> {
+        let (axis, point) = match &cuts.decomposition.intersection {
+            SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
+            SubspaceClass::Translation { axis } => (*axis, None),
+            _ => return Vec::new(),
+        };
+        let Some(first) = cuts.imaginary.first() else { return Vec::new() };
+        let ends: Vec<_> =
+            cuts.imaginary.iter().map(|joint| self.cut(joint, cuts.decomposition)).collect();
+        // Where a slide has no line of its own, it runs through the first leg's cut.
+        let line = point.unwrap_or(ends[0].centre);
+        let along = |p: &Point3<f64>| (p - line).dot(&axis);
+        let platform = self.add("lower_platform".into(), Some(0), line);
+        let screw = match point {
+            Some(point) => Screw::rotation(axis, point),
+            None => Screw::translation(axis),
+        };
+        let step = 2.5 * self.sizes.collar;
+        let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut imaginary = Vec::new();
+        for (i, (joint, end)) in cuts.imaginary.iter().zip(&ends).enumerate() {
+            // Next to each other along the axis, so that all of them are seen.
+            let height = along(&end.centre) + step * (i as f64 - 0.5 * (ends.len() - 1) as f64);
+            reach = [reach[0].min(height), reach[1].max(height)];
+            let centre = line + axis.into_inner() * height;
+            let body = self.add(format!("imaginary/{}", joint.name), Some(platform), centre);
+            let (motion, hub) = match point {
+                Some(_) => (SeatMotion::Turn, self.sizes.hub(centre, axis)),
+                None => (SeatMotion::Slide, self.sizes.block(centre, axis)),
+            };
+            self.draw(body, hub, Material::Imaginary);
+            if motion == SeatMotion::Turn {
+                self.draw(platform, self.sizes.pin(centre, axis), Material::Imaginary);
+            }
+            self.rod(body, [centre, end.centre], Material::Imaginary);
+            let name = joint.name.clone();
+            self.seat([platform, body], &Seat { joint: name, motion, centre, axis });
+            let weld = format!("{} on {}", joint.name, self.bodies[end.body].name);
+            let (motion, centre) = (SeatMotion::Weld, end.centre);
+            self.seat([body, end.body], &Seat { joint: weld, motion, centre, axis });
+            let lower = cuts.decomposition.legs[joint.leg].lower.len();
+            imaginary.push(ImaginaryBody { joint: joint.clone(), screw, lower });
+        }
+        let margin = if first.quantity == crate::joint::Quantity::Angle {
+            2.0 * step
+        } else {
+            self.sizes.travel
+        };
+        let shaft = [reach[0] - margin, reach[1] + margin].map(|h| line + axis.into_inner() * h);
+        self.draw(platform, Solid::rod(shaft, self.sizes.rod), Material::Imaginary);
+        imaginary
+    }
+
+    /// Where a leg's imaginary joint holds on to it: the outermost joint of its lower section.
+    fn cut(&self, joint: &ImaginaryJoint, decomposition: &Decomposition) -> End {
+        let split = &decomposition.legs[joint.leg];
+        let leg = &self.mechanism.legs[joint.leg];
+        let last = split.lower.last().copied().unwrap_or(Freedom { joint: 0, index: 0 });
+        let whole = last.index + 1 == leg.joints[last.joint].freedoms();
+        let movers = &self.movers[joint.leg];
+        // A joint that is cut in two has no link after its first freedoms: its centre is held by the
+        // link before it just as well.
+        let outward = if whole { Some(last.joint) } else { last.joint.checked_sub(1) };
+        let body = outward.map_or(Some(0), |joint| movers[joint].body);
+        End { centre: self.centres[joint.leg][last.joint], body: body.unwrap_or(0) }
+    }
+}
+
+/// Where an imaginary joint holds on to its leg.
+struct End {
+    centre: Point3<f64>,
+    body: usize,
+}
+
+impl Mover {
+    fn new(joint: &Joint, body: Option<usize>) -> Self {
+        let homes = joint.coordinates.iter().map(|c| c.home);
+        Self {
+            body,
+            freedoms: joint.screws().into_iter().zip(homes).collect(),
+            ball: (joint.kind == JointKind::Spherical).then_some(joint.point),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

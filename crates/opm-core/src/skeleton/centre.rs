@@ -1,0 +1,110 @@
+//! Where on its axis a joint is drawn.
+//!
+//! At the point that the mechanism gives it, with two exceptions. A slider goes to where the next
+//! joint stands on it. And axes of one centre (the joints of a spherical section) are drawn each at
+//! the same distance out from there, or all of their links would have no length.
+
+use crate::joint::{Joint, JointKind, Quantity};
+use crate::mechanism::Mechanism;
+use crate::mobility::frame;
+use nalgebra::{Point3, Vector3};
+
+/// Points closer than this, as a share of the mechanism's size, are one.
+pub(super) const TOUCH: f64 = 1e-6;
+
+/// How far out from a common centre its axes' joints are, as a share of the mechanism's size.
+const OUT: f64 = 0.25;
+
+/// A mechanism is at least this share of its longest slider's travel large, however small its links.
+const TRAVEL: f64 = 0.2;
+
+/// How large the mechanism is to look at, metres: the joints' points and the platform's lie within
+/// this distance of each other, unless sliders travel farther.
+pub(super) fn size(mechanism: &Mechanism) -> f64 {
+    let points: Vec<_> =
+        mechanism.joints().map(|joint| joint.point).chain([mechanism.platform]).collect();
+    let apart = |p: &Point3<f64>| points.iter().map(|q| (q - p).norm()).fold(0.0, f64::max);
+    let across = points.iter().map(apart).fold(0.0, f64::max);
+    let lengths = mechanism.coordinates().filter(|c| c.quantity == Quantity::Length);
+    let travel = lengths.filter_map(|c| c.limits.map(|[low, high]| high - low));
+    let size = travel.map(|travel| TRAVEL * travel).fold(across, f64::max);
+    // Where all axes go through one point there is no length but that of the drawing.
+    if size > 0.0 { size } else { frame(mechanism).length }
+}
+
+/// Centres of every joint, leg by leg.
+pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>> {
+    let touch = TOUCH * size;
+    let mut legs: Vec<Vec<_>> = mechanism
+        .legs
+        .iter()
+        .map(|leg| leg.joints.iter().map(|joint| joint.point).collect())
+        .collect();
+    let given = legs.clone();
+    for (number, (leg, centres)) in mechanism.legs.iter().zip(&mut legs).enumerate() {
+        for (i, joint) in leg.joints.iter().enumerate() {
+            let crowded = turns_about_axis(joint)
+                && (crowd(mechanism, &given, [number, i], touch)
+                    || (i + 1 == leg.joints.len()
+                        && (joint.point - mechanism.platform).norm() <= touch));
+            if crowded {
+                let out = joint.axis.into_inner() * (OUT * size);
+                // On the side of the joint before.
+                let behind = i > 0 && out.dot(&(centres[i - 1] - joint.point)) < -touch * size;
+                centres[i] = joint.point + if behind { -out } else { out };
+            }
+        }
+        for i in (0..leg.joints.len().saturating_sub(1)).rev() {
+            let joint = &leg.joints[i];
+            if joint.kind == JointKind::Prismatic {
+                let foot = foot(joint, &centres[i + 1]);
+                if (foot - centres[i + 1]).norm() <= touch {
+                    centres[i] = foot;
+                }
+            }
+        }
+    }
+    legs
+}
+
+/// Points in the order in which one passes them on the way around their middle.
+pub(super) fn around(mut points: Vec<Point3<f64>>) -> Vec<Point3<f64>> {
+    let sum: Vector3<f64> = points.iter().map(|p| p.coords).sum();
+    let middle = Point3::from(sum / points.len().max(1) as f64);
+    let out: Vec<Vector3<f64>> = points.iter().map(|p| p - middle).collect();
+    let pairs = out.iter().flat_map(|a| out.iter().map(move |b| (a, a.cross(b))));
+    let widest = pairs.max_by(|(_, m), (_, n)| m.norm().total_cmp(&n.norm()));
+    if let Some((&x, normal)) = widest {
+        let y = normal.normalize().cross(&x);
+        let angle = |p: &Point3<f64>| y.dot(&(p - middle)).atan2(x.dot(&(p - middle)));
+        points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    }
+    points
+}
+
+fn turns_about_axis(joint: &Joint) -> bool {
+    match joint.kind {
+        JointKind::Revolute | JointKind::Helical { .. } | JointKind::Cylindrical => true,
+        JointKind::Prismatic | JointKind::Universal { .. } | JointKind::Spherical => false,
+    }
+}
+
+/// Whether another joint turns about the same point, but about another axis.
+fn crowd(mechanism: &Mechanism, given: &[Vec<Point3<f64>>], own: [usize; 2], touch: f64) -> bool {
+    let joint = &mechanism.legs[own[0]].joints[own[1]];
+    let point = given[own[0]][own[1]];
+    mechanism.legs.iter().enumerate().any(|(number, leg)| {
+        leg.joints.iter().enumerate().any(|(i, other)| {
+            let same = [number, i] == own;
+            let near = (given[number][i] - point).norm() <= touch;
+            let across = !turns_about_axis(other) || joint.axis.cross(&other.axis).norm() > TOUCH;
+            !same && near && across && other.kind != JointKind::Prismatic
+        })
+    })
+}
+
+/// The point of a joint's axis that is nearest to `p`.
+fn foot(joint: &Joint, p: &Point3<f64>) -> Point3<f64> {
+    let axis: Vector3<f64> = joint.axis.into_inner();
+    joint.point + axis * axis.dot(&(p - joint.point))
+}

@@ -1,0 +1,109 @@
+//! Skeletons of the shipped mechanisms: at home, and that what shares a joint stays together.
+
+use super::*;
+use crate::manipulator::Manipulator;
+use crate::mechanism::examples::EXAMPLES;
+use crate::mechanism::file;
+use crate::mobility::frame;
+use std::collections::HashSet;
+
+/// Rounding of a leg's product of exponentials, as a share of the mechanism's size.
+const ROUNDING: f64 = 1e-12;
+
+fn manipulators() -> Vec<Manipulator> {
+    let mechanism = |text| file::read(text).unwrap().mechanism;
+    let all: Vec<_> =
+        EXAMPLES.iter().filter_map(|e| Manipulator::new(mechanism(e.text)).ok()).collect();
+    assert!(all.len() >= EXAMPLES.len() - 1, "all but the linkage");
+    all
+}
+
+fn skeleton(manipulator: &Manipulator) -> Skeleton {
+    let cuts =
+        Cuts { decomposition: manipulator.decomposition(), imaginary: manipulator.imaginary() };
+    Skeleton::new(manipulator.mechanism(), cuts)
+}
+
+/// Transforms to the base.
+fn absolute(skeleton: &Skeleton, placed: &[Isometry3<f64>]) -> Vec<Isometry3<f64>> {
+    let mut all: Vec<Isometry3<f64>> = Vec::new();
+    for (body, transform) in skeleton.bodies().iter().zip(placed) {
+        all.push(body.parent.map_or(*transform, |parent| all[parent] * transform));
+    }
+    all
+}
+
+#[test]
+fn at_home_frames_stand_at_their_origins() {
+    for manipulator in manipulators() {
+        let skeleton = skeleton(&manipulator);
+        let joints: Vec<f64> = manipulator.coordinates().iter().map(|c| c.home).collect();
+        let imaginary: Vec<f64> = manipulator.imaginary().iter().map(|j| j.home).collect();
+        let platform = Isometry3::identity();
+        let posture = Posture { joints: &joints, imaginary: &imaginary, platform };
+        let mut placed = Vec::new();
+        skeleton.place(&posture, &mut placed);
+        for (body, g) in skeleton.bodies().iter().zip(absolute(&skeleton, &placed)) {
+            assert!((g.translation.vector - body.origin.coords).norm() < ROUNDING, "{}", body.name);
+            assert!(g.rotation.angle() < ROUNDING, "{}", body.name);
+        }
+        let names: HashSet<_> = skeleton.bodies().iter().map(|b| &b.name).collect();
+        assert_eq!(names.len(), skeleton.bodies().len());
+    }
+}
+
+/// Every joint, real or imaginary, is seated in two bodies, whose views of it agree at poses around
+/// home. The platform is placed by the pose alone, so that this is also the closure of every leg.
+#[test]
+fn what_shares_a_joint_stays_together() {
+    for manipulator in manipulators() {
+        let name = &manipulator.mechanism().name;
+        let skeleton = skeleton(&manipulator);
+        let size = frame(manipulator.mechanism()).length;
+        let mut solution = manipulator.solution();
+        let mut placed = Vec::new();
+        let mut reached = 0;
+        for sample in 0..50 {
+            let step = |i: usize| (f64::from(sample) * (0.7 + i as f64)).sin();
+            let pose: Vec<f64> = manipulator
+                .task_coordinates()
+                .iter()
+                .enumerate()
+                .map(|(i, c)| match c.quantity {
+                    crate::joint::Quantity::Angle => c.home + 0.15 * step(i),
+                    crate::joint::Quantity::Length => c.home + 0.08 * size * step(i),
+                })
+                .collect();
+            if !manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap() {
+                continue;
+            }
+            reached += 1;
+            let platform = manipulator.task().displacement(&pose);
+            let (joints, imaginary) = (&solution.joints, &solution.imaginary);
+            skeleton.place(&Posture { joints, imaginary, platform }, &mut placed);
+            let frames = absolute(&skeleton, &placed);
+            let mut seats: Vec<(&Seat, Isometry3<f64>)> = Vec::new();
+            for (body, g) in skeleton.bodies().iter().zip(&frames) {
+                seats.extend(body.seats.iter().map(|seat| (seat, *g)));
+            }
+            let expected = manipulator.mechanism().joints().count() + 2 * imaginary.len();
+            assert_eq!(seats.len(), 2 * expected, "{name}");
+            for (seat, g) in &seats {
+                let other = seats.iter().find(|(o, h)| o.joint == seat.joint && h != g);
+                let Some((other, h)) = other else { continue };
+                let offset = h * other.centre - g * seat.centre;
+                let turned = (g * seat.axis).cross(&(h * other.axis)).norm();
+                let off = match seat.motion {
+                    SeatMotion::Turn => offset.norm() + size * turned,
+                    SeatMotion::Slide => offset.cross(&(g * seat.axis)).norm() + size * turned,
+                    SeatMotion::Ball => offset.norm(),
+                    SeatMotion::Weld => {
+                        offset.norm() + size * (g.rotation.inverse() * h.rotation).angle()
+                    }
+                };
+                assert!(off < 1e3 * ROUNDING * size, "{name}: {} is {off} apart", seat.joint);
+            }
+        }
+        assert!(reached > 20, "{name}: {reached}");
+    }
+}

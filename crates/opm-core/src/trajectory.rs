@@ -1,0 +1,414 @@
+//! A motion of the platform, followed by the joints: sampled at a rate, and watched in between.
+//!
+//! Along a motion no joint jumps by a turn: every angle is the one nearest to its last value
+//! ([`Manipulator::inverse_near`]), and the working mode stays the same. What the mechanism cannot
+//! follow is a [`Violation`]: a leg that does not reach, a joint past a limit (a passive one just as
+//! well), a singularity that is passed through.
+//!
+//! # What is found between the samples
+//!
+//! Each of these is watched by a [`Gauge`], a continuous function of time: how far a joint is from
+//! its limit; how far a leg is from the end of its reach, which is its serial singularity measure,
+//! or, out of reach, the gap; the signed parallel singularity measure of a section. A gauge and its
+//! slope are known at every sample. Then
+//!
+//! * where a gauge changes sign from one sample to the next, the time is found by bisection;
+//! * where it does not, but falls towards zero at the one sample and rises from it at the next, its
+//!   lowest value in between is found by a golden-section search; where that is past zero, both
+//!   crossings are found by bisection. However short the dip, these are all its crossings if the gauge
+//!   falls and rises but once between the two samples.
+//!
+//! What a gauge does more than once between two samples is not promised to be found: a rate that is
+//! several times the motion's highest frequency leaves nothing out. Times are good to
+//! [`RESOLUTION`] of the step from sample to sample; lowest values come with about 1e-8 of it.
+
+mod gauge;
+mod watch;
+
+pub use gauge::{Bound, Gauge, Part, Violation};
+pub use watch::Change;
+
+use crate::joint::Quantity;
+use crate::limits::Limits;
+use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
+use crate::motion::{Instant, Motion};
+use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
+
+/// Times are found to this share of the step between two samples.
+pub const RESOLUTION: f64 = 1e-10;
+
+/// Gauges are differenced over this share of the step: the sign of a slope is all that is asked, and
+/// the rounding of a gauge, some 1e-16, is far below.
+const SLOPE_STEP: f64 = 1e-3;
+
+/// More samples than this cannot be told apart by a double.
+const MOST_SAMPLES: f64 = 9e15;
+
+/// Why a motion cannot be sampled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TrajectoryError {
+    /// A rate that is no rate.
+    #[error(
+        "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
+    )]
+    Rate {
+        /// Samples a second.
+        rate: f64,
+        /// Of the motion, seconds.
+        duration: f64,
+    },
+    /// A pose that cannot be computed with.
+    #[error("at t = {time} s: {source}")]
+    Pose {
+        /// When, seconds.
+        time: f64,
+        /// Why.
+        source: PoseError,
+    },
+    /// A velocity or acceleration that cannot be computed with.
+    #[error("at t = {time} s: {source}")]
+    Velocity {
+        /// When, seconds.
+        time: f64,
+        /// Why.
+        source: VelocityError,
+    },
+}
+
+/// Everything at one instant.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Seconds.
+    pub time: f64,
+    /// The pose and its derivatives.
+    pub instant: Instant,
+    /// Every leg reaches the pose. Otherwise what follows is not to be read.
+    pub reached: bool,
+    /// The joints.
+    pub solution: Solution,
+    /// No leg is singular: the joints have rates.
+    pub regular: bool,
+    /// Rates and accelerations of the joints.
+    pub motion: velocity::Motion,
+    /// Condition number of the actuated joints' Jacobian; infinite in a singularity and out of reach.
+    pub condition: f64,
+    /// Singularity measures of the upper section.
+    pub upper: Measures,
+    /// Singularity measures of the lower section.
+    pub lower: Measures,
+    /// Of every gauge; `None` where it says nothing.
+    levels: Vec<Option<f64>>,
+    /// Their derivatives by time, of which the signs are to be relied on.
+    slopes: Vec<Option<f64>>,
+}
+
+impl Sample {
+    fn new(solver: &Solver<'_>) -> Self {
+        let manipulator = solver.manipulator;
+        Self {
+            time: solver.motion.start,
+            instant: Instant::new(manipulator.task_coordinates().len()),
+            reached: false,
+            solution: manipulator.solution(),
+            regular: false,
+            motion: manipulator.motion(),
+            condition: f64::INFINITY,
+            upper: Measures::default(),
+            lower: Measures::default(),
+            levels: vec![None; solver.gauges.len()],
+            slopes: vec![None; solver.gauges.len()],
+        }
+    }
+
+    /// Takes over what another sample of the same manipulator holds, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Instant { pose, velocity, acceleration } = &other.instant;
+        self.time = other.time;
+        self.instant.pose.clone_from(pose);
+        self.instant.velocity.clone_from(velocity);
+        self.instant.acceleration.clone_from(acceleration);
+        (self.reached, self.regular) = (other.reached, other.regular);
+        self.solution.copy_from(&other.solution);
+        self.motion.joint_rates.clone_from(&other.motion.joint_rates);
+        self.motion.joint_accelerations.clone_from(&other.motion.joint_accelerations);
+        self.motion.imaginary_rates.clone_from(&other.motion.imaginary_rates);
+        self.motion.imaginary_accelerations.clone_from(&other.motion.imaginary_accelerations);
+        self.motion.singular.clone_from(&other.motion.singular);
+        self.condition = other.condition;
+        (self.upper, self.lower) = (other.upper, other.lower);
+        self.levels.clone_from(&other.levels);
+        self.slopes.clone_from(&other.slopes);
+    }
+
+    /// The pose is in reach and within all limits.
+    pub fn valid(&self) -> bool {
+        self.reached && self.solution.within_limits
+    }
+}
+
+/// A motion as a manipulator follows it, sample by sample.
+pub struct Trajectory<'a> {
+    solver: Solver<'a>,
+    samples: u64,
+    next: u64,
+    previous: Sample,
+    current: Sample,
+    /// Room for what is looked at beside a sample.
+    probe: Sample,
+    open: Vec<Option<Violation>>,
+    changes: Vec<Change>,
+}
+
+/// What solves one instant.
+struct Solver<'a> {
+    manipulator: &'a Manipulator,
+    motion: &'a Motion,
+    mode: Mode,
+    rate: f64,
+    gauges: Vec<Gauge>,
+    /// The leg of every joint coordinate.
+    legs: Vec<usize>,
+    /// For the condition number, metres.
+    length: f64,
+    jacobians: Jacobians,
+    measured: Singularities,
+}
+
+/// Which way a slope is looked for: a motion has nothing beyond its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    Ahead,
+    Back,
+}
+
+/// Where the angles of a solution start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turns {
+    /// From home.
+    Home,
+    /// From what the solution held before.
+    Held,
+}
+
+impl<'a> Trajectory<'a> {
+    /// Prepares to follow `motion` in one working mode, at so many samples a second.
+    ///
+    /// The first sample is at the motion's start, the last at its end, whether or not that is a whole
+    /// number of steps away.
+    ///
+    /// # Errors
+    /// A rate that is not a positive number, or too high.
+    ///
+    /// # Panics
+    /// If the motion is for another number of task coordinates.
+    pub fn new(
+        manipulator: &'a Manipulator,
+        motion: &'a Motion,
+        mode: Mode,
+        rate: f64,
+    ) -> Result<Self, TrajectoryError> {
+        let steps = motion.duration * rate;
+        if !(rate > 0.0 && rate.is_finite() && steps <= MOST_SAMPLES) {
+            return Err(TrajectoryError::Rate { rate, duration: motion.duration });
+        }
+        // A whole number of steps that rounding has left a little short is whole.
+        let whole = (steps * (1.0 + 1e-12)).floor();
+        let samples = whole as u64 + 1 + u64::from(steps - whole > 1e-6);
+        let measured = manipulator.singularities();
+        let legs = manipulator.mechanism().legs.iter().enumerate();
+        let solver = Solver {
+            manipulator,
+            motion,
+            mode,
+            rate,
+            gauges: gauge::gauges(manipulator),
+            legs: legs.flat_map(|(number, leg)| leg.coordinates().map(move |_| number)).collect(),
+            length: manipulator.characteristic_length(),
+            jacobians: manipulator.jacobians(),
+            measured,
+        };
+        let sample = Sample::new(&solver);
+        Ok(Self {
+            samples,
+            next: 0,
+            previous: sample.clone(),
+            current: sample.clone(),
+            probe: sample,
+            open: vec![None; solver.gauges.len()],
+            changes: Vec::new(),
+            solver,
+        })
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// What is watched.
+    pub fn gauges(&self) -> &[Gauge] {
+        &self.solver.gauges
+    }
+
+    /// When the sample of this number is, seconds.
+    pub fn time(&self, number: u64) -> f64 {
+        let motion = self.solver.motion;
+        let time = motion.start + number as f64 / self.solver.rate;
+        if number + 1 >= self.samples { motion.end() } else { time }
+    }
+
+    /// Goes on to the next sample, [`Trajectory::sample`]; `false` after the last. What happened since
+    /// the one before it, and at it, is in [`Trajectory::changes`].
+    ///
+    /// # Errors
+    /// Poses or velocities that cannot be computed with.
+    pub fn advance(&mut self) -> Result<bool, TrajectoryError> {
+        self.changes.clear();
+        if self.next >= self.samples {
+            return Ok(false);
+        }
+        let (number, time) = (self.next, self.time(self.next));
+        self.next += 1;
+        let last = self.next == self.samples;
+        std::mem::swap(&mut self.previous, &mut self.current);
+        self.current.solution.copy_from(&self.previous.solution);
+        let turns = if number == 0 { Turns::Home } else { Turns::Held };
+        self.solver.solve(time, turns, &mut self.current)?;
+        self.solver.rates(&mut self.current)?;
+        let look = if last { Look::Back } else { Look::Ahead };
+        self.solver.slope(&mut self.current, look, &mut self.probe)?;
+        if number == 0 {
+            self.begin();
+        } else if self.eventful() {
+            let (from, to) = (self.previous.clone(), self.current.clone());
+            self.current = self.watch(&from, to)?;
+        }
+        self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
+        self.worsen();
+        Ok(true)
+    }
+
+    /// The sample that [`Trajectory::advance`] went to.
+    pub fn sample(&self) -> &Sample {
+        &self.current
+    }
+
+    /// Violations that began and ended since the sample before the last one, in the order of time.
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// Violations that have not ended yet; after the last sample: they last to the end.
+    pub fn open(&self) -> impl Iterator<Item = &Violation> {
+        self.open.iter().flatten()
+    }
+}
+
+impl Solver<'_> {
+    /// The joints, how near to singular they are, and the gauges, at one time.
+    fn solve(&mut self, time: f64, turns: Turns, out: &mut Sample) -> Result<(), TrajectoryError> {
+        let manipulator = self.manipulator;
+        out.time = time;
+        self.motion.at(time, &mut out.instant);
+        let (pose, solution) = (&out.instant.pose, &mut out.solution);
+        let reached = match turns {
+            Turns::Home => manipulator.inverse(pose, self.mode, solution),
+            Turns::Held => manipulator.inverse_near(pose, self.mode, solution),
+        };
+        out.reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
+        if out.reached {
+            let differentiated = manipulator.differentiate(&out.solution, &mut self.jacobians);
+            differentiated.map_err(|source| TrajectoryError::Velocity { time, source })?;
+            manipulator.measure_singularities(&self.jacobians, &mut self.measured);
+            (out.upper, out.lower) = (self.measured.upper, self.measured.lower);
+        }
+        for (&gauge, level) in self.gauges.iter().zip(&mut out.levels) {
+            *level = self.level(gauge, &out.solution);
+        }
+        Ok(())
+    }
+
+    /// Rates of the joints and the condition number at the solution that was found last.
+    fn rates(&mut self, out: &mut Sample) -> Result<(), TrajectoryError> {
+        (out.regular, out.condition) = (false, f64::INFINITY);
+        if out.reached {
+            let Instant { velocity, acceleration, .. } = &out.instant;
+            let (solution, motion) = (&out.solution, &mut out.motion);
+            let rates = self.manipulator.velocity(solution, velocity, acceleration, motion);
+            out.regular = match rates {
+                Ok(regular) => regular,
+                Err(VelocityError::Overflow { .. }) => false,
+                Err(source) => return Err(TrajectoryError::Velocity { time: out.time, source }),
+            };
+            out.condition = self.manipulator.conditioning(&self.jacobians, self.length).condition;
+        }
+        Ok(())
+    }
+
+    /// What a gauge says of a solution, whose measures are there if it is in reach.
+    fn level(&self, gauge: Gauge, solution: &Solution) -> Option<f64> {
+        let gap = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
+        let reached = solution.unreachable.is_empty();
+        match gauge {
+            Gauge::Reach { leg } => Some(match gap(leg) {
+                Some(unreachable) => -self.depth(unreachable),
+                None => self.manipulator.serial(solution, leg).0,
+            }),
+            Gauge::Limit { coordinate, bound } => {
+                if gap(self.legs[coordinate]).is_some() {
+                    return None;
+                }
+                let Limits::Range { low, high, .. } = self.manipulator.limits()[coordinate] else {
+                    return None;
+                };
+                let home = self.manipulator.coordinates()[coordinate].home;
+                let value = solution.joints[coordinate] - home;
+                Some(match bound {
+                    Bound::Lowest => value - low,
+                    Bound::Highest => high - value,
+                })
+            }
+            Gauge::Parallel { part } => {
+                let Singularities { upper, lower, whole, .. } = &self.measured;
+                let both = upper.parallel.is_some() && lower.parallel.is_some();
+                let measure = match part {
+                    Part::Section(Section::Upper) => upper.parallel,
+                    Part::Section(Section::Lower) => lower.parallel,
+                    Part::Whole => whole.parallel.filter(|_| !both),
+                };
+                measure.filter(|_| reached)
+            }
+        }
+    }
+
+    /// A gap without a unit.
+    fn depth(&self, unreachable: &Unreachable) -> f64 {
+        let scale = match unreachable.gap.quantity {
+            Quantity::Angle => 1.0,
+            Quantity::Length => self.length,
+        };
+        unreachable.gap.excess / scale
+    }
+
+    /// Finds the slopes of the gauges of a sample.
+    fn slope(
+        &mut self,
+        sample: &mut Sample,
+        look: Look,
+        probe: &mut Sample,
+    ) -> Result<(), TrajectoryError> {
+        let step = SLOPE_STEP / self.rate;
+        let time = if look == Look::Ahead { sample.time + step } else { sample.time - step };
+        probe.solution.copy_from(&sample.solution);
+        self.solve(time, Turns::Held, probe)?;
+        // As far as doubles have gone.
+        let step = probe.time - sample.time;
+        for (number, slope) in sample.slopes.iter_mut().enumerate() {
+            *slope = match (sample.levels[number], probe.levels[number]) {
+                (Some(here), Some(there)) if step != 0.0 => Some((there - here) / step),
+                _ => None,
+            };
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,318 @@
+//! Bodies made of simple solids: what a scene shows, and points on their surfaces for viewers that
+//! show points only.
+
+use foxglove::messages::{
+    Color, CubePrimitive, CylinderPrimitive, KeyValuePair, Pose, Quaternion, SceneEntity,
+    SceneUpdate, SpherePrimitive, Timestamp, Vector3,
+};
+
+use crate::RecordError;
+use crate::cloud::{ColoredPoint, encode_colored};
+
+/// A body in its own frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name of the body and of its frame, unique.
+    pub frame: String,
+    /// The number of the body whose frame this one's is placed in; `None` for the one at rest.
+    pub parent: Option<usize>,
+    /// What it looks like.
+    pub solids: Vec<Solid>,
+    /// What else there is to know of it: keys and values, shown when it is picked.
+    pub notes: Vec<(String, String)>,
+}
+
+/// A solid of one colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solid {
+    /// Shape and place in the body's frame, metres.
+    pub shape: Shape,
+    /// Red, green, blue, opacity, 0 to 1.
+    pub color: [f64; 4],
+}
+
+/// Shapes that viewers draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// A round rod.
+    Cylinder {
+        /// Middle of one end.
+        from: [f64; 3],
+        /// Middle of the other end.
+        to: [f64; 3],
+        /// Metres.
+        radius: f64,
+    },
+    /// A ball.
+    Ball {
+        /// Middle.
+        centre: [f64; 3],
+        /// Metres.
+        radius: f64,
+    },
+    /// A square block.
+    Block {
+        /// Middle.
+        centre: [f64; 3],
+        /// Direction of its length, a unit vector.
+        axis: [f64; 3],
+        /// Metres.
+        length: f64,
+        /// Of its other two sides, metres.
+        width: f64,
+    },
+}
+
+/// Points on a surface are this far apart, as a share of the thinnest solid's radius: near enough for
+/// a rod to look like one.
+const SPACING: f64 = 0.8;
+
+/// Points of one body at most: a rod that is a million times longer than thick stays readable.
+const MOST_POINTS: usize = 200_000;
+
+/// Every body must have a name of its own, and a parent that comes before it.
+pub(crate) fn check(bodies: &[Body]) -> Result<(), RecordError> {
+    for (i, body) in bodies.iter().enumerate() {
+        let frame = &body.frame;
+        if frame.is_empty() {
+            return Err(RecordError::Layout("a body has no name".into()));
+        }
+        if bodies[..i].iter().any(|other| other.frame == *frame) {
+            return Err(RecordError::Layout(format!("body {frame} is given twice")));
+        }
+        if body.parent.is_none() != (i == 0) || body.parent.is_some_and(|parent| parent >= i) {
+            let problem = format!("body {frame}: its parent is not one of the bodies before it");
+            return Err(RecordError::Layout(problem));
+        }
+    }
+    Ok(())
+}
+
+/// The scene: an entity a body, fixed to the body's frame.
+pub(crate) fn update(bodies: &[Body], time: Timestamp) -> SceneUpdate {
+    let entities = bodies.iter().map(|body| {
+        let note = |(key, value): &(String, String)| KeyValuePair {
+            key: key.clone(),
+            value: value.clone(),
+        };
+        let mut entity = SceneEntity {
+            timestamp: Some(time),
+            frame_id: body.frame.clone(),
+            id: body.frame.clone(),
+            frame_locked: true,
+            metadata: body.notes.iter().map(note).collect(),
+            ..SceneEntity::default()
+        };
+        for solid in &body.solids {
+            let color = color(solid.color);
+            match solid.shape {
+                Shape::Cylinder { from, to, radius } => {
+                    let (axis, length) = direction(from, to);
+                    let middle = std::array::from_fn(|i| 0.5 * (from[i] + to[i]));
+                    entity.cylinders.push(CylinderPrimitive {
+                        pose: Some(along(middle, axis)),
+                        size: Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: length }),
+                        bottom_scale: 1.0,
+                        top_scale: 1.0,
+                        color,
+                    });
+                }
+                Shape::Ball { centre, radius } => entity.spheres.push(SpherePrimitive {
+                    pose: Some(along(centre, [0.0, 0.0, 1.0])),
+                    size: Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius }),
+                    color,
+                }),
+                Shape::Block { centre, axis, length, width } => {
+                    entity.cubes.push(CubePrimitive {
+                        pose: Some(along(centre, axis)),
+                        size: Some(Vector3 { x: width, y: width, z: length }),
+                        color,
+                    });
+                }
+            }
+        }
+        entity
+    });
+    SceneUpdate { deletions: Vec::new(), entities: entities.collect() }
+}
+
+/// A body's surface as an encoded `foxglove.PointCloud`.
+pub(crate) fn surface(
+    body: &Body,
+    bodies: &[Body],
+    time: Timestamp,
+) -> Result<Vec<u8>, RecordError> {
+    let radius = |solid: &Solid| match solid.shape {
+        Shape::Cylinder { radius, .. } | Shape::Ball { radius, .. } => radius,
+        Shape::Block { width, .. } => 0.5 * width,
+    };
+    let solids = bodies.iter().flat_map(|body| &body.solids);
+    let thinnest = solids.map(radius).fold(f64::INFINITY, f64::min);
+    let mut points = Vec::new();
+    for solid in &body.solids {
+        let rgba = solid.color.map(|c| (c * 255.0).round() as u8);
+        cover(&solid.shape, SPACING * thinnest, &mut |at| {
+            if points.len() < MOST_POINTS {
+                points.push(ColoredPoint { at, rgba });
+            }
+        });
+    }
+    encode_colored(&body.frame, time, &points)
+}
+
+/// Points all over a surface.
+fn cover(shape: &Shape, spacing: f64, point: &mut impl FnMut([f64; 3])) {
+    let steps = |length: f64| ((length / spacing).ceil() as usize).clamp(1, MOST_POINTS);
+    match *shape {
+        Shape::Cylinder { from, to, radius } => {
+            let (axis, length) = direction(from, to);
+            let [u, v] = beside(axis);
+            let around = steps(std::f64::consts::TAU * radius).max(6);
+            let rings = steps(length);
+            for ring in 0..=rings {
+                let s = length * ring as f64 / rings as f64;
+                for i in 0..around {
+                    // Every other ring is turned by half a step.
+                    let angle = std::f64::consts::TAU * (i as f64 + 0.5 * (ring % 2) as f64)
+                        / around as f64;
+                    let (sin, cos) = angle.sin_cos();
+                    point(std::array::from_fn(|k| {
+                        from[k] + axis[k] * s + radius * (cos * u[k] + sin * v[k])
+                    }));
+                }
+            }
+        }
+        Shape::Ball { centre, radius } => {
+            // A spiral: each point has the same share of the sphere.
+            let count = steps(4.0 * std::f64::consts::PI * radius * radius / spacing).max(12);
+            let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+            for i in 0..count {
+                let z = 1.0 - (2 * i + 1) as f64 / count as f64;
+                let (sin, cos) = (golden * i as f64).sin_cos();
+                let flat = (1.0 - z * z).sqrt();
+                let direction = [flat * cos, flat * sin, z];
+                point(std::array::from_fn(|k| centre[k] + radius * direction[k]));
+            }
+        }
+        Shape::Block { centre, axis, length, width } => {
+            let [u, v] = beside(axis);
+            let (long, wide) = (steps(length), steps(width));
+            for i in 0..=long {
+                let s = length * (i as f64 / long as f64 - 0.5);
+                for j in 0..=wide {
+                    for k in 0..=wide {
+                        if i % long != 0 && j % wide != 0 && k % wide != 0 {
+                            continue; // inside
+                        }
+                        let [a, b] = [j, k].map(|n| width * (n as f64 / wide as f64 - 0.5));
+                        point(std::array::from_fn(|m| {
+                            centre[m] + axis[m] * s + u[m] * a + v[m] * b
+                        }));
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn color([r, g, b, a]: [f64; 4]) -> Option<Color> {
+    Some(Color { r, g, b, a })
+}
+
+/// Unit vector and distance.
+fn direction(from: [f64; 3], to: [f64; 3]) -> ([f64; 3], f64) {
+    let way: [f64; 3] = std::array::from_fn(|i| to[i] - from[i]);
+    let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length > 0.0 { (way.map(|x| x / length), length) } else { ([0.0, 0.0, 1.0], 0.0) }
+}
+
+/// Two unit vectors that are square to a unit vector and to each other.
+fn beside(axis: [f64; 3]) -> [[f64; 3]; 2] {
+    let Quaternion { x, y, z, w } = upright(axis);
+    // The first two columns of the rotation that takes z to the axis.
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+        [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+    ]
+}
+
+/// A pose whose third direction is `axis`.
+fn along([x, y, z]: [f64; 3], axis: [f64; 3]) -> Pose {
+    Pose { position: Some(Vector3 { x, y, z }), orientation: Some(upright(axis)) }
+}
+
+/// The shortest rotation that takes z to a unit vector.
+fn upright([x, y, z]: [f64; 3]) -> Quaternion {
+    if z < -1.0 + 1e-12 {
+        return Quaternion { x: 1.0, y: 0.0, z: 0.0, w: 0.0 };
+    }
+    // (1 + z·a, z × a), normalised.
+    let scale = (2.0 * (1.0 + z)).sqrt();
+    Quaternion { x: -y / scale, y: x / scale, z: 0.0, w: 0.5 * scale }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A unit vector is turned to by the quaternion `v' = v + 2 w (q × v) + 2 q × (q × v)`.
+    #[test]
+    fn a_rod_points_from_end_to_end() {
+        for axis in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [0.48, 0.64, 0.6]] {
+            let Quaternion { x, y, z, w } = upright(axis);
+            let third = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
+            for k in 0..3 {
+                assert!((third[k] - axis[k]).abs() < 1e-14, "{axis:?}: {third:?}");
+            }
+            let [u, v] = beside(axis);
+            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            for (value, expected) in
+                [(dot(u, u), 1.0), (dot(v, v), 1.0), (dot(u, v), 0.0), (dot(u, axis), 0.0)]
+            {
+                assert!((value - expected).abs() < 1e-14, "{axis:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_lie_on_the_surface_and_cover_it() {
+        let off = |shape: Shape, distance: &dyn Fn([f64; 3]) -> f64| {
+            let mut count = 0;
+            cover(&shape, 0.1, &mut |p| {
+                count += 1;
+                assert!(distance(p).abs() < 1e-12, "{shape:?}: {p:?}");
+            });
+            count
+        };
+        let rod = Shape::Cylinder { from: [1.0, 0.0, 0.0], to: [1.0, 0.0, 3.0], radius: 0.5 };
+        let points = off(rod, &|[x, y, _]| (x - 1.0).hypot(y) - 0.5);
+        // Its area over that of a square of the spacing.
+        assert!((940..1100).contains(&points), "{points}");
+        let ball = Shape::Ball { centre: [0.0, 2.0, 0.0], radius: 1.0 };
+        let points = off(ball, &|[x, y, z]| (x * x + (y - 2.0) * (y - 2.0) + z * z).sqrt() - 1.0);
+        assert!((1250..1265).contains(&points), "{points}");
+        let block =
+            Shape::Block { centre: [0.0; 3], axis: [1.0, 0.0, 0.0], length: 2.0, width: 1.0 };
+        off(block, &|[x, y, z]| (x.abs() - 1.0).max(y.abs() - 0.5).max(z.abs() - 0.5));
+    }
+
+    #[test]
+    fn bodies_make_a_tree() {
+        let body = |frame: &str, parent| Body {
+            frame: frame.into(),
+            parent,
+            solids: Vec::new(),
+            notes: Vec::new(),
+        };
+        assert!(check(&[body("base", None), body("a", Some(0)), body("b", Some(1))]).is_ok());
+        for wrong in [
+            vec![body("base", Some(0))],
+            vec![body("base", None), body("a", None)],
+            vec![body("base", None), body("a", Some(2)), body("b", Some(0))],
+            vec![body("base", None), body("base", Some(0))],
+            vec![body("", None)],
+        ] {
+            assert!(matches!(check(&wrong), Err(RecordError::Layout(_))));
+        }
+    }
+}

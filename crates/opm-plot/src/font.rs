@@ -1,0 +1,170 @@
+//! The fonts that come with the crate: outlines and widths, the same on every machine.
+
+use std::sync::LazyLock;
+use ttf_parser::{Face as FontFace, GlyphId, OutlineBuilder};
+
+/// One of the two fonts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Face {
+    /// Everything but titles.
+    Regular,
+    /// Titles.
+    Bold,
+}
+
+/// A piece of a glyph's outline, in units of the font with y upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stroke {
+    /// Starts a contour.
+    Move([f32; 2]),
+    /// A straight line.
+    Line([f32; 2]),
+    /// A quadratic curve: its control point and its end.
+    Quad([f32; 2], [f32; 2]),
+    /// Closes the contour.
+    Close,
+}
+
+static REGULAR: LazyLock<Option<FontFace<'static>>> =
+    LazyLock::new(|| FontFace::parse(include_bytes!("../fonts/DejaVuSans.ttf"), 0).ok());
+static BOLD: LazyLock<Option<FontFace<'static>>> =
+    LazyLock::new(|| FontFace::parse(include_bytes!("../fonts/DejaVuSans-Bold.ttf"), 0).ok());
+
+/// Height of capitals above the baseline, of the font's size.
+pub const CAPITALS: f64 = 0.73;
+
+impl Face {
+    /// Units of the font to its size: that of both fonts.
+    pub const UNITS: f64 = 2048.0;
+
+    fn font(self) -> Option<&'static FontFace<'static>> {
+        match self {
+            Self::Regular => REGULAR.as_ref(),
+            Self::Bold => BOLD.as_ref(),
+        }
+    }
+
+    /// Glyphs of a text, each with its distance from the start, in units of the font. A character
+    /// that the font lacks is an empty box.
+    pub fn glyphs(self, text: &str) -> impl Iterator<Item = (u16, f64)> {
+        let mut at = 0.0;
+        text.chars().map(move |character| {
+            let glyph = self.font().and_then(|font| font.glyph_index(character));
+            let glyph = glyph.unwrap_or(GlyphId(0));
+            let here = at;
+            at += self.advance(glyph);
+            (glyph.0, here)
+        })
+    }
+
+    fn advance(self, glyph: GlyphId) -> f64 {
+        self.font().and_then(|font| font.glyph_hor_advance(glyph)).unwrap_or(0).into()
+    }
+
+    /// How wide a text is when written in this size.
+    pub fn width(self, text: &str, size: f64) -> f64 {
+        let glyph = |c| self.font().and_then(|font| font.glyph_index(c)).unwrap_or(GlyphId(0));
+        text.chars().map(|c| self.advance(glyph(c))).sum::<f64>() * size / Self::UNITS
+    }
+
+    /// The outline of a glyph; empty for a space.
+    pub fn outline(self, glyph: u16) -> Vec<Stroke> {
+        let mut outline = Outline(Vec::new());
+        if let Some(font) = self.font() {
+            font.outline_glyph(GlyphId(glyph), &mut outline);
+        }
+        outline.0
+    }
+
+    /// The text, or as much of it as fits in `room`, then an ellipsis.
+    pub fn fit(self, text: &str, size: f64, room: f64) -> String {
+        if self.width(text, size) <= room {
+            return text.to_owned();
+        }
+        let mut kept: Vec<char> = text.chars().collect();
+        while kept.pop().is_some() {
+            let short: String = kept.iter().chain(&['…']).collect();
+            if self.width(&short, size) <= room {
+                return short;
+            }
+        }
+        String::new()
+    }
+
+    /// The text in lines no wider than `room`, broken between words.
+    pub fn wrap(self, text: &str, size: f64, room: f64) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        for word in text.split_whitespace() {
+            match lines.last_mut() {
+                Some(line) if self.width(&format!("{line} {word}"), size) <= room => {
+                    line.push(' ');
+                    line.push_str(word);
+                }
+                _ => lines.push(self.fit(word, size, room)),
+            }
+        }
+        lines
+    }
+}
+
+struct Outline(Vec<Stroke>);
+
+impl OutlineBuilder for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.0.push(Stroke::Move([x, y]));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.0.push(Stroke::Line([x, y]));
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.0.push(Stroke::Quad([x1, y1], [x, y]));
+    }
+
+    /// TrueType outlines, which both fonts have, are quadratic.
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.0.push(Stroke::Quad([(x1 + x2) / 2.0, (y1 + y2) / 2.0], [x, y]));
+    }
+
+    fn close(&mut self) {
+        self.0.push(Stroke::Close);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_fonts_have_the_signs_that_figures_use() {
+        for face in [Face::Regular, Face::Bold] {
+            let font = face.font().expect("the font is whole");
+            assert_eq!(f64::from(font.units_per_em()), Face::UNITS);
+            for c in "AZaz09−°²³⁻⁴·×…ζξψθφμ≤±→".chars() {
+                let glyph = font.glyph_index(c).unwrap_or_else(|| panic!("{face:?} lacks {c}"));
+                assert!(!face.outline(glyph.0).is_empty(), "{c}");
+            }
+        }
+    }
+
+    /// Widths of DejaVu Sans as its metrics state them: 1303 units for a digit, 651 for a space.
+    #[test]
+    fn a_text_is_as_wide_as_its_glyphs() {
+        let width = Face::Regular.width("10 2", 20.48);
+        assert!((width - 0.01 * (3.0 * 1303.0 + 651.0)).abs() < 1e-9, "{width}");
+        let ends: Vec<f64> = Face::Regular.glyphs("10 2").map(|(_, at)| at).collect();
+        assert_eq!(ends, [0.0, 1303.0, 2606.0, 3257.0]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_cut_or_wrapped() {
+        let face = Face::Regular;
+        assert_eq!(face.fit("theta11", 12.0, 100.0), "theta11");
+        let cut = face.fit("theta11", 12.0, 30.0);
+        assert!(cut.ends_with('…') && face.width(&cut, 12.0) <= 30.0, "{cut}");
+        let lines = face.wrap("a few words to fill two lines", 12.0, 100.0);
+        assert!(lines.len() > 1 && lines.iter().all(|line| face.width(line, 12.0) <= 100.0));
+        assert_eq!(lines.join(" "), "a few words to fill two lines");
+    }
+}

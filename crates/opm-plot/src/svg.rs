@@ -1,0 +1,217 @@
+//! A drawing as SVG: texts are outlines, so that it looks the same wherever it is shown.
+
+use crate::color::Color;
+use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
+use crate::font::{Face, Stroke};
+use crate::png;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// The whole file.
+///
+/// # Errors
+/// An image that cannot be encoded.
+pub fn write(drawing: &Drawing) -> Result<String, png::Error> {
+    let [width, height] = [drawing.size.width, drawing.size.height].map(number);
+    let mut svg = Svg::default();
+    let mut body = String::new();
+    svg.shapes(&mut body, &drawing.shapes)?;
+    let mut out = String::new();
+    let title = escape(&drawing.title);
+    let _ = write!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
+         aria-label=\"{title}\">\n<title>{title}</title>\n<defs>\n"
+    );
+    for (face, glyph) in svg.glyphs {
+        let _ = writeln!(
+            out,
+            "<path id=\"{}\" d=\"{}\"/>",
+            glyph_id(face, glyph),
+            outline(&face.outline(glyph))
+        );
+    }
+    let _ = write!(
+        out,
+        "</defs>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    );
+    Ok(out)
+}
+
+/// The glyphs that were used so far.
+#[derive(Default)]
+struct Svg {
+    glyphs: BTreeSet<(Face, u16)>,
+}
+
+impl Svg {
+    fn shapes(&mut self, out: &mut String, shapes: &[Shape]) -> Result<(), png::Error> {
+        shapes.iter().try_for_each(|shape| self.shape(out, shape))
+    }
+
+    fn shape(&mut self, out: &mut String, shape: &Shape) -> Result<(), png::Error> {
+        match shape {
+            Shape::Area(path, color) => {
+                let _ = writeln!(out, "<path d=\"{}\" fill=\"{}\"/>", steps(path), hex(*color));
+            }
+            Shape::Line(path, pen) => line(out, path, pen),
+            Shape::Text(text) => self.text(out, text),
+            Shape::Image { place, image } => picture(out, *place, image)?,
+            Shape::Group { kind, label, shapes } => {
+                let label = escape(label);
+                let _ = writeln!(out, "<g class=\"{kind}\" aria-label=\"{label}\">");
+                self.shapes(out, shapes)?;
+                out.push_str("</g>\n");
+            }
+        }
+        Ok(())
+    }
+
+    fn text(&mut self, out: &mut String, text: &Text) {
+        let scale = text.size / Face::UNITS;
+        let [x, y] = text.at.map(number);
+        let turn = if text.turned { " rotate(-90)" } else { "" };
+        let _ = write!(
+            out,
+            "<g class=\"text\" aria-label=\"{}\" fill=\"{}\" \
+             transform=\"translate({x} {y}){turn} scale({scale:.6} -{scale:.6})\">",
+            escape(&text.text),
+            hex(text.color)
+        );
+        for ((glyph, at), character) in text.face.glyphs(&text.text).zip(text.text.chars()) {
+            if !character.is_whitespace() {
+                self.glyphs.insert((text.face, glyph));
+                let id = glyph_id(text.face, glyph);
+                let _ = write!(out, "<use xlink:href=\"#{id}\" x=\"{at}\"/>");
+            }
+        }
+        out.push_str("</g>\n");
+    }
+}
+
+fn line(out: &mut String, path: &Path, pen: &Pen) {
+    let _ = write!(
+        out,
+        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" \
+         stroke-linejoin=\"round\"",
+        steps(path),
+        hex(pen.color),
+        number(pen.width)
+    );
+    if !pen.dashes.is_empty() {
+        let dashes: Vec<String> = pen.dashes.iter().copied().map(number).collect();
+        let _ = write!(out, " stroke-dasharray=\"{}\"", dashes.join(" "));
+    }
+    out.push_str("/>\n");
+}
+
+fn picture(out: &mut String, place: Rect, image: &Image) -> Result<(), png::Error> {
+    let Rect { x, y, width, height } = place;
+    let [x, y, width, height] = [x, y, width, height].map(number);
+    let _ = writeln!(
+        out,
+        "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+         preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
+         xlink:href=\"data:image/png;base64,{}\"/>",
+        base64(&png::image(image)?)
+    );
+    Ok(())
+}
+
+fn glyph_id(face: Face, glyph: u16) -> String {
+    match face {
+        Face::Regular => format!("r{glyph}"),
+        Face::Bold => format!("b{glyph}"),
+    }
+}
+
+fn outline(strokes: &[Stroke]) -> String {
+    let mut out = String::new();
+    for stroke in strokes {
+        let _ = match stroke {
+            Stroke::Move([x, y]) => write!(out, "M{x} {y}"),
+            Stroke::Line([x, y]) => write!(out, "L{x} {y}"),
+            Stroke::Quad([a, b], [x, y]) => write!(out, "Q{a} {b} {x} {y}"),
+            Stroke::Close => write!(out, "Z"),
+        };
+    }
+    out
+}
+
+fn steps(path: &Path) -> String {
+    let mut out = String::new();
+    for step in &path.0 {
+        let _ = match step {
+            Step::Move([x, y]) => write!(out, "M{} {}", number(*x), number(*y)),
+            Step::Line([x, y]) => write!(out, "L{} {}", number(*x), number(*y)),
+            Step::Close => write!(out, "Z"),
+        };
+    }
+    out
+}
+
+/// To a hundredth of a pixel, without trailing zeros.
+fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn hex([r, g, b]: Color) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// For text and attributes. Control characters, which XML does not allow, become spaces.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for part in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(part.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * i)) as usize & 63];
+            out.push(if i <= part.len() { digit.into() } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The vectors of RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_rfc() {
+        let vectors = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
+        for (length, expected) in vectors.into_iter().enumerate() {
+            assert_eq!(base64(&b"foobar"[..length]), expected);
+        }
+    }
+
+    #[test]
+    fn numbers_and_names_are_safe_to_write() {
+        assert_eq!(
+            [12.0, -0.001, 1.005, -3.5, 0.126].map(number),
+            ["12", "0", "1", "-3.5", "0.13"]
+        );
+        assert_eq!(escape("a<b & \"c\"\u{1}"), "a&lt;b &amp; &quot;c&quot; ");
+    }
+}

@@ -1,0 +1,190 @@
+//! Which cells of a plane grid have something in them.
+
+use crate::MOST_SHAPES;
+use crate::color::{Color, Map};
+use crate::drawing::{Image, Path, Rect, Shape};
+use crate::frame::Frame;
+
+/// Most cells in a row or column; on a finer grid, several values share a cell.
+const MOST_CELLS: usize = 600;
+/// Pixels in a row or column of an image: two for a pixel of the screen, so that smoothing, which some
+/// programs do and some do not, makes no difference.
+const FINE: usize = 1200;
+
+/// Equally spaced values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacing {
+    /// The first one.
+    pub first: f64,
+    /// From one to the next.
+    pub step: f64,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Spacing {
+    /// Values from `first` to `last`.
+    pub fn between([first, last]: [f64; 2], count: usize) -> Self {
+        let step = (last - first) / count.saturating_sub(1).max(1) as f64;
+        // A value alone gets a cell as wide as it is large.
+        let step = if step > 0.0 { step } else { (0.1 * first.abs()).max(1.0) };
+        Self { first, step, count }
+    }
+
+    /// The number of the value that is nearest; `None` outside, or for no number.
+    pub fn nearest(&self, value: f64) -> Option<usize> {
+        let number = ((value - self.first) / self.step).round();
+        (number >= 0.0 && number < self.count as f64).then_some(number as usize)
+    }
+
+    /// Value number `i`.
+    pub fn value(&self, i: usize) -> f64 {
+        self.first + self.step * i as f64
+    }
+}
+
+/// A plane grid, of whose cells those that were hit are drawn.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    spacing: [Spacing; 2],
+    /// Grid values that share a cell.
+    together: [usize; 2],
+    cells: [usize; 2],
+    counts: Vec<u32>,
+    /// Sums of the values that colour the cells.
+    sums: Option<Vec<f64>>,
+}
+
+/// What the cells' colours say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paint {
+    /// Nothing.
+    Plain(Color),
+    /// The mean value in a cell, by its place between the two ends.
+    Values(Map, [f64; 2]),
+}
+
+impl Cells {
+    /// No cell hit so far; `values` where values will come with the hits, to colour them by.
+    pub fn new(x: Spacing, y: Spacing, values: Option<()>) -> Self {
+        let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
+        let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
+        let all = cells[0] * cells[1];
+        let sums = values.map(|()| vec![0.0; all]);
+        Self { spacing: [x, y], together, cells, counts: vec![0; all], sums }
+    }
+
+    /// Hits the cell of the nearest grid values.
+    pub fn push(&mut self, x: f64, y: f64, value: f64) {
+        let [Some(i), Some(j)] = [self.spacing[0].nearest(x), self.spacing[1].nearest(y)] else {
+            return;
+        };
+        let cell = j / self.together[1] * self.cells[0] + i / self.together[0];
+        self.counts[cell] = self.counts[cell].saturating_add(1);
+        if let Some(sums) = &mut self.sums {
+            sums[cell] += value;
+        }
+    }
+
+    /// Whether several values of the grid share a cell.
+    pub fn is_coarse(&self) -> bool {
+        self.together != [1, 1]
+    }
+
+    /// The edges of the cells that were hit: left and right, lower and upper.
+    pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        let [[i0, i1], [j0, j1]] = self.hit()?;
+        Some([[self.edge(0, i0), self.edge(0, i1 + 1)], [self.edge(1, j0), self.edge(1, j1 + 1)]])
+    }
+
+    /// First and last column and row with a hit.
+    fn hit(&self) -> Option<[[usize; 2]; 2]> {
+        let width = self.cells[0];
+        let hits = || (0..self.counts.len()).filter(|&cell| self.counts[cell] > 0);
+        let column = |cell: usize| cell % width;
+        let [first, last] = [hits().next()? / width, hits().next_back()? / width];
+        let columns = [hits().map(column).min()?, hits().map(column).max()?];
+        Some([columns, [first, last]])
+    }
+
+    /// Where cell number `i` of an axis begins. Where values share cells the last one may be
+    /// narrower.
+    fn edge(&self, axis: usize, i: usize) -> f64 {
+        let spacing = self.spacing[axis];
+        let value = (i * self.together[axis]).min(spacing.count);
+        spacing.first + spacing.step * (value as f64 - 0.5)
+    }
+
+    /// The cells that were hit.
+    pub(crate) fn draw(&self, frame: &Frame<'_>, paint: Paint) -> Vec<Shape> {
+        let Some(hit) = self.hit() else { return vec![] };
+        match paint {
+            Paint::Plain(color) => match self.outline(frame) {
+                Some(path) => vec![Shape::Area(path, color)],
+                None => vec![self.image(frame, hit, paint)],
+            },
+            Paint::Values(..) => vec![self.image(frame, hit, paint)],
+        }
+    }
+
+    /// The cells as boxes, one for neighbours in a row; `None` if there are too many.
+    fn outline(&self, frame: &Frame<'_>) -> Option<Path> {
+        let mut path = Path::default();
+        let mut boxes = 0;
+        for (j, row) in self.counts.chunks(self.cells[0]).enumerate() {
+            let mut start = 0;
+            for run in row.chunk_by(|a, b| (*a > 0) == (*b > 0)) {
+                let end = start + run.len();
+                if run[0] > 0 {
+                    boxes += 1;
+                    if boxes > MOST_SHAPES {
+                        return None;
+                    }
+                    path.add_rect(self.place(frame, [start, end], [j, j + 1]));
+                }
+                start = end;
+            }
+        }
+        Some(path)
+    }
+
+    /// The box around cells, the ends not included.
+    fn place(&self, frame: &Frame<'_>, [i0, i1]: [usize; 2], [j0, j1]: [usize; 2]) -> Rect {
+        let [x, bottom] = frame.at(self.edge(0, i0), self.edge(1, j0));
+        let [right, y] = frame.at(self.edge(0, i1), self.edge(1, j1));
+        Rect { x, y, width: right - x, height: bottom - y }
+    }
+
+    fn image(&self, frame: &Frame<'_>, hit: [[usize; 2]; 2], paint: Paint) -> Shape {
+        let [[i0, i1], [j0, j1]] = hit;
+        let fine = |cells: usize| (FINE / cells).max(1);
+        let [columns, rows] = [i1 + 1 - i0, j1 + 1 - j0];
+        let [across, up] = [fine(columns), fine(rows)];
+        let mut pixels = Vec::with_capacity(columns * across * rows * up);
+        for j in (j0..=j1).rev() {
+            let row = (i0..=i1).flat_map(|i| {
+                let color = self.color(j * self.cells[0] + i, paint);
+                std::iter::repeat_n(color, across)
+            });
+            let row: Vec<Option<Color>> = row.collect();
+            (0..up).for_each(|_| pixels.extend_from_slice(&row));
+        }
+        let image = Image { width: (columns * across) as u32, height: (rows * up) as u32, pixels };
+        Shape::Image { place: self.place(frame, [i0, i1 + 1], [j0, j1 + 1]), image }
+    }
+
+    fn color(&self, cell: usize, paint: Paint) -> Option<Color> {
+        let count = self.counts[cell];
+        if count == 0 {
+            return None;
+        }
+        Some(match (paint, &self.sums) {
+            (Paint::Values(map, [low, high]), Some(sums)) => {
+                let mean = sums[cell] / f64::from(count);
+                map.color((mean - low) / (high - low).max(f64::MIN_POSITIVE))
+            }
+            (Paint::Values(map, _), None) => map.color(0.0),
+            (Paint::Plain(color), _) => color,
+        })
+    }
+}

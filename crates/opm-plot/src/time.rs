@@ -1,0 +1,340 @@
+//! Curves over time: panels below each other, with what belongs together side by side.
+
+use crate::axis::{self, Axis, Steps, Unit};
+use crate::color::{ALARM, SHADE, line};
+use crate::curve::Curve;
+use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
+use crate::font::{CAPITALS, Face};
+use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
+use crate::heading::{Heading, MARGIN};
+use crate::{MOST, TooSmall};
+
+/// Panels over time.
+#[derive(Clone, Debug)]
+pub struct TimeFigure {
+    /// What stands above and below.
+    pub heading: Heading,
+    /// First and last time, in seconds.
+    pub time: [f64; 2],
+    /// From top to bottom.
+    pub rows: Vec<Row>,
+    /// Spans of time in which the values do not hold: shaded.
+    pub invalid: Vec<[f64; 2]>,
+    /// Times that are marked with their numbers, from 1, in rising order.
+    pub marks: Vec<f64>,
+}
+
+/// Panels side by side whose curves have the same names: values and their rates.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Names of the curves, for the legend.
+    pub names: Vec<String>,
+    /// One a column; the last may be missing.
+    pub panels: Vec<Option<Panel>>,
+}
+
+/// A box of curves.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// What stands above it.
+    pub title: String,
+    /// What the values are, for instance `angle`.
+    pub name: String,
+    /// The unit that they are in.
+    pub unit: Unit,
+    /// How they are laid out.
+    pub scale: Scale,
+    /// The curves, each with the number of its name.
+    pub curves: Vec<(usize, Curve)>,
+}
+
+/// How values are laid out along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By their logarithms; values that are not positive are left out.
+    Logarithmic,
+}
+
+/// Height of a panel, where nothing else is asked for, and the least one.
+const HEIGHT: f64 = 132.0;
+const LEAST_HEIGHT: f64 = 64.0;
+/// Width of a panel, by the number of columns.
+const WIDTHS: [f64; 3] = [640.0, 430.0, 370.0];
+const LEAST_WIDTH: f64 = 140.0;
+/// Above a panel, for its title.
+const ABOVE: f64 = 22.0;
+/// Below a panel that has no numbers there.
+const SPACE: f64 = 12.0;
+/// Between columns.
+const BETWEEN: f64 = 22.0;
+/// In a legend: from line to line, the piece of curve, the gap behind it.
+const LINE: f64 = 17.0;
+const SAMPLE: f64 = 26.0;
+const BEHIND: f64 = 6.0;
+/// The widest name in a legend.
+const WIDEST: f64 = 170.0;
+/// Room for the numbers of marks.
+const MARKS: f64 = 14.0;
+
+const MARK: Style = Style { size: 10.5, face: Face::Bold, color: ALARM };
+
+/// Room beside the panels: left of every column, and for the legends.
+struct Sides {
+    left: Vec<f64>,
+    legend: f64,
+}
+
+/// Where a panel goes.
+struct Spot {
+    place: Rect,
+    /// Room left of it.
+    left: f64,
+    /// No panel is below it.
+    ends: bool,
+    /// It is in the first row.
+    first: bool,
+}
+
+impl TimeFigure {
+    /// Draws it, in a size that suits it or in the one given.
+    ///
+    /// # Errors
+    /// A size that the panels do not fit in.
+    pub fn draw(&self, size: Option<Size>) -> Result<Drawing, TooSmall> {
+        let columns = self.rows.iter().map(|row| row.panels.len()).max().unwrap_or(1).max(1);
+        let sides = self.sides(columns);
+        let beside = MARGIN + sides.left.iter().sum::<f64>() + sides.legend + MARGIN;
+        let beside = beside + BETWEEN * (columns - 1) as f64;
+        let natural = beside + columns as f64 * WIDTHS[(columns - 1).min(WIDTHS.len() - 1)];
+        let width = size.map_or(natural.ceil(), |size| size.width);
+        let panel = (width - beside) / columns as f64;
+
+        let least: Vec<f64> =
+            self.rows.iter().map(|row| (row.names.len() as f64 * LINE).max(LEAST_HEIGHT)).collect();
+        let between = ABOVE * self.rows.len() as f64
+            + SPACE * self.rows.len().saturating_sub(1) as f64
+            + self.strip()
+            + BELOW;
+        // Columns that end early have their numbers there.
+        let early = self.early(columns) as f64 * (BELOW - SPACE);
+        let fixed = self.heading.top(width) + between + early + self.heading.bottom(width);
+        let natural: Vec<f64> = least.iter().map(|least| least.max(HEIGHT)).collect();
+        let height = size.map_or((fixed + natural.iter().sum::<f64>()).ceil(), |size| size.height);
+        let needed = Size {
+            width: (beside + LEAST_WIDTH * columns as f64).ceil(),
+            height: (fixed + least.iter().sum::<f64>()).ceil(),
+        };
+        if panel < LEAST_WIDTH || height < needed.height || height > MOST || width > MOST {
+            return Err(TooSmall { needed, panels: self.panels() });
+        }
+        // What is left over or missing is shared evenly, as far as the legends allow.
+        let heights = share(height - fixed, &least, &natural);
+
+        let mut shapes = self.heading.draw(width, height - self.heading.bottom(width));
+        let mut y = self.heading.top(width) + self.strip();
+        for (number, (row, height)) in self.rows.iter().zip(&heights).enumerate() {
+            y += ABOVE;
+            let mut x = MARGIN;
+            let mut side = x;
+            let mut last = false;
+            for column in 0..columns {
+                x += sides.left[column];
+                if let Some(found) = row.panels.get(column).and_then(Option::as_ref) {
+                    let place = Rect { x, y, width: panel, height: *height };
+                    let (left, ends) = (sides.left[column], self.ends(number, column));
+                    last |= ends && number + 1 < self.rows.len();
+                    let spot = Spot { place, left, ends, first: number == 0 };
+                    shapes.push(self.panel(found, row, &spot));
+                    side = place.right();
+                }
+                x += panel + BETWEEN;
+            }
+            let at = [side + 2.0 * BEHIND, y];
+            shapes.push(legend(&row.names, at, *height));
+            y += height + if last { BELOW } else { SPACE };
+        }
+        Ok(Drawing { size: Size { width, height }, title: self.heading.title.clone(), shapes })
+    }
+
+    fn panels(&self) -> usize {
+        self.rows.iter().flat_map(|row| &row.panels).flatten().count()
+    }
+
+    fn strip(&self) -> f64 {
+        if self.marks.is_empty() { 0.0 } else { MARKS }
+    }
+
+    /// Whether no panel is below this one.
+    fn ends(&self, row: usize, column: usize) -> bool {
+        let below = self.rows[row + 1..].iter();
+        below.flat_map(|row| row.panels.get(column)).all(Option::is_none)
+    }
+
+    /// Rows, other than the last, in which a column ends.
+    fn early(&self, columns: usize) -> usize {
+        let rows = 0..self.rows.len().saturating_sub(1);
+        let ends = |row: &usize| {
+            (0..columns).any(|column| {
+                self.rows[*row].panels.get(column).is_some_and(Option::is_some)
+                    && self.ends(*row, column)
+            })
+        };
+        rows.filter(ends).count()
+    }
+
+    /// Room for the numbers left of every column, and for the legends.
+    fn sides(&self, columns: usize) -> Sides {
+        // Numbers get no wider in panels of other heights than by a digit.
+        let slack = TICK_SLACK;
+        let of = |column: usize| {
+            let panels = self.rows.iter().filter_map(|row| row.panels.get(column)?.as_ref());
+            panels.map(|panel| left_of(&panel.axis(HEIGHT), true) + slack).fold(0.0, f64::max)
+        };
+        let names = self.rows.iter().flat_map(|row| &row.names);
+        let widest = names.map(|name| NAME.width(name)).fold(0.0, f64::max).min(WIDEST);
+        Sides {
+            left: (0..columns).map(of).collect(),
+            legend: 2.0 * BEHIND + SAMPLE + BEHIND + widest,
+        }
+    }
+
+    fn panel(&self, panel: &Panel, row: &Row, spot: &Spot) -> Shape {
+        let Spot { place, left, ends, first } = *spot;
+        let most = (place.width / 50.0) as usize;
+        let x = Axis::linear(widened(self.time), Steps::Decimal, most, fits(place.width));
+        let y = panel.axis(place.height);
+        let frame = Frame { place, x: &x, y: &y };
+        let mut shapes = Vec::new();
+        for span in &self.invalid {
+            let [left, right] = span.map(|time| frame.across(time.clamp(x.range[0], x.range[1])));
+            // A single sample is to be seen, too.
+            let width = (right - left).max(1.5);
+            let area = Path::rect(Rect { x: left, width, ..place });
+            shapes.push(Shape::Area(area, SHADE));
+        }
+        shapes.push(frame.grid());
+        for (number, curve) in &panel.curves {
+            let (color, dashes) = line(*number);
+            let pen = Pen { color, width: 1.8, dashes };
+            let shapes_of = curve_shapes(curve, &frame, pen);
+            let label = row.names.get(*number).cloned().unwrap_or_default();
+            shapes.push(Shape::Group { kind: "curve", label, shapes: shapes_of });
+        }
+        shapes.extend(self.marks(&frame, first));
+        shapes.extend(frame.border());
+        shapes.push(frame.beside(Some(&y.title(&panel.name, &panel.unit)), left));
+        if ends {
+            shapes.push(frame.below(Some(&x.title("time", &seconds()))));
+        }
+        let raised = if first { self.strip() } else { 0.0 };
+        let above = Rect { y: place.y - raised, ..place };
+        shapes.push(Frame { place: above, ..frame }.title(&panel.title));
+        Shape::Group { kind: "panel", label: panel.title.clone(), shapes }
+    }
+
+    fn marks(&self, frame: &Frame<'_>, numbered: bool) -> Vec<Shape> {
+        const PEN: Pen = Pen { color: ALARM, width: 1.0, dashes: &[3.0, 2.0] };
+        let mut shapes = Vec::new();
+        let mut free = f64::MIN;
+        for (number, &time) in self.marks.iter().enumerate() {
+            let x = frame.across(time);
+            let line = Path::through([[x, frame.place.y], [x, frame.place.bottom()]]);
+            shapes.push(Shape::Line(line, PEN));
+            let text = (number + 1).to_string();
+            let width = MARK.width(&text);
+            // Numbers that would run into each other are left out: the notes list all times.
+            if numbered && x - 0.5 * width > free {
+                shapes.push(MARK.text(text, [x, frame.place.y - 4.0], Anchor::Middle));
+                free = x + 0.5 * width + 3.0;
+            }
+        }
+        match shapes.is_empty() {
+            true => shapes,
+            false => vec![Shape::Group { kind: "marks", label: String::new(), shapes }],
+        }
+    }
+}
+
+const DECADE: f64 = 10.0;
+/// Room for one more digit than the numbers were measured with.
+const TICK_SLACK: f64 = 7.0;
+
+fn seconds() -> Unit {
+    Unit { symbol: "s".into(), ..Unit::none() }
+}
+
+/// A time alone gets a second around it.
+fn widened([start, end]: [f64; 2]) -> [f64; 2] {
+    if end > start { [start, end] } else { [start - 0.5, start + 0.5] }
+}
+
+/// Divides `height`: everyone has the least, and up to its natural height before anyone has more.
+fn share(height: f64, least: &[f64], natural: &[f64]) -> Vec<f64> {
+    let [least_sum, natural_sum] = [least, natural].map(|heights| heights.iter().sum::<f64>());
+    if height >= natural_sum {
+        let more = (height - natural_sum) / natural.len().max(1) as f64;
+        return natural.iter().map(|natural| natural + more).collect();
+    }
+    let part = (height - least_sum) / (natural_sum - least_sum).max(1e-9);
+    least.iter().zip(natural).map(|(l, n)| l + part.max(0.0) * (n - l)).collect()
+}
+
+impl Panel {
+    /// The vertical axis in a panel of this height.
+    fn axis(&self, height: f64) -> Axis {
+        let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let curves = self.curves.iter().map(|(_, curve)| curve);
+        let values = curves.clone().filter_map(Curve::range).reduce(union);
+        let positive = curves.filter_map(Curve::smallest_positive).reduce(f64::min);
+        let most = ticks_in(height);
+        match (self.scale, values, positive) {
+            // Within a power of ten, logarithms have no numbers to put at an axis.
+            (Scale::Logarithmic, Some([_, high]), Some(low)) if high > DECADE * low => {
+                Axis::logarithmic([low, high], most)
+            }
+            _ => Axis::linear(axis::around(values, &self.unit), self.unit.steps, most, |_, _| true),
+        }
+    }
+}
+
+/// The pieces of a curve between its gaps; a point alone becomes a dot.
+fn curve_shapes(curve: &Curve, frame: &Frame<'_>, pen: Pen) -> Vec<Shape> {
+    let mut lines = Path::default();
+    let mut dots = Path::default();
+    let drawn = |point: &[f64; 2]| point[0].is_finite() && frame.y.holds(point[1]);
+    for piece in curve.points().chunk_by(|a, b| drawn(a) == drawn(b)) {
+        let points = piece.iter().filter(|point| drawn(point));
+        let points: Vec<[f64; 2]> = points.map(|[t, v]| frame.at(*t, *v)).collect();
+        match &points[..] {
+            [] => {}
+            [one] => dots.add_dot(*one, 2.0),
+            more => lines.0.extend(Path::through(more.iter().copied()).0),
+        }
+    }
+    let mut shapes = Vec::new();
+    if !lines.0.is_empty() {
+        shapes.push(Shape::Line(lines, pen));
+    }
+    if !dots.0.is_empty() {
+        shapes.push(Shape::Area(dots, pen.color));
+    }
+    shapes
+}
+
+/// Names with a piece of their curves, in the middle of a panel's height.
+fn legend(names: &[String], [x, top]: [f64; 2], height: f64) -> Shape {
+    let mut y = top + 0.5 * (height - LINE * names.len() as f64) + 0.5 * LINE;
+    let mut shapes = Vec::new();
+    for (number, name) in names.iter().enumerate() {
+        let (color, dashes) = line(number);
+        let sample = Path::through([[x, y], [x + SAMPLE, y]]);
+        shapes.push(Shape::Line(sample, Pen { color, width: 2.2, dashes }));
+        let text = NAME.face.fit(name, NAME.size, WIDEST);
+        let base = y + 0.5 * CAPITALS * NAME.size;
+        shapes.push(NAME.text(text, [x + SAMPLE + BEHIND, base], Anchor::Start));
+        y += LINE;
+    }
+    Shape::Group { kind: "legend", label: String::new(), shapes }
+}

@@ -1,0 +1,38 @@
+"""The pictures that `opm plot` draws."""
+
+import tempfile
+from pathlib import Path
+
+from drawing import IMAGES
+from recordings import opm
+
+
+def draw():
+    motion("plano-spherical-5dof", "plano-spherical-sinusoids", "plano-spherical-motion.png")
+    workspace(
+        "plano-spherical-5dof", "gallery-plano-spherical-imaginary.png",
+        "--axes=zeta,psi,xi", "--scalars=theta11,theta12,theta13", panels="imaginary",
+        zeta="-20deg:20deg:41", xi="-20deg:20deg:41", psi="-20deg:20deg:41",
+    )  # fmt: skip
+    workspace(
+        "translational-helical-3dof", "translational-helical-workspace.png", panels="slices",
+        x="-450mm:450mm:451", y="-500mm:620mm:561", phi="0:600deg:6",
+    )  # fmt: skip
+
+
+def motion(mechanism, name, picture):
+    record("trajectory", mechanism, f"--motion={name}", picture=picture, panels="imaginary,actuated")
+
+
+def workspace(mechanism, picture, *flags, panels, **grid):
+    grid = [f"--grid={name}={values}" for name, values in grid.items()]
+    record("workspace", mechanism, *grid, *flags, picture=picture, panels=panels)
+
+
+def record(*arguments, picture, panels):
+    """Runs a command that records, and draws the recording."""
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / "recording.mcap"
+        opm(*arguments, "-o", path, "--quiet")
+        IMAGES.mkdir(exist_ok=True)
+        opm("plot", path, "-o", IMAGES / picture, f"--panels={panels}", "--quiet")

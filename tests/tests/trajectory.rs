@@ -1,0 +1,310 @@
+//! Motions: what is reported of them, against what inverse kinematics says at far more times.
+
+use fastrand::Rng;
+use opm_core::joint::Quantity;
+use opm_core::manipulator::{Manipulator, Section};
+use opm_core::mechanism::{examples, file};
+use opm_core::motion::{self, Harmonics, Motion, Path, Sinusoid};
+use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
+use opm_tests::random::{Options, PAIRS, mechanism};
+use std::f64::consts::{PI, TAU};
+
+/// Samples a second of what is tested, and of what it is tested against.
+const RATE: f64 = 200.0;
+const FINE: f64 = 5000.0;
+/// The two agree on a time up to the finer one's step, where it is on one side of the other.
+const STEP: f64 = 1.0 / FINE;
+
+/// Sinusoids about home, so wide that reach, limits and singularities are met.
+fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
+    let harmonics = |c: &opm_core::task::TaskCoordinate| {
+        let most = if c.quantity == Quantity::Angle { 0.8 } else { 0.7 };
+        let mut sinusoid = || Sinusoid {
+            amplitude: most * rng.f64(),
+            frequency: 0.1 + 0.4 * rng.f64(),
+            phase: TAU * rng.f64(),
+        };
+        let sinusoids = vec![sinusoid(), sinusoid()];
+        let first: f64 = sinusoids.iter().map(|s| s.amplitude * s.phase.sin()).sum();
+        // At home to begin with.
+        Harmonics { offset: c.home - first, sinusoids }
+    };
+    Motion {
+        name: "random".into(),
+        start: 0.0,
+        duration: seconds,
+        rate: None,
+        mode: None,
+        path: Path::Harmonics(manipulator.task_coordinates().iter().map(harmonics).collect()),
+    }
+}
+
+/// Every violation of a motion.
+fn violations(manipulator: &Manipulator, motion: &Motion, rate: f64) -> Vec<Violation> {
+    let mode = manipulator.home_mode();
+    let mut trajectory = Trajectory::new(manipulator, motion, mode, rate).unwrap();
+    let mut ended = Vec::new();
+    let mut last = motion.start;
+    while trajectory.advance().unwrap() {
+        for change in trajectory.changes() {
+            assert!(change.time() >= last && change.time() <= trajectory.sample().time);
+            last = change.time();
+            if let Change::Ends(violation) = change {
+                ended.push(*violation);
+            }
+        }
+    }
+    ended.extend(trajectory.open());
+    for Violation { start, end, worst, amount, .. } in &ended {
+        assert!(start <= worst && worst <= end && *amount >= 0.0, "{ended:?}");
+    }
+    ended
+}
+
+/// What a sweep of single poses says at one time: what is violated, and the sign of each section's
+/// parallel measure.
+struct Seen {
+    time: f64,
+    violated: Vec<(Gauge, f64)>,
+    known: Vec<Gauge>,
+    signs: [Option<f64>; 2],
+}
+
+fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
+    let mut solution = manipulator.solution();
+    let mut jacobians = manipulator.jacobians();
+    let mut measured = manipulator.singularities();
+    let mut instant = motion::Instant::new(manipulator.task_coordinates().len());
+    let count = (motion.duration * FINE) as u64;
+    let legs = manipulator.mechanism().legs.iter().enumerate();
+    let leg_of: Vec<usize> =
+        legs.flat_map(|(number, leg)| leg.coordinates().map(move |_| number)).collect();
+    let mut seen = Vec::new();
+    let mut lost = vec![false; manipulator.mechanism().legs.len()];
+    for number in 0..=count {
+        let time = number as f64 / FINE;
+        motion.at(time, &mut instant);
+        let mode = manipulator.home_mode();
+        let reached = match number {
+            0 => manipulator.inverse(&instant.pose, mode, &mut solution),
+            _ => manipulator.inverse_near(&instant.pose, mode, &mut solution),
+        };
+        let reached = reached.unwrap();
+        let mut violated = Vec::new();
+        let mut known = Vec::new();
+        for leg in 0..manipulator.mechanism().legs.len() {
+            known.push(Gauge::Reach { leg });
+            if let Some(u) = solution.unreachable.iter().find(|u| u.leg == leg) {
+                violated.push((Gauge::Reach { leg }, u.gap.excess));
+                lost[leg] = true;
+            }
+        }
+        for (coordinate, c) in manipulator.coordinates().iter().enumerate() {
+            let Some([low, high]) = c.limits else { continue };
+            if solution.unreachable.iter().any(|u| u.leg == leg_of[coordinate]) {
+                continue;
+            }
+            // Back in reach, an angle is at the turn nearest to where it was lost: half a turn away, that
+            // hangs on the moment at which one looks.
+            if lost[leg_of[coordinate]] && c.quantity == Quantity::Angle {
+                continue;
+            }
+            let value = solution.joints[coordinate];
+            for (bound, past) in [(Bound::Lowest, low - value), (Bound::Highest, value - high)] {
+                known.push(Gauge::Limit { coordinate, bound });
+                if past > 1e-9 {
+                    violated.push((Gauge::Limit { coordinate, bound }, past));
+                }
+            }
+        }
+        let mut signs = [None; 2];
+        if reached {
+            manipulator.differentiate(&solution, &mut jacobians).unwrap();
+            manipulator.measure_singularities(&jacobians, &mut measured);
+            signs = [measured.upper, measured.lower].map(|m| m.parallel);
+        }
+        seen.push(Seen { time, violated, known, signs });
+    }
+    seen
+}
+
+#[test]
+fn what_is_violated_is_reported_and_nothing_else() {
+    let mut rng = Rng::with_seed(7);
+    let (mut reach, mut limit, mut crossings) = (0, 0, 0);
+    for _ in 0..8 {
+        for pair in PAIRS {
+            let options = Options { limited: 0.5, balls: true };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let motion = motion(&mut rng, &manipulator, 3.0);
+            let found = violations(&manipulator, &motion, RATE);
+            let seen = look(&manipulator, &motion);
+            let stretches: Vec<_> = found.iter().filter(|v| !v.is_singularity()).collect();
+            for Seen { time, violated, known, .. } in &seen {
+                for gauge in known {
+                    let of = stretches.iter().filter(|v| v.gauge == *gauge);
+                    let near = |v: &&&Violation| {
+                        (v.start - time).abs() < STEP || (v.end - time).abs() < STEP
+                    };
+                    if of.clone().any(|v| near(&v)) {
+                        continue;
+                    }
+                    let within = of.clone().find(|v| (v.start..=v.end).contains(time));
+                    let told = violated.iter().find(|(g, _)| g == gauge).map(|(_, amount)| *amount);
+                    assert_eq!(
+                        within.is_some(),
+                        told.is_some(),
+                        "{pair:?} {gauge:?} at {time}: {of:?}"
+                    );
+                    if let (Some(within), Some(amount)) = (within, told)
+                        && within.quantity.is_some()
+                        && matches!(gauge, Gauge::Limit { .. })
+                    {
+                        assert!(amount <= within.amount + 1e-8, "{gauge:?} at {time}: {within:?}");
+                    }
+                }
+            }
+            reach += stretches.iter().filter(|v| matches!(v.gauge, Gauge::Reach { .. })).count();
+            limit += stretches.iter().filter(|v| matches!(v.gauge, Gauge::Limit { .. })).count();
+
+            for (i, section) in [Section::Upper, Section::Lower].into_iter().enumerate() {
+                let gauge = Gauge::Parallel { part: Part::Section(section) };
+                let told: Vec<f64> =
+                    found.iter().filter(|v| v.gauge == gauge).map(|v| v.start).collect();
+                for pair in seen.windows(2) {
+                    let [Some(before), Some(after)] = [pair[0].signs[i], pair[1].signs[i]] else {
+                        continue;
+                    };
+                    if before * after < 0.0 {
+                        crossings += 1;
+                        let near = |t: &f64| *t > pair[0].time - STEP && *t < pair[1].time + STEP;
+                        assert!(told.iter().any(near), "{section} near {}: {told:?}", pair[0].time);
+                    }
+                }
+            }
+        }
+    }
+    // They were all met.
+    assert!(reach > 50 && limit > 50 && crossings > 5, "{reach} {limit} {crossings}");
+}
+
+/// The helical manipulator's sliders are linear in the pose (Eq. 27 of the paper): a third slider that
+/// passes its limit for 14 ms between two samples that are 100 ms apart, or 0.5 s apart.
+#[test]
+fn a_dip_between_two_samples_is_found_where_the_slopes_say_so() {
+    let manipulator = shipped("translational-helical-3dof");
+    let amplitude = 0.4 + 1e-4 - 0.025 * 165_f64.to_radians().sin();
+    for (rate, phase) in [(10.0, 171.0), (2.0, 150.0)] {
+        let x = Sinusoid { amplitude, frequency: 0.5, phase: f64::to_radians(phase) };
+        let x = Harmonics { offset: 0.0, sinusoids: vec![x] };
+        let still = Harmonics::constant(0.0);
+        let path = Path::Harmonics(vec![x, still.clone(), still]);
+        let motion =
+            Motion { name: "dip".into(), start: 0.0, duration: 2.0, rate: None, mode: None, path };
+        let found = violations(&manipulator, &motion, rate);
+        let [violation] = found[..] else { panic!("{rate}: {found:?}") };
+        let lowest = (270.0 - phase) / 180.0;
+        let half = ((amplitude - 1e-4) / amplitude).acos() / PI;
+        assert!((violation.start - (lowest - half)).abs() < 1e-9, "{violation:?}");
+        assert!((violation.end - (lowest + half)).abs() < 1e-9, "{violation:?}");
+        assert!((violation.amount - 1e-4).abs() < 1e-12, "{violation:?}");
+        assert!((violation.worst - lowest).abs() < 1e-6, "{violation:?}");
+    }
+}
+
+/// The paper's arm of two links of 100 mm from (0, 75) reaches 200 mm: down to y = -125 mm at x = 0.
+/// On the way there and back it folds up, where y is 75 mm.
+#[test]
+fn the_end_of_an_arm_is_found_between_two_samples() {
+    let manipulator = shipped("plano-spherical-5dof");
+    let y = Sinusoid { amplitude: 0.1251, frequency: 0.25, phase: 0.1 };
+    let mut path: Vec<_> =
+        manipulator.task_coordinates().iter().map(|c| Harmonics::constant(c.home)).collect();
+    path[1].sinusoids.push(y);
+    let path = Path::Harmonics(path);
+    let motion =
+        Motion { name: "arm".into(), start: 0.0, duration: 4.0, rate: None, mode: None, path };
+    let found = violations(&manipulator, &motion, 5.0);
+    let arm: Vec<_> = found.iter().filter(|v| v.gauge == Gauge::Reach { leg: 3 }).collect();
+    let [fold, unfold, violation] = arm[..] else { panic!("{found:?}") };
+    let folded = (0.075 / 0.1251_f64).asin();
+    for (touch, angle) in [(fold, folded), (unfold, PI - folded)] {
+        assert!(touch.is_singularity() && touch.section == Some(Section::Lower), "{touch:?}");
+        assert!((touch.start - (angle - 0.1) / (PI / 2.0)).abs() < 1e-8, "{touch:?}");
+    }
+    assert_eq!(
+        (violation.section, violation.quantity),
+        (Some(Section::Lower), Some(Quantity::Length))
+    );
+    // 0.1251 sin(π t / 2 + 0.1) = -0.125
+    let half = (0.125 / 0.1251_f64).acos() / (PI / 2.0);
+    let lowest = (1.5 * PI - 0.1) / (PI / 2.0);
+    assert!((violation.start - (lowest - half)).abs() < 1e-9, "{violation:?}");
+    assert!((violation.end - (lowest + half)).abs() < 1e-9, "{violation:?}");
+    assert!((violation.amount - 1e-4).abs() < 1e-9, "{violation:?}");
+}
+
+/// Rates are derivatives of what is reported, also where an angle passes half a turn.
+#[test]
+fn joints_move_on_as_their_rates_say() {
+    for example in motion::examples::MOTIONS {
+        let manipulator = shipped(example.mechanism);
+        let motion = motion::file::read(example.text, &manipulator).unwrap();
+        let (rate, mode) = (1e4, manipulator.home_mode());
+        let mut trajectory = Trajectory::new(&manipulator, &motion, mode, rate).unwrap();
+        let mut held: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        while trajectory.advance().unwrap() {
+            assert!(
+                trajectory.changes().is_empty(),
+                "{}: {:?}",
+                example.name,
+                trajectory.changes()
+            );
+            let sample = trajectory.sample();
+            assert!(sample.valid() && sample.regular && sample.condition < 100.0);
+            held.push((sample.solution.joints.clone(), sample.motion.joint_rates.clone()));
+            if held.len() == 3 {
+                for (i, c) in manipulator.coordinates().iter().enumerate() {
+                    let difference = (held[2].0[i] - held[0].0[i]) * 0.5 * rate;
+                    // The step's square times a third derivative of some 10 a second cubed.
+                    let off = (difference - held[1].1[i]).abs();
+                    assert!(off < 1e-6, "{}: {} is off by {off}", example.name, c.name);
+                }
+                held.remove(0);
+            }
+        }
+    }
+}
+
+/// The end is a sample, whether or not a whole number of steps away, and a bad rate is refused.
+#[test]
+fn samples_go_from_start_to_end() {
+    let manipulator = shipped("translational-helical-3dof");
+    let still = vec![Harmonics::constant(0.0); 3];
+    let path = Path::Harmonics(still);
+    let mut motion =
+        Motion { name: "still".into(), start: 5.0, duration: 0.3, rate: None, mode: None, path };
+    for (duration, rate, samples) in [(0.3, 10.0, 4), (0.35, 10.0, 5), (1.0, 0.1, 2), (2.0, 1.0, 3)]
+    {
+        motion.duration = duration;
+        let mode = manipulator.home_mode();
+        let mut trajectory = Trajectory::new(&manipulator, &motion, mode, rate).unwrap();
+        assert_eq!(trajectory.samples(), samples, "{duration} {rate}");
+        let mut times = Vec::new();
+        while trajectory.advance().unwrap() {
+            times.push(trajectory.sample().time);
+        }
+        assert_eq!(times.len() as u64, samples);
+        assert_eq!((times[0], times[times.len() - 1]), (5.0, 5.0 + duration));
+    }
+    for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
+        let mode = manipulator.home_mode();
+        assert!(Trajectory::new(&manipulator, &motion, mode, rate).is_err());
+    }
+}
+
+fn shipped(name: &str) -> Manipulator {
+    let text = examples::find(name).unwrap().text;
+    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+}
