@@ -6,6 +6,9 @@ use crate::velocity::SINGULAR;
 /// Steps of a golden-section search: the interval shrinks to 1e-8 of itself, where the lowest value
 /// of a smooth function is known to rounding.
 const SEARCH: usize = 39;
+/// A stretch is parted this share of it before and after a singularity: a hundred times what is known
+/// of when that is.
+const ASIDE: f64 = 1e-6;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
@@ -127,6 +130,17 @@ impl Trajectory<'_> {
                 }
                 if self.is_zero(number, &lowest) {
                     self.touches(number, &lowest);
+                    // A joint may go through infinity there: its gauges are continuous on either side.
+                    let share = (lowest.time - from.time) / step;
+                    if share > ASIDE && share < 1.0 - ASIDE {
+                        let mut before = self.between(from, &to, share - ASIDE)?;
+                        let mut after = self.between(from, &to, share + ASIDE)?;
+                        self.solver.slope(&mut before, Look::Back, &mut self.probe)?;
+                        self.solver.slope(&mut after, Look::Ahead, &mut self.probe)?;
+                        let before = self.watch(from, before)?;
+                        self.stretch(&before, &after)?;
+                        return self.watch(&after, to);
+                    }
                 }
             }
         }
