@@ -92,11 +92,11 @@ fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
         let reached = reached.unwrap();
         let mut violated = Vec::new();
         let mut known = Vec::new();
-        for leg in 0..manipulator.mechanism().legs.len() {
+        for (leg, lost) in lost.iter_mut().enumerate() {
             known.push(Gauge::Reach { leg });
             if let Some(u) = solution.unreachable.iter().find(|u| u.leg == leg) {
                 violated.push((Gauge::Reach { leg }, u.gap.excess));
-                lost[leg] = true;
+                *lost = true;
             }
         }
         for (coordinate, c) in manipulator.coordinates().iter().enumerate() {
