@@ -99,8 +99,8 @@ impl<W: Sink> Player<W> {
         self.measures.clear();
         self.measures.push(sample.condition);
         for (parallel, measures) in self.parallel.into_iter().zip([sample.upper, sample.lower]) {
-            // Out of reach is beyond a singularity, and told like one.
-            let told = |measure: f64| if sample.reached { measure } else { 0.0 };
+            // Out of reach there is nothing to measure: a gap for whoever plots it.
+            let told = |measure: f64| if sample.reached { measure } else { f64::NAN };
             self.measures.push(told(measures.serial));
             if parallel {
                 self.measures.push(told(measures.parallel.unwrap_or_default()));

@@ -13,8 +13,8 @@
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
 //! Metres, radians and seconds; what has no values in a recording has no topic. Time starts at
-//! [`START`]; no clock is read. Where the mechanism cannot be, `/pose` and `/condition` (`valid` 0)
-//! go on and the joints pause.
+//! [`START`]; no clock is read. Where the mechanism cannot be, `/pose` and `/condition` (`valid` 0, the
+//! condition number infinite, the measures NaN) go on and the joints pause.
 //!
 //! Metadata records: `run` (what the caller tells of the run), `joints` (which joint each field is, see
 //! [`crate::joints`]), `quantities` (what each field of a position measures, `rad` or `m`), `roles`
