@@ -46,10 +46,9 @@ pub enum Convex {
 pub struct Band {
     /// Unit.
     across: Complex<f64>,
-    range: [f64; 2],
-    /// The ends in the order in which a row meets them, and the inverse of the direction's part
-    /// along the row.
+    /// The ends of the range, in the order in which a row meets them.
     met: [f64; 2],
+    /// Of the direction's part along the row.
     inverse: f64,
 }
 
@@ -150,7 +149,6 @@ impl Convex {
     const NOTHING: Self = {
         let band = Band {
             across: Complex::new(1.0, 0.0),
-            range: [f64::INFINITY, f64::NEG_INFINITY],
             met: [f64::INFINITY, f64::NEG_INFINITY],
             inverse: 1.0,
         };
@@ -188,17 +186,17 @@ impl Band {
         let along = across.re;
         let inverse = if along.abs() > LEVEL { 1.0 / along } else { HUGE.copysign(along) };
         let met = if inverse > 0.0 { range } else { [range[1], range[0]] };
-        Self { across, range, met, inverse }
+        Self { across, met, inverse }
     }
 
     fn turned(&self, turn: Complex<f64>) -> Self {
-        Self::new(turn * self.across, self.range)
+        let [near, far] = self.met;
+        Self::new(turn * self.across, if self.inverse > 0.0 { [near, far] } else { [far, near] })
     }
 
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         let offset = self.across.re * shift.re + self.across.im * shift.im;
-        let placed = |end: f64| scale * (end + offset);
-        Self { range: self.range.map(placed), met: self.met.map(placed), ..*self }
+        Self { met: self.met.map(|end| scale * (end + offset)), ..*self }
     }
 
     fn is_level(&self) -> bool {
@@ -210,12 +208,12 @@ impl Band {
     }
 
     fn is_everything(&self) -> bool {
-        self.range == [f64::NEG_INFINITY, f64::INFINITY]
+        self.met.iter().all(|end| end.is_infinite())
     }
 
     fn size(&self) -> f64 {
         let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
-        finite(self.range[0]).max(finite(self.range[1]))
+        finite(self.met[0]).max(finite(self.met[1]))
     }
 
     /// What the row at the second coordinate `y` cuts from it.
