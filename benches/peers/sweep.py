@@ -144,5 +144,5 @@ def compare(points, orientations, contenders):
 
 if __name__ == "__main__":
     peers = {"NumPy, pose by pose": numpy_per_pose, "NumPy, factorised": numpy_factorised}
-    compare(64, {"": 17, "NumPy, pose by pose": 4, "NumPy, factorised": 7}, {**peers, "numba, factorised": numba_factorised})
-    compare(256, {"": 9}, {"numba, factorised": numba_factorised})
+    compare(64, {"": 25, "NumPy, pose by pose": 4, "NumPy, factorised": 7}, {**peers, "numba, factorised": numba_factorised})
+    compare(256, {"": 12}, {"numba, factorised": numba_factorised})
