@@ -19,9 +19,17 @@ Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always -
 * System: $(uname -sm), $(rustc --version)
 
 What a table compares was timed in one run, turn and turn about; each number is a median over the rounds. On another
-machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, what compares with NumPy and numba, in
-\`benches/peers\`: there opm is called from Python.
+machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, what compares with
+NumPy and numba, \`benches/peers\`: there opm is called from Python.
 END
-# A blank line between paragraphs and tables.
-printf '%s\n' "$results" "" "$peers" |
-  awk '!NF { before = 0; next } { table = /^\|/; if (!table || !before) print ""; before = table; print }'
+# A blank line between paragraphs and tables; a table begins above its rule.
+printf '%s\n' "$results" "$peers" | awk '
+  NF { lines[++count] = $0 }
+  END {
+    for (i = 1; i <= count; i++) {
+      row = lines[i] ~ /^\|/
+      if (!row || !before || lines[i + 1] ~ /^\|-/) print ""
+      print lines[i]
+      before = row
+    }
+  }'

@@ -139,7 +139,6 @@ def compare(points, orientations, contenders):
     for name, seconds in times.items():
         ratio = np.median(np.array(seconds) / np.array(base))
         print(f"| {name} | {1e-6 / np.median(seconds):.1f} | {ratio:.2f} |")
-    print()
 
 
 if __name__ == "__main__":
