@@ -168,6 +168,28 @@ fn violations_are_marked() {
     assert!(pieces(paths(curve)[0]).len() > 1, "a gap");
     let pose = named(panels[0], "curve", "x");
     assert_eq!(pieces(paths(pose)[0]).len(), 1, "the pose goes on");
+    // Out of reach nothing is measured. Nothing but out of reach stops S1.
+    let measures = panels.iter().find(|panel| label(**panel) == "Singularity measures").unwrap();
+    let spans = |panel, name| -> Vec<[i64; 2]> {
+        let pieces = pieces(paths(named(panel, "curve", name))[0]);
+        let ends = |piece: &Vec<[f64; 2]>| {
+            [piece[0][0], piece[piece.len() - 1][0]].map(|x| x.round() as i64)
+        };
+        pieces.iter().map(ends).collect()
+    };
+    assert_eq!(spans(*measures, "upper_parallel"), spans(*joints, "S1"));
+}
+
+/// A rate in --panels does not take away a panel that is named beside it.
+#[test]
+fn the_condition_number_is_drawn_beside_accelerations() {
+    let folder = Folder::new();
+    let file = motion(&folder, &["--motion", "plano-spherical-sinusoids", "--rate", "10"]);
+    let args = ["--panels", "condition,actuated,accelerations", "--values", "condition,S1"];
+    let (_, svg) = plot(&folder, &file, &args);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["Actuated joints, acceleration", "Condition number"]);
 }
 
 /// A tile has as many cells as a sweep of that slice alone counts poses.
