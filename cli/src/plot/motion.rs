@@ -189,7 +189,7 @@ impl<'a> Motion<'a> {
                     }
                 }
                 TopicKind::Condition => {
-                    traces.for_each(|trace| trace.curve.push(seconds, f64::NAN))
+                    traces.for_each(|trace| trace.curve.push(seconds, f64::NAN));
                 }
                 _ if heard[topic] => {}
                 _ => traces.for_each(|trace| trace.curve.push(seconds, f64::NAN)),
