@@ -2,7 +2,7 @@
 
 use super::source::{Rate, Source, Stop};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
-use super::violations::{listed, violations};
+use super::violations::{listed, told, violations};
 use super::workspace::value_label;
 use super::{PanelName, drawn};
 use crate::args::PlotArgs;
@@ -213,7 +213,7 @@ impl<'a> Motion<'a> {
         let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
         let violations = violations(source);
-        let mut notes = listed(&violations);
+        let mut notes = listed(&violations, told(source, &violations));
         // Between samples, too, where the recording tells.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {

@@ -402,6 +402,15 @@ fn an_output_that_cannot_be_written_is_told_at_once() {
 
 /// A recording of an unknown mechanism, with two joints.
 fn unknown_motion(path: &str, values: &[[f64; 2]]) {
+    unknown_motion_with(path, values, &[], &Metadata::new());
+}
+
+fn unknown_motion_with(
+    path: &str,
+    values: &[[f64; 2]],
+    violations: &[Metadata],
+    result: &Metadata,
+) {
     let joint = |name: &str| Coordinate { name: name.into(), unit: "rad", role: Role::Actuated };
     let trajectory = Trajectory {
         pose: vec![],
@@ -418,7 +427,29 @@ fn unknown_motion(path: &str, values: &[[f64; 2]]) {
         let posture = Some(Posture { joints, ..Posture::default() });
         recorder.push(i * 1_000_000, &Sample { posture, ..Sample::default() }).unwrap();
     }
-    recorder.finish(&Metadata::new()).unwrap();
+    for (number, violation) in (1..).zip(violations) {
+        recorder.describe(&format!("violation.{number}"), violation).unwrap();
+    }
+    recorder.finish(result).unwrap();
+}
+
+/// Of very many violations a recording holds the first; the notes count all.
+#[test]
+fn violations_that_are_not_in_the_recording_are_counted() {
+    let folder = Folder::new();
+    let file = folder.arg("many.mcap");
+    let record = |pairs: &[(&str, &str)]| -> Metadata {
+        pairs.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+    };
+    let violations = [record(&[("kind", "singularity"), ("start", "0.001")])];
+    let result = record(&[("violations", "50000")]);
+    unknown_motion_with(&file, &[[1.0, 2.0]; 5], &violations, &result);
+    let (_, svg) = plot(&folder, &file, &[]);
+    let document = Document::parse(&svg).unwrap();
+    assert!(texts(&document).contains(&"and 49,999 more; the first 1 are marked"));
+    unknown_motion_with(&file, &[[1.0, 2.0]; 5], &violations, &Metadata::new());
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert!(!svg.contains(" more"));
 }
 
 #[test]
