@@ -191,7 +191,8 @@ pub struct VelocityArgs {
 /// finds one assembly, in the working mode of --mode or home.
 ///
 /// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
-/// modulo a turn, unless a screw follows them.
+/// modulo a turn, unless a screw follows them: every turn is then an assembly of its own, an advance of
+/// the screw away, and `opm ik` does not tell which. The turns given in --joints decide.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -424,7 +425,7 @@ pub struct InspectArgs {
     pub file: PathBuf,
 }
 
-/// List the mechanism files that come with opm, or print one
+/// List the mechanisms and motions that come with opm, or print one
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

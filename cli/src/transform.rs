@@ -15,6 +15,9 @@ const UNIT: f64 = 2e-3;
 /// Numbers of six digits are off the motion by less, in radians or sizes of the mechanism.
 const WRITTEN: f64 = 1e-5;
 
+/// Metres, as in mechanism files: from much farther away, rounding hides the mechanism.
+const FARTHEST: f64 = 1e9;
+
 const NAMES: [&str; 7] = ["X", "Y", "Z", "QW", "QX", "QY", "QZ"];
 
 /// Position of the platform's reference point, and its orientation; base coordinates, metres.
@@ -42,6 +45,11 @@ impl FromStr for Transform {
                 0..3 => given.value_of(name, Quantity::Length)?,
                 _ => given.bare(name)?,
             };
+            if value.abs() > FARTHEST {
+                return Err(Misread(format!(
+                    "{name} is {value:?}, expected a number of at most {FARTHEST:e}"
+                )));
+            }
         }
         let [x, y, z, qw, qx, qy, qz] = values;
         let quaternion = Quaternion::new(qw, qx, qy, qz);
@@ -118,6 +126,9 @@ mod tests {
             ("0,0,0,1,0,0,0,0", "8 numbers"),
             ("0,0,30deg,1,0,0,0", "Z is a length"),
             ("0,0,0,1mm,0,0,0", "QW has a unit, expected a number alone"),
+            ("-1e10,0,0,1,0,0,0", "X is -10000000000.0, expected a number of at most 1e9"),
+            ("0,0,1e300,1,0,0,0", "Z is 1e300, expected a number of at most 1e9"),
+            ("0,0,0,1e300,0,0,0", "QW is 1e300, expected a number of at most 1e9"),
             ("0,0,0,1,0,0,x", "not a number"),
             ("0,0,0,1,0,0,nan", "not a number"),
             ("0,0,0,0,0,0,0", "has length 0.0000, expected 1"),

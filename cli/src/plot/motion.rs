@@ -2,7 +2,7 @@
 
 use super::source::{Rate, Source, Stop};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
-use super::violations::{listed, violations};
+use super::violations::{listed, told, violations};
 use super::workspace::value_label;
 use super::{PanelName, drawn};
 use crate::args::PlotArgs;
@@ -91,6 +91,12 @@ impl Wanted {
             None => group != Group::Passive || !args.values.is_empty(),
         }
     }
+
+    /// Condition and measures are no positions: where --panels names them, no rate rules them out.
+    fn takes(&self, trace: &Trace) -> bool {
+        let judged = matches!(trace.group, Group::Condition | Group::Singularity);
+        self.rates.contains(&trace.rate) || (judged && self.groups.is_some())
+    }
 }
 
 /// Everything over time.
@@ -110,6 +116,8 @@ struct Motion<'a> {
     end: u64,
     invalid: Vec<[f64; 2]>,
     valid: bool,
+    /// What `/condition` told at that time: it is drawn where the mechanism can be.
+    measures: Vec<f64>,
     values: Vec<f64>,
 }
 
@@ -129,6 +137,7 @@ impl<'a> Motion<'a> {
             end: 0,
             invalid: vec![],
             valid: true,
+            measures: vec![],
             values: vec![],
         }
     }
@@ -153,20 +162,37 @@ impl<'a> Motion<'a> {
         let source = self.source;
         let traces = self.traces[topic].get_or_insert_with(|| traces(source, TOPICS[topic], flat));
         let values = flat.names.iter().zip(values).filter(|(name, _)| !skipped(topic, name));
+        if TOPICS[topic].kind == TopicKind::Condition {
+            self.measures.clear();
+            self.measures.extend(values.map(|(_, value)| value));
+            return;
+        }
         for (trace, (_, value)) in traces.iter_mut().zip(values) {
             trace.curve.push(seconds, value / trace.factor);
         }
     }
 
-    /// Ends an instant. What had values before and has none now has a gap.
+    /// Ends an instant. What had values before and has none now has a gap. So have the measures where
+    /// the joints pause: out of reach, `/condition` goes on, but there is no posture to measure.
     fn finish(&mut self) {
         let Some(time) = self.now.take() else { return };
         let seconds = self.seconds(time);
-        for (traces, heard) in self.traces.iter_mut().zip(&mut self.heard) {
-            if !std::mem::take(heard) {
-                for trace in traces.iter_mut().flatten() {
-                    trace.curve.push(seconds, f64::NAN);
+        let heard = std::mem::take(&mut self.heard);
+        let of = |kind| (0..TOPICS.len()).filter(move |&n| TOPICS[n].kind == kind);
+        let posture = of(TopicKind::Joints).any(|topic| heard[topic]);
+        for (topic, traces) in self.traces.iter_mut().enumerate() {
+            let traces = traces.iter_mut().flatten();
+            match TOPICS[topic].kind {
+                TopicKind::Condition if heard[topic] && posture => {
+                    for (trace, value) in traces.zip(&self.measures) {
+                        trace.curve.push(seconds, value / trace.factor);
+                    }
                 }
+                TopicKind::Condition => {
+                    traces.for_each(|trace| trace.curve.push(seconds, f64::NAN));
+                }
+                _ if heard[topic] => {}
+                _ => traces.for_each(|trace| trace.curve.push(seconds, f64::NAN)),
             }
         }
     }
@@ -187,7 +213,7 @@ impl<'a> Motion<'a> {
         let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
         let violations = violations(source);
-        let mut notes = listed(&violations);
+        let mut notes = listed(&violations, told(source, &violations));
         // Between samples, too, where the recording tells.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {
@@ -203,7 +229,7 @@ impl<'a> Motion<'a> {
         let mut rows: BTreeMap<(Group, u8), Vec<Trace>> = BTreeMap::new();
         for trace in all {
             let named = args.values.is_empty() || args.values.contains(&trace.name);
-            if named && wanted.has(trace.group, args) && wanted.rates.contains(&trace.rate) {
+            if named && wanted.has(trace.group, args) && wanted.takes(&trace) {
                 let order = match trace.quantity {
                     Some(Quantity::Length) => 0,
                     Some(Quantity::Angle) => 1,

@@ -2,6 +2,7 @@
 
 use super::source::{Rate, Source, quantity};
 use super::workspace::value_label;
+use crate::text::count;
 use opm_mcap::Metadata;
 use opm_plot::axis::label;
 
@@ -57,8 +58,14 @@ pub fn violations(source: &Source<'_>) -> Vec<Violation> {
     found
 }
 
-/// Notes that say what the marks are.
-pub fn listed(violations: &[Violation]) -> Vec<String> {
+/// How many there were: a recording may hold the first of many.
+pub fn told(source: &Source<'_>, violations: &[Violation]) -> usize {
+    let told = source.metadata("result").get("violations").and_then(|count| count.parse().ok());
+    told.unwrap_or(0).max(violations.len())
+}
+
+/// Notes that say what the marks are, of the `told` violations that there were.
+pub fn listed(violations: &[Violation], told: usize) -> Vec<String> {
     let note = |(number, violation): (usize, &Violation)| {
         let Violation { start, end, text } = violation;
         let [start, end] = [*start, *end].map(|time| label(time, 3));
@@ -68,8 +75,13 @@ pub fn listed(violations: &[Violation]) -> Vec<String> {
         }
     };
     let mut notes: Vec<String> = (1..).zip(violations).take(LISTED).map(note).collect();
-    if violations.len() > LISTED {
-        notes.push(format!("and {} more", violations.len() - LISTED));
+    let more = told - notes.len();
+    if more > 0 {
+        let marked = match violations.len() {
+            marked if marked < told => format!("; the first {} are marked", count(marked as u64)),
+            _ => String::new(),
+        };
+        notes.push(format!("and {} more{marked}", count(more as u64)));
     }
     notes
 }

@@ -168,6 +168,28 @@ fn violations_are_marked() {
     assert!(pieces(paths(curve)[0]).len() > 1, "a gap");
     let pose = named(panels[0], "curve", "x");
     assert_eq!(pieces(paths(pose)[0]).len(), 1, "the pose goes on");
+    // Out of reach nothing is measured. Nothing but out of reach stops S1.
+    let measures = panels.iter().find(|panel| label(**panel) == "Singularity measures").unwrap();
+    let spans = |panel, name| -> Vec<[i64; 2]> {
+        let pieces = pieces(paths(named(panel, "curve", name))[0]);
+        let ends = |piece: &Vec<[f64; 2]>| {
+            [piece[0][0], piece[piece.len() - 1][0]].map(|x| x.round() as i64)
+        };
+        pieces.iter().map(ends).collect()
+    };
+    assert_eq!(spans(*measures, "upper_parallel"), spans(*joints, "S1"));
+}
+
+/// A rate in --panels does not take away a panel that is named beside it.
+#[test]
+fn the_condition_number_is_drawn_beside_accelerations() {
+    let folder = Folder::new();
+    let file = motion(&folder, &["--motion", "plano-spherical-sinusoids", "--rate", "10"]);
+    let args = ["--panels", "condition,actuated,accelerations", "--values", "condition,S1"];
+    let (_, svg) = plot(&folder, &file, &args);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document), ["Actuated joints, acceleration", "Condition number"]);
 }
 
 /// A tile has as many cells as a sweep of that slice alone counts poses.
@@ -380,6 +402,15 @@ fn an_output_that_cannot_be_written_is_told_at_once() {
 
 /// A recording of an unknown mechanism, with two joints.
 fn unknown_motion(path: &str, values: &[[f64; 2]]) {
+    unknown_motion_with(path, values, &[], &Metadata::new());
+}
+
+fn unknown_motion_with(
+    path: &str,
+    values: &[[f64; 2]],
+    violations: &[Metadata],
+    result: &Metadata,
+) {
     let joint = |name: &str| Coordinate { name: name.into(), unit: "rad", role: Role::Actuated };
     let trajectory = Trajectory {
         pose: vec![],
@@ -396,7 +427,29 @@ fn unknown_motion(path: &str, values: &[[f64; 2]]) {
         let posture = Some(Posture { joints, ..Posture::default() });
         recorder.push(i * 1_000_000, &Sample { posture, ..Sample::default() }).unwrap();
     }
-    recorder.finish(&Metadata::new()).unwrap();
+    for (number, violation) in (1..).zip(violations) {
+        recorder.describe(&format!("violation.{number}"), violation).unwrap();
+    }
+    recorder.finish(result).unwrap();
+}
+
+/// Of very many violations a recording holds the first; the notes count all.
+#[test]
+fn violations_that_are_not_in_the_recording_are_counted() {
+    let folder = Folder::new();
+    let file = folder.arg("many.mcap");
+    let record = |pairs: &[(&str, &str)]| -> Metadata {
+        pairs.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+    };
+    let violations = [record(&[("kind", "singularity"), ("start", "0.001")])];
+    let result = record(&[("violations", "50000")]);
+    unknown_motion_with(&file, &[[1.0, 2.0]; 5], &violations, &result);
+    let (_, svg) = plot(&folder, &file, &[]);
+    let document = Document::parse(&svg).unwrap();
+    assert!(texts(&document).contains(&"and 49,999 more; the first 1 are marked"));
+    unknown_motion_with(&file, &[[1.0, 2.0]; 5], &violations, &Metadata::new());
+    let (_, svg) = plot(&folder, &file, &[]);
+    assert!(!svg.contains(" more"));
 }
 
 #[test]
