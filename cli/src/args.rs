@@ -179,7 +179,7 @@ pub struct VelocityArgs {
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Characteristic length of the condition number, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
 }
 
@@ -338,10 +338,10 @@ pub struct WorkspaceArgs {
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Only poses with a condition number of at most C count, in a mode in which they have it
-    #[arg(long, value_name = "C", value_parser = condition_number)]
+    #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
     /// Characteristic length of the condition number, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", requires = "max_condition")]
+    #[arg(long, value_name = "LENGTH", requires = "max_condition", allow_hyphen_values = true)]
     pub length: Option<Number>,
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]

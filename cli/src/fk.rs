@@ -196,7 +196,8 @@ impl Answer<'_> {
         let in_mode =
             self.only.map_or(String::new(), |mode| format!(" in mode {}", shown(m, mode)));
         if list.is_empty() {
-            let _ = writeln!(text, "no assembly{in_mode}");
+            let single = if self.found.loose.is_empty() { "" } else { "single " };
+            let _ = writeln!(text, "no {single}assembly{in_mode}");
             for unmet in self.unmet(units) {
                 let _ = writeln!(text, "  {unmet}");
             }

@@ -189,6 +189,33 @@ fn what_is_violated_is_reported_and_nothing_else() {
     assert!(reach > 50 && limit > 50 && crossings > 5, "{reach} {limit} {crossings}");
 }
 
+/// Passages through singularities are at the same times however often one looks, each told once: also
+/// where a sample on the way to one is so near that its measure counts as zero.
+#[test]
+fn a_passage_through_a_singularity_is_told_once() {
+    let manipulator = shipped("double-spherical-5dof");
+    let text = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\nduration = 4\n\
+        rate = 200\n[coordinates]\n\
+        mu = { amplitude = 15, frequency = 0.25 }\n\
+        nu = { amplitude = 12, frequency = 0.5, phase = 40 }\n\
+        xi = { amplitude = 10, frequency = 0.5, offset = 20 }\n\
+        zeta = { amplitude = 30, frequency = 0.25 }\n\
+        psi = { amplitude = 20, frequency = 0.5, phase = 70 }\n";
+    let motion = motion::file::read(text, &manipulator).unwrap();
+    let of = |rate: f64| -> Vec<f64> {
+        violations(&manipulator, &motion, rate).iter().map(|violation| violation.start).collect()
+    };
+    let finest = of(3000.0);
+    assert!(finest.len() > 5, "{finest:?}");
+    for rate in [200.0, 290.0, 700.0, 1000.0] {
+        let found = of(rate);
+        assert_eq!(found.len(), finest.len(), "{rate}: {found:?}, expected {finest:?}");
+        for (a, b) in found.iter().zip(&finest) {
+            assert!((a - b).abs() < 1e-5, "{rate}: {found:?}, expected {finest:?}");
+        }
+    }
+}
+
 /// The helical manipulator's sliders are linear in the pose (Eq. 27 of the paper): a third slider that
 /// passes its limit for 14 ms between two samples that are 100 ms apart, or 0.5 s apart.
 #[test]

@@ -283,6 +283,9 @@ impl<'a> Trajectory<'a> {
             let (from, to) = (self.previous.clone(), self.current.clone());
             self.current = self.watch(&from, to)?;
         }
+        if last && number > 0 {
+            self.end();
+        }
         self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
         self.worsen();
         Ok(true)

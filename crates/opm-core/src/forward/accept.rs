@@ -233,6 +233,9 @@ impl Search<'_> {
         if !self.out.list.is_empty() {
             self.out.unmet.clear();
         }
+        // A loose section closes in some way, which is not listed.
+        let Assemblies { loose, unmet, .. } = &mut self.out;
+        unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
         self.out
     }
 }

@@ -63,6 +63,22 @@ impl Trajectory<'_> {
         }
     }
 
+    /// At the last sample: what came so near to zero that it counts, and would go on.
+    pub(super) fn end(&mut self) {
+        let sample = self.current.clone();
+        for number in 0..self.solver.gauges.len() {
+            let parallel = matches!(self.solver.gauges[number], Gauge::Parallel { .. });
+            if parallel && self.is_zero(number, &sample) && self.nears(number, &sample) {
+                self.touches(number, &sample);
+            }
+        }
+    }
+
+    /// Whether a gauge goes towards zero.
+    fn nears(&self, number: usize, sample: &Sample) -> bool {
+        matches!((sample.levels[number], sample.slopes[number]), (Some(a), Some(b)) if a * b < 0.0)
+    }
+
     /// Whether anything may have happened between the last two samples. Mostly nothing has.
     pub(super) fn eventful(&self) -> bool {
         let (from, to) = (&self.previous, &self.current);
@@ -194,7 +210,10 @@ impl Trajectory<'_> {
                             self.touches(number, &nearest);
                         }
                     } else if self.is_zero(number, to) && !self.is_zero(number, from) {
-                        self.touches(number, to);
+                        // On its way to zero it is there in a later stretch, or where the motion ends.
+                        if !self.nears(number, to) {
+                            self.touches(number, to);
+                        }
                     }
                 }
             }
