@@ -63,12 +63,13 @@ impl Wanted {
     fn new(args: &PlotArgs) -> Result<Self, Failure> {
         let (mut groups, mut rates) = (vec![], vec![]);
         for panel in &args.panels {
+            groups.extend(rows_of(*panel));
             match panel {
-                PanelName::Pose => groups.push(Group::Pose),
-                PanelName::Imaginary => groups.push(Group::Imaginary),
-                PanelName::Actuated => groups.extend([Group::Actuated, Group::Joints]),
-                PanelName::Passive => groups.push(Group::Passive),
-                PanelName::Condition => groups.extend([Group::Condition, Group::Singularity]),
+                PanelName::Pose
+                | PanelName::Imaginary
+                | PanelName::Actuated
+                | PanelName::Passive
+                | PanelName::Condition => {}
                 PanelName::Positions => rates.push(Rate::Position),
                 PanelName::Velocities => rates.push(Rate::Velocity),
                 PanelName::Accelerations => rates.push(Rate::Acceleration),
@@ -96,6 +97,21 @@ impl Wanted {
     fn takes(&self, trace: &Trace) -> bool {
         let judged = matches!(trace.group, Group::Condition | Group::Singularity);
         self.rates.contains(&trace.rate) || (judged && self.groups.is_some())
+    }
+}
+
+/// The rows that a panel's name stands for; none where it names columns.
+fn rows_of(panel: PanelName) -> &'static [Group] {
+    match panel {
+        PanelName::Pose => &[Group::Pose],
+        PanelName::Imaginary => &[Group::Imaginary],
+        PanelName::Actuated => &[Group::Actuated, Group::Joints],
+        PanelName::Passive => &[Group::Passive],
+        PanelName::Condition => &[Group::Condition, Group::Singularity],
+        PanelName::Positions
+        | PanelName::Velocities
+        | PanelName::Accelerations
+        | PanelName::Slices => &[],
     }
 }
 
@@ -243,6 +259,13 @@ impl<'a> Motion<'a> {
             return Err(Failure::Work(format!(
                 "{label}: it holds none of what --panels and --values ask for"
             )));
+        }
+        for panel in &args.panels {
+            let asked = rows_of(*panel);
+            if !asked.is_empty() && !rows.keys().any(|(group, _)| asked.contains(group)) {
+                let (label, name) = (&source.label, panel.name());
+                return Err(Failure::Work(format!("{label}: no {name} in what --panels asks for")));
+            }
         }
         // Columns that nothing is in are left out.
         let rates: Vec<Rate> = [Rate::Position, Rate::Velocity, Rate::Acceleration]

@@ -136,6 +136,11 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
     let document = Document::parse(&svg).unwrap();
     let named = ["Imaginary joints", "Passive joints"];
     assert!(titles(&document).iter().all(|t| named.iter().any(|n| t.starts_with(n))));
+
+    // No row is dropped in silence.
+    let panels = "imaginary,actuated,accelerations";
+    let refused = opm(&["plot", &file, "-o", &folder.arg("none.svg"), "--panels", panels]);
+    refused.fails_with_one_line(1, &["no imaginary in what --panels asks for"]);
 }
 
 /// Where the mechanism cannot follow, the picture is shaded, the curves of the joints pause, and the
