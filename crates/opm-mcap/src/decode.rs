@@ -154,7 +154,7 @@ fn split(message: &[u8]) -> Option<(Vec<u8>, &[u8])> {
 }
 
 /// A base-128 number, the least significant digit first.
-fn varint(rest: &mut &[u8]) -> Option<u64> {
+pub(crate) fn varint(rest: &mut &[u8]) -> Option<u64> {
     let mut value = 0;
     for shift in (0..64).step_by(7) {
         let (byte, tail) = rest.split_first()?;

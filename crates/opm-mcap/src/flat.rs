@@ -1,5 +1,7 @@
 //! Messages that are nothing but named doubles, read by the schema that comes with them.
 
+use crate::decode::varint;
+
 /// Wire types of protobuf.
 const VARINT: u64 = 0;
 const DOUBLE: u64 = 1;
@@ -142,20 +144,6 @@ impl<'a> Field<'a> {
             _ => None,
         }
     }
-}
-
-/// A number in base 128, the least significant digit first.
-fn varint(rest: &mut &[u8]) -> Option<u64> {
-    let mut value = 0;
-    for shift in (0..64).step_by(7) {
-        let (byte, tail) = rest.split_first()?;
-        *rest = tail;
-        value |= u64::from(byte & 0x7f) << shift;
-        if byte & 0x80 == 0 {
-            return Some(value);
-        }
-    }
-    None
 }
 
 #[cfg(test)]
