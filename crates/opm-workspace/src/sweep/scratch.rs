@@ -2,7 +2,7 @@
 
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::runs::{self, Run};
-use super::{Hits, Modes, Sweep, Tally};
+use super::{Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::fill;
 use nalgebra::Complex;
@@ -168,7 +168,7 @@ impl<'a> Scratch<'a> {
         &mut self,
         mut rows: Range<u64>,
         window: Run,
-        tally: &mut Tally,
+        found: &mut Count,
         hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
         let sweep = self.sweep;
@@ -206,9 +206,9 @@ impl<'a> Scratch<'a> {
             let doubt = doubts[i] != 0;
             let mut count = self.decide_row(i, window, doubt);
             if count > 0 && self.limit.is_some() {
-                count = self.limit_row(hit.is_none(), tally);
+                count = self.limit_row(hit.is_none(), found);
             } else if count > 0 {
-                self.settle(i, window, doubt, tally);
+                self.settle(i, window, doubt, found);
             }
             if count == 0 {
                 continue;
@@ -225,11 +225,11 @@ impl<'a> Scratch<'a> {
         if plain && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
-                    tally.used(sweep.manipulator, &way.follow);
+                    found.used(sweep.manipulator, &way.follow);
                 }
             }
         }
-        tally.reachable += reachable;
+        found.reachable += reachable;
     }
 
     /// The reachable poses of row number `i`, in `runs`; returns how many they are. A doubtful row is
@@ -271,7 +271,7 @@ impl<'a> Scratch<'a> {
 
     /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
     /// the imaginary joints of the modes in which they are; returns how many are left.
-    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+    fn limit_row(&mut self, ranges: bool, found: &mut Count) -> u64 {
         let Some(limit) = &mut self.limit else { return 0 };
         let axis = &self.sweep.grid.axes()[0];
         self.pose[1..].copy_from_slice(&self.others);
@@ -281,7 +281,7 @@ impl<'a> Scratch<'a> {
             let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
                 if ranges {
                     let values = solution.imaginary.iter().enumerate();
-                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                    values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
                 }
                 ranges
             });
@@ -309,7 +309,7 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
-    fn settle(&mut self, i: usize, window: Run, doubt: bool, tally: &mut Tally) {
+    fn settle(&mut self, i: usize, window: Run, doubt: bool, found: &mut Count) {
         let mut first = 0;
         for number in 0..self.legs.len() {
             let alone = self.legs[number].len() == 1;
@@ -332,7 +332,7 @@ impl<'a> Scratch<'a> {
                     })
                 };
                 if used {
-                    tally.used(self.sweep.manipulator, &follow);
+                    found.used(self.sweep.manipulator, &follow);
                     self.legs[number][way].pending = false;
                 }
             }
