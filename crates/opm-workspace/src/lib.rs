@@ -7,11 +7,14 @@
 mod condition;
 mod extent;
 mod grid;
+mod ordered;
 mod progress;
+mod replay;
 mod sweep;
 
 pub use condition::{ConditionLimit, Conditioned};
 pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Grid, GridError};
 pub use progress::{Cancelled, Progress};
+pub use replay::replay;
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
