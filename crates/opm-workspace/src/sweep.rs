@@ -149,8 +149,14 @@ impl<'a> Sweep<'a> {
 
     /// Number of poses of the grid, or of the shard of it.
     pub fn poses(&self) -> u64 {
+        let Range { start, end } = self.range();
+        end - start
+    }
+
+    /// The numbers of these poses.
+    pub fn range(&self) -> Range<u64> {
         let Range { start, end } = self.blocks();
-        self.poses_before(end) - self.poses_before(start)
+        self.poses_before(start)..self.poses_before(end)
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
