@@ -23,5 +23,5 @@ pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
 pub use progress::{Cancelled, Progress};
 pub use set::{GridSet, SetAxis, SetError};
-pub use sweep::{Count, Hits, Modes, Run, Sweep};
+pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
 pub use visits::Visits;

@@ -2,7 +2,7 @@
 
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::runs::{self, Run};
-use super::{Hits, Sweep, Tally};
+use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Sections, fill};
 use nalgebra::Complex;
@@ -171,11 +171,11 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.
-    fn take_slice(&self, tally: &mut Tally, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
+    fn take_slice(&self, count: &mut Count, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
         for way in self.legs.iter().flatten() {
-            tally.used(self.sweep.manipulator, &way.follow);
+            count.used(self.sweep.manipulator, &way.follow);
         }
-        tally.reachable += 1;
+        count.reachable += 1;
         if let Some(hit) = hit {
             let slice = self.slice.unwrap_or_default();
             let (first, others) = self.others.split_at(1);
@@ -189,12 +189,12 @@ impl<'a> Scratch<'a> {
         &mut self,
         mut rows: Range<u64>,
         window: Run,
-        tally: &mut Tally,
+        found: &mut Count,
         hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
         let sweep = self.sweep;
         if sweep.grid.sections() == Sections::Upper {
-            self.take_slice(tally, hit);
+            self.take_slice(found, hit);
             return;
         }
         let axes = sweep.grid.axes();
@@ -231,9 +231,9 @@ impl<'a> Scratch<'a> {
             let doubt = doubts[i] != 0;
             let mut count = self.decide_row(i, window, doubt);
             if count > 0 && self.limit.is_some() {
-                count = self.limit_row(hit.is_none(), tally);
+                count = self.limit_row(hit.is_none(), found);
             } else if count > 0 {
-                self.settle(i, window, doubt, tally);
+                self.settle(i, window, doubt, found);
             }
             if count == 0 {
                 continue;
@@ -250,11 +250,11 @@ impl<'a> Scratch<'a> {
         if plain && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
-                    tally.used(sweep.manipulator, &way.follow);
+                    found.used(sweep.manipulator, &way.follow);
                 }
             }
         }
-        tally.reachable += reachable;
+        found.reachable += reachable;
     }
 
     /// The reachable poses of row number `i`, in `runs`; returns how many they are. A doubtful row is
@@ -296,7 +296,7 @@ impl<'a> Scratch<'a> {
 
     /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
     /// the imaginary joints of the modes in which they are; returns how many are left.
-    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+    fn limit_row(&mut self, ranges: bool, found: &mut Count) -> u64 {
         let Some(limit) = &mut self.limit else { return 0 };
         let axis = &self.sweep.grid.axes()[0];
         self.pose[1..].copy_from_slice(&self.others);
@@ -306,7 +306,7 @@ impl<'a> Scratch<'a> {
             let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
                 if ranges {
                     let values = solution.imaginary.iter().enumerate();
-                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                    values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
                 }
                 ranges
             });
@@ -334,7 +334,7 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
-    fn settle(&mut self, i: usize, window: Run, doubt: bool, tally: &mut Tally) {
+    fn settle(&mut self, i: usize, window: Run, doubt: bool, found: &mut Count) {
         let mut first = 0;
         for number in 0..self.legs.len() {
             let alone = self.legs[number].len() == 1;
@@ -357,7 +357,7 @@ impl<'a> Scratch<'a> {
                     })
                 };
                 if used {
-                    tally.used(self.sweep.manipulator, &follow);
+                    found.used(self.sweep.manipulator, &follow);
                     self.legs[number][way].pending = false;
                 }
             }
