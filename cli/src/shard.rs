@@ -70,14 +70,12 @@ fn write(
     progress: &Progress,
     failed: impl Fn(RecordError) -> Failure + Sync,
 ) -> Result<(), Failure> {
-    let row = run.grid.axes()[0].count;
     // The last run so far, to which the next one may belong.
     let mut open = [0; 2];
     sweep.points(
         progress,
         |hits, made: &mut Vec<[u64; 2]>| {
-            let start = hits.row * row;
-            made.extend(hits.runs.iter().map(|run| [start + run.from, start + run.to]));
+            made.extend(hits.numbers(run.grid).map(|run| [run.from, run.to]));
         },
         Vec::new,
         |made| {

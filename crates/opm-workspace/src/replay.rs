@@ -22,7 +22,7 @@ pub fn replay<T: Send, E: From<Cancelled> + Send>(
     empty: impl Fn() -> T + Sync,
     visit: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
-    let row = grid.axes()[0].count;
+    let row = grid.row();
     // One more than the last pose that was given, as far as the blocks have come.
     let mut reached = 0;
     let blocks = Blocks { runs, rest: None }.map(|block| {
@@ -94,23 +94,24 @@ struct Row<'a> {
 impl<'a> Row<'a> {
     fn new(grid: &'a Grid) -> Self {
         let others = vec![0.0; grid.axes().len() - 1];
-        let slice = grid.poses() / grid.axes()[0].count / grid.slices();
+        let slice = grid.poses() / grid.row() / grid.slices();
         Self { grid, number: None, slice, first: Vec::new(), others }
     }
 
     /// Gives the poses of a run of numbers in one row.
     fn hit(&mut self, run: Run, hit: impl FnOnce(&Hits<'_>)) {
-        let axes = self.grid.axes();
-        let row = run.from / axes[0].count;
+        let (axes, length) = (self.grid.axes(), self.grid.row());
+        let row = run.from / length;
         if self.number != Some(row) {
             self.number = Some(row);
-            fill(&axes[1..], row, &mut self.others);
+            fill(&axes[1..], run.from / axes[0].count, &mut self.others);
         }
-        let start = row * axes[0].count;
-        let run = Run { from: run.from - start, to: run.to - start };
+        let along = axes[0].count;
         self.first.clear();
-        self.first.extend((run.from..run.to).map(|number| axes[0].value(number)));
-        let (slice, runs) = (row / self.slice, &[run][..]);
-        hit(&Hits { slice, row, runs, first: &self.first, others: &self.others });
+        self.first.extend((run.from..run.to).map(|number| axes[0].value(number % along)));
+        let start = row * length;
+        let runs = &[Run { from: run.from - start, to: run.to - start }][..];
+        let (slice, first, others) = (row / self.slice, &self.first[..], &self.others[..]);
+        hit(&Hits { slice, row, runs, first, others });
     }
 }
