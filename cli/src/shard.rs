@@ -179,15 +179,13 @@ impl Stored {
         let keys = run.keys().chain(found.keys().filter(|key| !run.contains_key(*key)));
         for key in keys {
             let (found, expected) = (found.get(key), run.get(key));
-            if found != expected {
-                let text = |value: Option<&String>| match value {
-                    Some(value) => format!("{value:?}"),
-                    None => "not there".to_owned(),
-                };
-                let (found, expected) = (text(found), text(expected));
-                let problem = format!("a shard of another run: {key} is {found}, not {expected}");
-                return Err(self.wrong(&problem));
-            }
+            let problem = match (found, expected) {
+                _ if found == expected => continue,
+                (Some(found), Some(expected)) => format!("{key} is {found:?}, not {expected:?}"),
+                (Some(found), None) => format!("it has {key}, {found:?}"),
+                (None, _) => format!("it has no {key}"),
+            };
+            return Err(self.wrong(&format!("a shard of another run: {problem}")));
         }
         if self.mechanism()?.1 != mechanism {
             return Err(self.wrong("a shard of another run: its mechanism file differs"));

@@ -55,7 +55,7 @@ fn merged_shards_are_the_one_run_byte_for_byte() {
         let json = ["--format", "json", "-q"];
         let run = ["workspace", PLANO, "-o", &one];
         let whole = opm(&[&run[..], &flags, cloud, &json].concat()).json();
-        assert!(whole["reachable"].as_u64() > Some(10), "{whole}");
+        assert!(whole["reachable"].as_u64() > Some(5), "{whole}");
         let of = [1, 3, 8, 40, 2][number];
         // In any order.
         let parts: Vec<String> = (1..=of).rev().map(|i| shard(&folder, i, of, &flags)).collect();
@@ -160,7 +160,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     refused(&[&one, &any], &["part-2.mcap: a shard of another run: mode is \"any\", not"]);
     let others = Folder::new();
     let limited = shard(&others, 2, 2, &[&SMALL[..], &["--max-condition", "9"]].concat());
-    refused(&[&one, &limited], &["max_condition is \"9\", not not there"]);
+    refused(&[&one, &limited], &["a shard of another run: it has characteristic_length, \"0.09"]);
     let others = Folder::new();
     let third = shard(&others, 3, 3, &SMALL);
     refused(&[&one, &third], &["part-3.mcap: shard 3/3, but ", "part-1.mcap is 1/2"]);
