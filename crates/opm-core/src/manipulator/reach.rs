@@ -15,11 +15,11 @@ use nalgebra::Complex;
 /// One way in which a leg can follow a slice of poses that share `b`.
 #[derive(Clone, Copy, Debug)]
 pub struct Follow {
-    leg: usize,
-    branches: LegBranches,
-    b: Displacement,
+    pub(super) leg: usize,
+    pub(super) branches: LegBranches,
+    pub(super) b: Displacement,
     /// Found from `b`, where the leg's upper section takes the cut.
-    tau: Option<Amount>,
+    pub(super) tau: Option<Amount>,
 }
 
 impl Manipulator {
