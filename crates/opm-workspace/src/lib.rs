@@ -14,4 +14,4 @@ pub use condition::{ConditionLimit, Conditioned};
 pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Grid, GridError};
 pub use progress::{Cancelled, Progress};
-pub use sweep::{Count, Hits, Modes, Run, Sweep};
+pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};

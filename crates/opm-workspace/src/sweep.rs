@@ -8,8 +8,10 @@ mod cuts;
 mod pieces;
 mod runs;
 mod scratch;
+mod shard;
 
 pub use runs::Run;
+pub use shard::{Shard, ShardError};
 
 use crate::condition::ConditionLimit;
 use crate::grid::Grid;
@@ -18,6 +20,7 @@ use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
 use scratch::Scratch;
+use std::ops::Range;
 
 /// Poses of a row that are decided together, of which a block has room for several.
 const SEGMENT: u64 = 1024;
@@ -39,16 +42,51 @@ pub enum Modes {
     Any,
 }
 
-/// What a sweep found.
+/// What a sweep found, or a shard of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// Poses of the grid.
+    /// Poses that were decided: of the grid, or of the shard.
     pub poses: u64,
     /// Poses in reach and within all limits.
     pub reachable: u64,
     /// Lowest and highest value of every imaginary joint over the reachable poses; `None` where
     /// there is no such pose.
     pub imaginary: Vec<Option<[f64; 2]>>,
+}
+
+impl Count {
+    /// Of no poses.
+    pub fn nothing(manipulator: &Manipulator) -> Self {
+        Self { poses: 0, reachable: 0, imaginary: vec![None; manipulator.imaginary().len()] }
+    }
+
+    /// Of both together, which have no pose in common. Exact: in whatever order and however
+    /// bracketed shards are merged, the result is the same to the bit.
+    #[must_use]
+    pub fn merge(mut self, other: &Self) -> Self {
+        self.poses += other.poses;
+        self.reachable += other.reachable;
+        for (number, range) in other.imaginary.iter().enumerate() {
+            for &end in range.iter().flatten() {
+                self.widen(number, end);
+            }
+        }
+        self
+    }
+
+    /// Takes the imaginary joint of a leg that follows in this way.
+    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
+        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
+            self.widen(imaginary, value);
+        }
+    }
+
+    fn widen(&mut self, imaginary: usize, value: f64) {
+        // Of zeros of two signs, which `min` may confuse, there is but one then.
+        let value = value + 0.0;
+        let range = self.imaginary[imaginary].get_or_insert([value; 2]);
+        *range = [range[0].min(value), range[1].max(value)];
+    }
 }
 
 /// The reachable poses of one segment of a row: they differ in the first coordinate.
@@ -73,6 +111,7 @@ pub struct Sweep<'a> {
     grid: &'a Grid,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    shard: Shard,
     /// Segments a row.
     segments: u64,
     /// Segments a block.
@@ -92,7 +131,8 @@ impl<'a> Sweep<'a> {
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
-        Self { manipulator, grid, modes, limit: None, segments, stride, side, sheets }
+        let (limit, shard) = (None, Shard::WHOLE);
+        Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
     }
 
     /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
@@ -102,30 +142,40 @@ impl<'a> Sweep<'a> {
         Self { limit, ..self }
     }
 
+    /// The same sweep, of one shard of its grid alone: whole blocks of rows, of which every shard
+    /// has as many as any other, or one more. Together the shards' points are those of the whole
+    /// sweep, one after the other, and their counts [merge](Count::merge) to that of the whole,
+    /// however many they are. A shard is empty where there are more of them than blocks.
+    #[must_use]
+    pub fn shard(self, shard: Shard) -> Self {
+        Self { shard, ..self }
+    }
+
+    /// Number of poses of the grid, or of the shard of it.
+    pub fn poses(&self) -> u64 {
+        let Range { start, end } = self.blocks();
+        self.poses_before(end) - self.poses_before(start)
+    }
+
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
     /// depend on the size of the grid.
     ///
     /// # Errors
     /// When told to stop.
     pub fn count(&self, progress: &Progress) -> Result<Count, Cancelled> {
-        let nothing = || Tally::new(self.manipulator);
-        let tally = (0..self.blocks())
+        let nothing = || Count::nothing(self.manipulator);
+        self.blocks()
             .into_par_iter()
             .map_init(
                 || Scratch::new(self),
                 |scratch, block| {
-                    let mut tally = nothing();
-                    let poses = self.block(block, scratch, &mut tally, None);
-                    progress.advance(poses)?;
-                    Ok(tally)
+                    let mut count = nothing();
+                    self.block(block, scratch, &mut count, None);
+                    progress.advance(count.poses)?;
+                    Ok(count)
                 },
             )
-            .try_reduce(nothing, |a, b| Ok(a.merge(b)))?;
-        Ok(Count {
-            poses: self.grid.poses(),
-            reachable: tally.reachable,
-            imaginary: tally.imaginary,
-        })
+            .try_reduce(nothing, |a, b| Ok(a.merge(&b)))
     }
 
     /// Gives every reachable pose, in the order of their numbers: `make` turns the hits of a
@@ -142,58 +192,62 @@ impl<'a> Sweep<'a> {
         mut visit: impl FnMut(T) -> Result<(), E> + Send,
     ) -> Result<(), E> {
         let ahead = BATCH.max(rayon::current_num_threads() as u64);
+        let Range { mut start, end } = self.blocks();
         let batch = |start: u64| -> Result<Vec<T>, Cancelled> {
-            (start..(start + ahead).min(self.blocks()))
+            (start..(start + ahead).min(end))
                 .collect::<Vec<_>>()
                 .into_par_iter()
                 .map_init(
                     || Scratch::new(self),
                     |scratch, block| {
                         let mut made = empty();
-                        let mut tally = Tally::new(self.manipulator);
+                        let mut count = Count::nothing(self.manipulator);
                         let mut make = |hits: &Hits<'_>| make(hits, &mut made);
-                        let poses = self.block(block, scratch, &mut tally, Some(&mut make));
-                        progress.advance(poses)?;
+                        self.block(block, scratch, &mut count, Some(&mut make));
+                        progress.advance(count.poses)?;
                         Ok(made)
                     },
                 )
                 .collect()
         };
-        let mut next = batch(0)?;
-        let mut start = ahead;
+        let mut next = batch(start)?;
         while !next.is_empty() {
-            let (visited, following) = rayon::join(
-                || next.into_iter().try_for_each(&mut visit),
-                || batch(start.min(self.blocks())),
-            );
+            start = (start + ahead).min(end);
+            let (visited, following) =
+                rayon::join(|| next.into_iter().try_for_each(&mut visit), || batch(start));
             visited?;
             next = following?;
-            start += ahead;
         }
         Ok(())
     }
 
-    fn blocks(&self) -> u64 {
-        (self.rows() * self.segments).div_ceil(self.stride)
+    /// The blocks of the shard.
+    fn blocks(&self) -> Range<u64> {
+        self.shard.of((self.rows() * self.segments).div_ceil(self.stride))
+    }
+
+    /// Poses of all blocks before one.
+    fn poses_before(&self, block: u64) -> u64 {
+        let along = self.grid.axes()[0].count;
+        let segments = (block * self.stride).min(self.rows() * self.segments);
+        segments / self.segments * along + segments % self.segments * SEGMENT
     }
 
     fn rows(&self) -> u64 {
         self.grid.poses() / self.grid.axes()[0].count
     }
 
-    /// Decides the poses of one block and returns how many they are. Without anybody to `hit`, they
-    /// are just counted.
+    /// Decides the poses of one block and adds them to `count`, which is all without anybody to `hit`.
     fn block(
         &self,
         block: u64,
         scratch: &mut Scratch<'_>,
-        tally: &mut Tally,
+        count: &mut Count,
         mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
-    ) -> u64 {
+    ) {
         let along = self.grid.axes()[0].count;
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
-        let mut poses = 0;
         while next < end {
             let (row, part) = (next / self.segments, next % self.segments);
             let (sheet, start) = (row / self.side, row % self.side);
@@ -204,49 +258,12 @@ impl<'a> Sweep<'a> {
             };
             let from = part * SEGMENT;
             let window = Run { from, to: (from + SEGMENT).min(along) };
-            poses += together * (window.to - window.from);
+            count.poses += together * (window.to - window.from);
             next += together;
             scratch.enter_sheet(sheet / self.sheets, sheet % self.sheets);
             if scratch.alive {
-                scratch.decide(start..start + together, window, tally, &mut hit);
+                scratch.decide(start..start + together, window, count, &mut hit);
             }
         }
-        poses
-    }
-}
-
-/// A sum that does not depend on the order of its terms.
-#[derive(Clone, Debug)]
-struct Tally {
-    reachable: u64,
-    imaginary: Vec<Option<[f64; 2]>>,
-}
-
-impl Tally {
-    fn new(manipulator: &Manipulator) -> Self {
-        Self { reachable: 0, imaginary: vec![None; manipulator.imaginary().len()] }
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.reachable += other.reachable;
-        for (number, range) in other.imaginary.into_iter().enumerate() {
-            if let Some([low, high]) = range {
-                self.widen(number, low);
-                self.widen(number, high);
-            }
-        }
-        self
-    }
-
-    /// Takes the imaginary joint of a leg that follows in this way.
-    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
-        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
-            self.widen(imaginary, value);
-        }
-    }
-
-    fn widen(&mut self, imaginary: usize, value: f64) {
-        let range = self.imaginary[imaginary].get_or_insert([value; 2]);
-        *range = [range[0].min(value), range[1].max(value)];
     }
 }

@@ -3,7 +3,7 @@
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::pieces::Changes;
 use super::runs::{self, Run};
-use super::{Hits, Modes, Sweep, Tally};
+use super::{Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::fill;
 use nalgebra::Complex;
@@ -175,7 +175,7 @@ impl<'a> Scratch<'a> {
         &mut self,
         mut rows: Range<u64>,
         window: Run,
-        tally: &mut Tally,
+        found: &mut Count,
         hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
         let sweep = self.sweep;
@@ -215,9 +215,9 @@ impl<'a> Scratch<'a> {
             let doubt = doubts[i] != 0;
             let mut count = self.decide_row(i, window, doubt);
             if count > 0 && self.limit.is_some() {
-                count = self.limit_row(hit.is_none(), tally);
+                count = self.limit_row(hit.is_none(), found);
             } else if count > 0 {
-                self.settle(i, doubt, tally);
+                self.settle(i, doubt, found);
             }
             if count == 0 {
                 continue;
@@ -234,11 +234,11 @@ impl<'a> Scratch<'a> {
         if plain && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
-                    tally.used(sweep.manipulator, &way.follow);
+                    found.used(sweep.manipulator, &way.follow);
                 }
             }
         }
-        tally.reachable += reachable;
+        found.reachable += reachable;
     }
 
     /// The reachable poses of row number `i`, in `runs`; returns how many they are. Legs of which all
@@ -309,7 +309,7 @@ impl<'a> Scratch<'a> {
 
     /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
     /// the imaginary joints of the modes in which they are; returns how many are left.
-    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+    fn limit_row(&mut self, ranges: bool, found: &mut Count) -> u64 {
         let Some(limit) = &mut self.limit else { return 0 };
         let axis = &self.sweep.grid.axes()[0];
         self.pose[1..].copy_from_slice(&self.others);
@@ -319,7 +319,7 @@ impl<'a> Scratch<'a> {
             let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
                 if ranges {
                     let values = solution.imaginary.iter().enumerate();
-                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                    values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
                 }
                 ranges
             });
@@ -332,7 +332,7 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
-    fn settle(&mut self, i: usize, doubt: bool, tally: &mut Tally) {
+    fn settle(&mut self, i: usize, doubt: bool, found: &mut Count) {
         let mut number = 0;
         for ways in &mut self.legs {
             let (alone, cut) = (ways.len() == 1, !doubt && is_cut(ways));
@@ -346,7 +346,7 @@ impl<'a> Scratch<'a> {
                             self.followed[number].iter().copied().any(reached)
                         });
                 if used {
-                    tally.used(self.sweep.manipulator, &way.follow);
+                    found.used(self.sweep.manipulator, &way.follow);
                     way.pending = false;
                 }
                 number += 1;
