@@ -14,7 +14,7 @@ pub use runs::Run;
 pub use shard::{Shard, ShardError};
 
 use crate::condition::ConditionLimit;
-use crate::grid::Grid;
+use crate::grid::{Grid, Sections};
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
@@ -42,7 +42,17 @@ pub enum Modes {
     Any,
 }
 
-/// What a sweep found, or a shard of it.
+impl Modes {
+    /// The one, if there is just one.
+    pub fn one(self) -> Option<Mode> {
+        match self {
+            Self::One(mode) => Some(mode),
+            Self::Any => None,
+        }
+    }
+}
+
+/// What a sweep found, or a shard of it. Of a grid of one section alone, what is said of poses is said of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
     /// Poses that were decided: of the grid, or of the shard.
@@ -50,7 +60,7 @@ pub struct Count {
     /// Poses in reach and within all limits.
     pub reachable: u64,
     /// Lowest and highest value of every imaginary joint over the reachable poses; `None` where
-    /// there is no such pose.
+    /// there is no such pose, and in a grid of the lower section alone, which has them as axes.
     pub imaginary: Vec<Option<[f64; 2]>>,
 }
 
@@ -94,7 +104,7 @@ impl Count {
 pub struct Hits<'a> {
     /// Number of the slice: see [`Grid::slices`].
     pub slice: u64,
-    /// Number of the row: that of its poses over the count of the first axis.
+    /// Number of the row: that of its poses over [`Grid::row`].
     pub row: u64,
     /// Numbers of the values of the first coordinate.
     pub runs: &'a [Run],
@@ -102,6 +112,14 @@ pub struct Hits<'a> {
     pub first: &'a [f64],
     /// The other coordinates.
     pub others: &'a [f64],
+}
+
+impl Hits<'_> {
+    /// The numbers of the poses in a grid, which has to be the one that was swept.
+    pub fn numbers(&self, grid: &Grid) -> impl Iterator<Item = Run> {
+        let first = self.row * grid.row();
+        self.runs.iter().map(move |run| Run { from: first + run.from, to: first + run.to })
+    }
 }
 
 /// A sweep of one grid.
@@ -123,11 +141,12 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Sweeps `grid`, a grid of this manipulator, in one working mode or in any.
+    /// Sweeps `grid`, a grid of this manipulator or of one of its sections alone, in one working mode or
+    /// in any.
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
-        let row = grid.axes()[0].count;
+        let row = grid.row();
         let stride = (BLOCK / row.min(SEGMENT)).max(1);
-        let lower = &grid.axes()[1..grid.lower()];
+        let lower = grid.axes()[..grid.lower()].get(1..).unwrap_or_default();
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
@@ -135,10 +154,35 @@ impl<'a> Sweep<'a> {
         Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
     }
 
+    /// What is swept.
+    pub fn grid(&self) -> &'a Grid {
+        self.grid
+    }
+
+    /// Whose workspace it is.
+    pub fn manipulator(&self) -> &'a Manipulator {
+        self.manipulator
+    }
+
+    /// In which working modes.
+    pub fn modes(&self) -> Modes {
+        self.modes
+    }
+
+    /// The limit on the condition number, if there is one.
+    pub fn limit(&self) -> Option<ConditionLimit> {
+        self.limit
+    }
+
     /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
     /// enough. That is decided pose by pose, a few microseconds each and mode.
+    ///
+    /// # Panics
+    /// On a grid of one section alone: only the whole mechanism has a condition number.
     #[must_use]
     pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        let whole = self.grid.sections() == Sections::Whole;
+        assert!(whole || limit.is_none(), "a section alone has no condition number");
         Self { limit, ..self }
     }
 
@@ -228,13 +272,13 @@ impl<'a> Sweep<'a> {
 
     /// Poses of all blocks before one.
     fn poses_before(&self, block: u64) -> u64 {
-        let along = self.grid.axes()[0].count;
+        let along = self.grid.row();
         let segments = (block * self.stride).min(self.rows() * self.segments);
         segments / self.segments * along + segments % self.segments * SEGMENT
     }
 
     fn rows(&self) -> u64 {
-        self.grid.poses() / self.grid.axes()[0].count
+        self.grid.poses() / self.grid.row()
     }
 
     /// Decides the poses of one block and adds them to `count`, which is all without anybody to `hit`.
@@ -245,7 +289,7 @@ impl<'a> Sweep<'a> {
         count: &mut Count,
         mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
-        let along = self.grid.axes()[0].count;
+        let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
         while next < end {

@@ -69,7 +69,7 @@ impl Manipulator {
             size,
             most: None,
         };
-        if way.tau.is_none() && leg.upper_decides {
+        if way.asks_upper {
             self.add_cuts(way, &mut breaks)?;
         }
         Some(breaks)

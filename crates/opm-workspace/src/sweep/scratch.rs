@@ -3,9 +3,9 @@
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::pieces::Changes;
 use super::runs::{self, Run};
-use super::{Count, Hits, Modes, Sweep};
+use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
-use crate::grid::fill;
+use crate::grid::{Sections, fill};
 use nalgebra::Complex;
 use opm_core::chain::equation::Span;
 use opm_core::manipulator::{Breaks, Follow};
@@ -98,7 +98,8 @@ impl<'a> Scratch<'a> {
             row_step: rows[1] / step,
             rows: Vec::with_capacity(ROWS),
             cuts: Vec::new(),
-            others: vec![0.0; axes.len() - 1],
+            // A row of the upper section alone has no first coordinate that could differ.
+            others: vec![0.0; axes.len() - usize::from(sweep.grid.lower() > 0)],
             followed: Vec::new(),
             changes: Changes::default(),
             runs: Vec::new(),
@@ -122,7 +123,7 @@ impl<'a> Scratch<'a> {
         }
         self.sheet = sheet;
         self.row = (slice * sweep.sheets + sheet) * sweep.side;
-        if !self.alive {
+        if !self.alive || sweep.grid.sections() == Sections::Upper {
             return;
         }
         let (axes, lower) = (sweep.grid.axes(), sweep.grid.lower());
@@ -147,18 +148,24 @@ impl<'a> Scratch<'a> {
     fn enter_slice(&mut self, slice: u64) {
         let sweep = self.sweep;
         let lower = sweep.grid.lower();
-        let upper = &mut self.others[lower - 1..];
+        let upper = &mut self.others[lower.saturating_sub(1)..];
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
-        let b = manipulator.task().upper(upper);
-        let mode = match sweep.modes {
-            Modes::One(mode) => Some(mode),
-            Modes::Any => None,
+        let mode = sweep.modes.one();
+        let b = match sweep.grid.sections() {
+            Sections::Lower => None,
+            Sections::Whole | Sections::Upper => Some(manipulator.task().upper(upper)),
         };
         self.alive = true;
         for (leg, ways) in self.legs.iter_mut().enumerate() {
             self.found.clear();
-            manipulator.follow(leg, &b, mode, &mut self.found);
+            match &b {
+                Some(b) => manipulator.follow(leg, b, mode, &mut self.found),
+                None => {
+                    let tau = sweep.grid.cut(leg, upper);
+                    manipulator.follow_lower(leg, tau, mode, &mut self.found);
+                }
+            }
             ways.clear();
             ways.extend(self.found.iter().map(|&follow| Way {
                 follow,
@@ -167,6 +174,20 @@ impl<'a> Scratch<'a> {
                 pending: true,
             }));
             self.alive &= !ways.is_empty();
+        }
+    }
+
+    /// Takes the one pose of a slice of the upper section alone, which closes.
+    fn take_slice(&self, count: &mut Count, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
+        for way in self.legs.iter().flatten() {
+            count.used(self.sweep.manipulator, &way.follow);
+        }
+        count.reachable += 1;
+        if let Some(hit) = hit {
+            let slice = self.slice.unwrap_or_default();
+            let (first, others) = self.others.split_at(1);
+            let runs = &[Run { from: 0, to: 1 }];
+            hit(&Hits { slice, row: self.row, runs, first, others });
         }
     }
 
@@ -179,6 +200,10 @@ impl<'a> Scratch<'a> {
         hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
         let sweep = self.sweep;
+        if sweep.grid.sections() == Sections::Upper {
+            self.take_slice(found, hit);
+            return;
+        }
         let axes = sweep.grid.axes();
         let planar = sweep.grid.lower() > 1;
         self.rows.clear();
