@@ -40,9 +40,10 @@ pub const RIM: f64 = 1e-12;
 const DEGENERATE: f64 = 1e-9;
 
 /// One of the two solutions of a two-valued choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Branch {
     /// The solution with the plus sign.
+    #[default]
     Plus,
     /// The solution with the minus sign.
     Minus,
