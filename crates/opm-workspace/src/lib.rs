@@ -7,6 +7,7 @@
 mod condition;
 mod extent;
 mod grid;
+pub mod measure;
 mod progress;
 mod sweep;
 

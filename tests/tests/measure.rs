@@ -1,0 +1,193 @@
+//! Measures with guaranteed bounds: against geometry, against the exact predicate at random poses, and
+//! against Monte-Carlo estimates.
+
+use fastrand::Rng;
+use opm_core::enclosure::Asked;
+use opm_core::joint::Quantity;
+use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::mechanism::{examples, file};
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::measure::{Domain, Goal, Measured, Over, Stop, measure};
+use opm_workspace::{Modes, Progress};
+use std::f64::consts::PI;
+
+fn example(name: &str) -> Manipulator {
+    let text = examples::find(name).unwrap().text;
+    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+}
+
+fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measured {
+    measure(m, domain, modes, &goal, &Progress::default())
+}
+
+/// Whether a pose of a domain counts, by the chains themselves.
+fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
+    let lower = if domain.asked() == Asked::Upper { 0 } else { m.task().lower_count };
+    let b = m.task().upper(&pose[lower..]);
+    let mut ways: Vec<Follow> = Vec::new();
+    (0..m.legs()).all(|leg| {
+        ways.clear();
+        m.follow(leg, &b, mode, &mut ways);
+        if domain.asked() == Asked::Upper {
+            return !ways.is_empty();
+        }
+        let v = m.task().lower(&pose[..lower]);
+        ways.iter().any(|way| m.follows(way, &v))
+    })
+}
+
+/// Of so many poses drawn evenly, those that count.
+fn hits(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>, draws: u32) -> u32 {
+    let mut shares = vec![0.0; domain.dimension()];
+    let mut hit = || {
+        shares.fill_with(|| rng.f64());
+        counts(m, domain, mode, &domain.pose(&shares))
+    };
+    (0..draws).map(|_| u32::from(hit())).sum()
+}
+
+/// A bound on the chance that so few of the draws hit a set of at least this share, or so many one of
+/// at most this share (Chernoff).
+fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
+    let (n, seen) = (f64::from(draws), f64::from(hits) / f64::from(draws));
+    let share = seen.clamp(lower, upper);
+    let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (a / b).ln() };
+    (-n * (term(seen, share) + term(1.0 - seen, 1.0 - share))).exp()
+}
+
+/// The caps that the platform's axes must not be in are 30 degrees wide, disjoint, and three.
+#[test]
+fn all_orientations_of_the_paper() {
+    let m = example("plano-spherical-5dof");
+    let over = [Over::new("zeta", -PI, PI), Over::new("xi", 0.0, PI), Over::new("psi", -PI, PI)];
+    let domain = Domain::new(&m, Asked::Upper, &over).unwrap();
+    let share = 1.0 - 1.5 * (1.0 - (PI / 6.0).cos());
+    for tolerance in [1e-1, 1e-3, 1e-5] {
+        for modes in [Modes::Any, Modes::One(m.home_mode())] {
+            let goal = Goal { tolerance, ..Goal::default() };
+            let found = measured(&m, &domain, modes, goal);
+            let [lower, upper] = [found.lower, found.upper].map(|bound| bound / found.whole);
+            assert!(lower < share && share < upper, "{lower} {upper}");
+            assert_eq!(found.stop, Stop::Tolerance);
+            assert!((upper - lower) / (upper + lower) <= tolerance);
+        }
+    }
+}
+
+/// At a given rotation three strips are left of the plane: their polygon, clipped.
+#[test]
+fn the_polygon_of_the_helical_manipulator() {
+    let m = example("translational-helical-3dof");
+    // As printed, and the sliders' limits that were chosen.
+    let (alpha, beta, k) = ([210.0, 330.0, 90.0], [45.0, 285.0, 165.0], [10.0, 15.0, 25.0]);
+    let (pitch, limit) = (0.020, 0.400);
+    for phi in [-3.0, 0.0, 0.7, 5.0_f64] {
+        let mut polygon = vec![[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0_f64]];
+        for leg in 0..3 {
+            let (sin, cos) = f64::to_radians(alpha[leg]).sin_cos();
+            let along = if leg == 0 { pitch * phi } else { 0.0 };
+            let offset = f64::to_radians(beta[leg]).sin() * (k[leg] * 1e-3 + along);
+            for side in [1.0, -1.0] {
+                // What is left of the slider's range on this side.
+                let left = |p: &[f64; 2]| limit - side * (-sin * p[0] + cos * p[1] + offset);
+                polygon = clip(&polygon, left);
+            }
+        }
+        let area = 0.5
+            * (0..polygon.len())
+                .map(|i| {
+                    let ([x, y], [u, v]) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+                    x * v - y * u
+                })
+                .sum::<f64>();
+        let over =
+            [Over::new("x", -1.0, 1.1), Over::new("y", -1.0, 1.2), Over::new("phi", phi, phi)];
+        let domain = Domain::new(&m, Asked::Whole, &over).unwrap();
+        let goal = Goal { tolerance: 1e-9, ..Goal::default() };
+        let found = measured(&m, &domain, Modes::Any, goal);
+        assert_eq!(found.stop, Stop::Tolerance);
+        assert!(found.lower < area && area < found.upper, "{area} {found:?}");
+    }
+}
+
+/// What of a convex polygon is on the side where `left` is not negative.
+fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
+    let mut clipped = Vec::new();
+    for (i, p) in polygon.iter().enumerate() {
+        let q = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (left(p), left(q));
+        if a >= 0.0 {
+            clipped.push(*p);
+        }
+        if (a >= 0.0) != (b >= 0.0) {
+            let at = a / (a - b);
+            clipped.push([p[0] + at * (q[0] - p[0]), p[1] + at * (q[1] - p[1])]);
+        }
+    }
+    clipped
+}
+
+/// A random manipulator with limits on some of its joints, and what counts.
+fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Asked) {
+    let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
+    let (mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+    let mode = [None, Some(m.home_mode())][rng.usize(..2)];
+    let asked = [Asked::Whole, Asked::Whole, Asked::Upper][rng.usize(..3)];
+    (m, mode, asked)
+}
+
+/// A box about some pose near home: a width times `size` along each coordinate, of some none.
+fn domain_of(rng: &mut Rng, m: &Manipulator, asked: Asked, size: f64) -> Domain {
+    let skipped = if asked == Asked::Upper { m.task().lower_count } else { 0 };
+    let over: Vec<Over> = m.task_coordinates()[skipped..]
+        .iter()
+        .map(|c| {
+            let reach = if c.quantity == Quantity::Angle { PI } else { 1.5 };
+            let middle = c.home + (2.0 * rng.f64() - 1.0) * reach;
+            let half = if rng.u8(..6) == 0 { 0.0 } else { size * rng.f64() };
+            Over::new(c.name, middle - half, middle + half)
+        })
+        .collect();
+    Domain::new(m, asked, &over).unwrap()
+}
+
+/// One box at a time: what is said of it holds of the poses in it.
+#[test]
+fn boxes_are_never_contradicted() {
+    let mut rng = Rng::with_seed(31);
+    let (mut all, mut none, mut partly, mut draws) = (0, 0, 0, 0);
+    let rounds = std::env::var("ROUNDS").map_or(1600, |n| n.parse().unwrap());
+    for round in 0..rounds {
+        let (m, mode, asked) = random(&mut rng, round);
+        let modes = mode.map_or(Modes::Any, Modes::One);
+        for _ in 0..40 {
+            let size = 10.0_f64.powf(-3.0 * rng.f64());
+            let domain = domain_of(&mut rng, &m, asked, size);
+            // The first boxes alone: a tilt may have several.
+            let goal = Goal { tolerance: 0.0, budget: 0 };
+            let found = measured(&m, &domain, modes, goal);
+            let bounds = [found.lower, found.upper].map(|bound| bound / found.whole);
+            let decided = bounds[0] > 1.0 - 1e-9 || bounds[1] == 0.0;
+            let count = if decided { 40 } else { 200 };
+            let hit = hits(&mut rng, &m, &domain, mode, count);
+            draws += count;
+            let pair = PAIRS[round % PAIRS.len()];
+            if bounds[0] > 1.0 - 1e-9 {
+                all += 1;
+                assert_eq!(hit, count, "{round} {pair:?} {mode:?} {domain:?}");
+            } else if bounds[1] == 0.0 {
+                none += 1;
+                assert_eq!(hit, 0, "{round} {pair:?} {mode:?} {domain:?}");
+            } else {
+                partly += 1;
+                let chance = chance(hit, count, bounds);
+                assert!(
+                    chance > 1e-9,
+                    "{round} {pair:?} {mode:?} {hit} of {count}, {bounds:?} {domain:?}"
+                );
+            }
+        }
+    }
+    println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
+}
