@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::fmt::{Display, Write as _};
 use std::io::{self, ErrorKind, Write as _};
-use std::process::ExitCode;
 
 /// Why a command ends early. Messages have one line a problem.
 #[derive(Debug, PartialEq, Eq)]
@@ -38,15 +37,15 @@ impl Failure {
     }
 
     /// Says what went wrong on standard error, and with which status to exit.
-    pub fn report(&self) -> ExitCode {
+    pub fn report(&self) -> u8 {
         let (message, code) = match self {
             Self::Usage(message) => (message, 2),
             Self::Work(message) => (message, 1),
             Self::Interrupted(message) => (message, 130),
-            Self::Closed => return ExitCode::SUCCESS,
+            Self::Closed => return 0,
         };
         talk(message);
-        ExitCode::from(code)
+        code
     }
 }
 

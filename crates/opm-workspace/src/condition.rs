@@ -14,16 +14,23 @@ pub struct ConditionLimit {
 }
 
 impl ConditionLimit {
-    /// Whether a solution is within it, and within all joint limits.
+    /// No limit, for condition numbers with this characteristic length.
+    pub fn none(length: f64) -> Self {
+        Self { most: f64::INFINITY, length }
+    }
+
+    /// The condition number of a solution that is within it, and within all joint limits.
     fn admits(
         &self,
         manipulator: &Manipulator,
         solution: &Solution,
         jacobians: &mut Jacobians,
-    ) -> bool {
-        solution.within_limits
-            && manipulator.differentiate(solution, jacobians).is_ok()
-            && manipulator.conditioning(jacobians, self.length).condition <= self.most
+    ) -> Option<f64> {
+        if !solution.within_limits || manipulator.differentiate(solution, jacobians).is_err() {
+            return None;
+        }
+        let condition = manipulator.conditioning(jacobians, self.length).condition;
+        (condition <= self.most).then_some(condition)
     }
 }
 
@@ -35,13 +42,24 @@ pub struct Conditioned<'a> {
     all: AllModes,
     solution: Solution,
     jacobians: Jacobians,
+    /// Of the last solution that was admitted.
+    condition: f64,
 }
 
 impl<'a> Conditioned<'a> {
     /// The limit for poses of a manipulator.
     pub fn new(manipulator: &'a Manipulator, limit: ConditionLimit) -> Self {
         let (all, solution) = (manipulator.all_modes(), manipulator.solution());
-        Self { manipulator, limit, all, solution, jacobians: manipulator.jacobians() }
+        let jacobians = manipulator.jacobians();
+        Self { manipulator, limit, all, solution, jacobians, condition: f64::INFINITY }
+    }
+
+    /// The local conditioning index of a pose: the inverse of its condition number, in the first working
+    /// mode, all-plus first, that the limit admits. One at best, zero at a singularity; `None` where
+    /// there is no such mode.
+    pub fn local_index(&mut self, pose: &[f64], modes: Modes) -> Option<f64> {
+        self.first(pose, modes)?;
+        Some(self.condition.recip())
     }
 
     /// The joints in the first working mode, all-plus first, in which a pose is in reach, within all
@@ -61,10 +79,11 @@ impl<'a> Conditioned<'a> {
         let mut found = false;
         match modes {
             Modes::One(mode) => {
-                let Self { solution, jacobians, limit, .. } = self;
-                found = manipulator.inverse(pose, mode, solution) == Ok(true)
-                    && limit.admits(manipulator, solution, jacobians);
-                if found {
+                let Self { solution, jacobians, limit, condition, .. } = self;
+                let reached = manipulator.inverse(pose, mode, solution) == Ok(true);
+                let admit = || limit.admits(manipulator, solution, jacobians);
+                if let Some(admitted) = reached.then(admit).flatten() {
+                    (found, *condition) = (true, admitted);
                     go_on(solution);
                 }
             }
@@ -72,11 +91,11 @@ impl<'a> Conditioned<'a> {
                 if manipulator.inverse_all(pose, &mut self.all) != Ok(true) {
                     return false;
                 }
-                let Self { all, solution, jacobians, limit, .. } = self;
+                let Self { all, solution, jacobians, limit, condition, .. } = self;
                 for mode in all.modes(manipulator) {
                     manipulator.pick(all, mode, solution);
-                    if limit.admits(manipulator, solution, jacobians) {
-                        found = true;
+                    if let Some(admitted) = limit.admits(manipulator, solution, jacobians) {
+                        (found, *condition) = (true, admitted);
                         if !go_on(solution) {
                             break;
                         }

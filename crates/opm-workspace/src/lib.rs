@@ -4,15 +4,25 @@
 //! leg's lower chain closes is left to test. Nothing depends on the number of threads: counts and
 //! ranges are reduced by operations that do not round, and points come in the order of their index.
 
+mod boundary;
+mod components;
 mod condition;
+mod conditioning;
 mod extent;
 mod grid;
 pub mod measure;
 mod progress;
+mod set;
 mod sweep;
+mod visits;
 
+pub use boundary::{Outline, Ring, boundary, rings};
+pub use components::components;
 pub use condition::{ConditionLimit, Conditioned};
+pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};
-pub use grid::{Axis, Grid, GridError};
+pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
 pub use progress::{Cancelled, Progress};
-pub use sweep::{Count, Hits, Modes, Run, Sweep};
+pub use set::{GridSet, SetAxis, SetError};
+pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
+pub use visits::Visits;

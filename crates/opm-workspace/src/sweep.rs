@@ -7,16 +7,19 @@
 mod cuts;
 mod runs;
 mod scratch;
+mod shard;
 
 pub use runs::Run;
+pub use shard::{Shard, ShardError};
 
 use crate::condition::ConditionLimit;
-use crate::grid::Grid;
+use crate::grid::{Grid, Sections};
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
 use scratch::Scratch;
+use std::ops::Range;
 
 /// Poses of a row that are decided together, of which a block has room for several.
 const SEGMENT: u64 = 1024;
@@ -38,16 +41,61 @@ pub enum Modes {
     Any,
 }
 
-/// What a sweep found.
+impl Modes {
+    /// The one, if there is just one.
+    pub fn one(self) -> Option<Mode> {
+        match self {
+            Self::One(mode) => Some(mode),
+            Self::Any => None,
+        }
+    }
+}
+
+/// What a sweep found, or a shard of it. Of a grid of one section alone, what is said of poses is said of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// Poses of the grid.
+    /// Poses that were decided: of the grid, or of the shard.
     pub poses: u64,
     /// Poses in reach and within all limits.
     pub reachable: u64,
     /// Lowest and highest value of every imaginary joint over the reachable poses; `None` where
-    /// there is no such pose.
+    /// there is no such pose, and in a grid of the lower section alone, which has them as axes.
     pub imaginary: Vec<Option<[f64; 2]>>,
+}
+
+impl Count {
+    /// Of no poses.
+    pub fn nothing(manipulator: &Manipulator) -> Self {
+        Self { poses: 0, reachable: 0, imaginary: vec![None; manipulator.imaginary().len()] }
+    }
+
+    /// Of both together, which have no pose in common. Exact: in whatever order and however
+    /// bracketed shards are merged, the result is the same to the bit.
+    #[must_use]
+    pub fn merge(mut self, other: &Self) -> Self {
+        self.poses += other.poses;
+        self.reachable += other.reachable;
+        for (number, range) in other.imaginary.iter().enumerate() {
+            for &end in range.iter().flatten() {
+                self.widen(number, end);
+            }
+        }
+        self
+    }
+
+    /// Takes the imaginary joint of a leg that follows in this way.
+    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
+        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
+            self.widen(imaginary, value);
+        }
+    }
+
+    fn widen(&mut self, imaginary: usize, value: f64) {
+        // Of zeros of two signs, which `min` may confuse, there is but one then.
+        let value = value + 0.0;
+        let range = self.imaginary[imaginary].get_or_insert([value; 2]);
+        *range = [range[0].min(value), range[1].max(value)];
+    }
 }
 
 /// The reachable poses of one segment of a row: they differ in the first coordinate.
@@ -55,7 +103,7 @@ pub struct Count {
 pub struct Hits<'a> {
     /// Number of the slice: see [`Grid::slices`].
     pub slice: u64,
-    /// Number of the row: that of its poses over the count of the first axis.
+    /// Number of the row: that of its poses over [`Grid::row`].
     pub row: u64,
     /// Numbers of the values of the first coordinate.
     pub runs: &'a [Run],
@@ -65,6 +113,14 @@ pub struct Hits<'a> {
     pub others: &'a [f64],
 }
 
+impl Hits<'_> {
+    /// The numbers of the poses in a grid, which has to be the one that was swept.
+    pub fn numbers(&self, grid: &Grid) -> impl Iterator<Item = Run> {
+        let first = self.row * grid.row();
+        self.runs.iter().map(move |run| Run { from: first + run.from, to: first + run.to })
+    }
+}
+
 /// A sweep of one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
@@ -72,6 +128,7 @@ pub struct Sweep<'a> {
     grid: &'a Grid,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    shard: Shard,
     /// Segments a row.
     segments: u64,
     /// Segments a block.
@@ -83,22 +140,64 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Sweeps `grid`, a grid of this manipulator, in one working mode or in any.
+    /// Sweeps `grid`, a grid of this manipulator or of one of its sections alone, in one working mode or
+    /// in any.
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
-        let row = grid.axes()[0].count;
+        let row = grid.row();
         let stride = (BLOCK / row.min(SEGMENT)).max(1);
-        let lower = &grid.axes()[1..grid.lower()];
+        let lower = grid.axes()[..grid.lower()].get(1..).unwrap_or_default();
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
-        Self { manipulator, grid, modes, limit: None, segments, stride, side, sheets }
+        let (limit, shard) = (None, Shard::WHOLE);
+        Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
+    }
+
+    /// What is swept.
+    pub fn grid(&self) -> &'a Grid {
+        self.grid
+    }
+
+    /// Whose workspace it is.
+    pub fn manipulator(&self) -> &'a Manipulator {
+        self.manipulator
+    }
+
+    /// In which working modes.
+    pub fn modes(&self) -> Modes {
+        self.modes
+    }
+
+    /// The limit on the condition number, if there is one.
+    pub fn limit(&self) -> Option<ConditionLimit> {
+        self.limit
     }
 
     /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
     /// enough. That is decided pose by pose, a few microseconds each and mode.
+    ///
+    /// # Panics
+    /// On a grid of one section alone: only the whole mechanism has a condition number.
     #[must_use]
     pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        let whole = self.grid.sections() == Sections::Whole;
+        assert!(whole || limit.is_none(), "a section alone has no condition number");
         Self { limit, ..self }
+    }
+
+    /// The same sweep, of one shard of its grid alone: whole blocks of rows, of which every shard
+    /// has as many as any other, or one more. Together the shards' points are those of the whole
+    /// sweep, one after the other, and their counts [merge](Count::merge) to that of the whole,
+    /// however many they are. A shard is empty where there are more of them than blocks.
+    #[must_use]
+    pub fn shard(self, shard: Shard) -> Self {
+        Self { shard, ..self }
+    }
+
+    /// Number of poses of the grid, or of the shard of it.
+    pub fn poses(&self) -> u64 {
+        let Range { start, end } = self.blocks();
+        self.poses_before(end) - self.poses_before(start)
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
@@ -107,24 +206,19 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// When told to stop.
     pub fn count(&self, progress: &Progress) -> Result<Count, Cancelled> {
-        let nothing = || Tally::new(self.manipulator);
-        let tally = (0..self.blocks())
+        let nothing = || Count::nothing(self.manipulator);
+        self.blocks()
             .into_par_iter()
             .map_init(
                 || Scratch::new(self),
                 |scratch, block| {
-                    let mut tally = nothing();
-                    let poses = self.block(block, scratch, &mut tally, None);
-                    progress.advance(poses)?;
-                    Ok(tally)
+                    let mut count = nothing();
+                    self.block(block, scratch, &mut count, None);
+                    progress.advance(count.poses)?;
+                    Ok(count)
                 },
             )
-            .try_reduce(nothing, |a, b| Ok(a.merge(b)))?;
-        Ok(Count {
-            poses: self.grid.poses(),
-            reachable: tally.reachable,
-            imaginary: tally.imaginary,
-        })
+            .try_reduce(nothing, |a, b| Ok(a.merge(&b)))
     }
 
     /// Gives every reachable pose, in the order of their numbers: `make` turns the hits of a
@@ -141,58 +235,62 @@ impl<'a> Sweep<'a> {
         mut visit: impl FnMut(T) -> Result<(), E> + Send,
     ) -> Result<(), E> {
         let ahead = BATCH.max(rayon::current_num_threads() as u64);
+        let Range { mut start, end } = self.blocks();
         let batch = |start: u64| -> Result<Vec<T>, Cancelled> {
-            (start..(start + ahead).min(self.blocks()))
+            (start..(start + ahead).min(end))
                 .collect::<Vec<_>>()
                 .into_par_iter()
                 .map_init(
                     || Scratch::new(self),
                     |scratch, block| {
                         let mut made = empty();
-                        let mut tally = Tally::new(self.manipulator);
+                        let mut count = Count::nothing(self.manipulator);
                         let mut make = |hits: &Hits<'_>| make(hits, &mut made);
-                        let poses = self.block(block, scratch, &mut tally, Some(&mut make));
-                        progress.advance(poses)?;
+                        self.block(block, scratch, &mut count, Some(&mut make));
+                        progress.advance(count.poses)?;
                         Ok(made)
                     },
                 )
                 .collect()
         };
-        let mut next = batch(0)?;
-        let mut start = ahead;
+        let mut next = batch(start)?;
         while !next.is_empty() {
-            let (visited, following) = rayon::join(
-                || next.into_iter().try_for_each(&mut visit),
-                || batch(start.min(self.blocks())),
-            );
+            start = (start + ahead).min(end);
+            let (visited, following) =
+                rayon::join(|| next.into_iter().try_for_each(&mut visit), || batch(start));
             visited?;
             next = following?;
-            start += ahead;
         }
         Ok(())
     }
 
-    fn blocks(&self) -> u64 {
-        (self.rows() * self.segments).div_ceil(self.stride)
+    /// The blocks of the shard.
+    fn blocks(&self) -> Range<u64> {
+        self.shard.of((self.rows() * self.segments).div_ceil(self.stride))
+    }
+
+    /// Poses of all blocks before one.
+    fn poses_before(&self, block: u64) -> u64 {
+        let along = self.grid.row();
+        let segments = (block * self.stride).min(self.rows() * self.segments);
+        segments / self.segments * along + segments % self.segments * SEGMENT
     }
 
     fn rows(&self) -> u64 {
-        self.grid.poses() / self.grid.axes()[0].count
+        self.grid.poses() / self.grid.row()
     }
 
-    /// Decides the poses of one block and returns how many they are. Without anybody to `hit`, they
-    /// are just counted.
+    /// Decides the poses of one block and adds them to `count`, which is all without anybody to `hit`.
     fn block(
         &self,
         block: u64,
         scratch: &mut Scratch<'_>,
-        tally: &mut Tally,
+        count: &mut Count,
         mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
-    ) -> u64 {
-        let along = self.grid.axes()[0].count;
+    ) {
+        let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
-        let mut poses = 0;
         while next < end {
             let (row, part) = (next / self.segments, next % self.segments);
             let (sheet, start) = (row / self.side, row % self.side);
@@ -203,49 +301,12 @@ impl<'a> Sweep<'a> {
             };
             let from = part * SEGMENT;
             let window = Run { from, to: (from + SEGMENT).min(along) };
-            poses += together * (window.to - window.from);
+            count.poses += together * (window.to - window.from);
             next += together;
             scratch.enter_sheet(sheet / self.sheets, sheet % self.sheets);
             if scratch.alive {
-                scratch.decide(start..start + together, window, tally, &mut hit);
+                scratch.decide(start..start + together, window, count, &mut hit);
             }
         }
-        poses
-    }
-}
-
-/// A sum that does not depend on the order of its terms.
-#[derive(Clone, Debug)]
-struct Tally {
-    reachable: u64,
-    imaginary: Vec<Option<[f64; 2]>>,
-}
-
-impl Tally {
-    fn new(manipulator: &Manipulator) -> Self {
-        Self { reachable: 0, imaginary: vec![None; manipulator.imaginary().len()] }
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.reachable += other.reachable;
-        for (number, range) in other.imaginary.into_iter().enumerate() {
-            if let Some([low, high]) = range {
-                self.widen(number, low);
-                self.widen(number, high);
-            }
-        }
-        self
-    }
-
-    /// Takes the imaginary joint of a leg that follows in this way.
-    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
-        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
-            self.widen(imaginary, value);
-        }
-    }
-
-    fn widen(&mut self, imaginary: usize, value: f64) {
-        let range = self.imaginary[imaginary].get_or_insert([value; 2]);
-        *range = [range[0].min(value), range[1].max(value)];
     }
 }

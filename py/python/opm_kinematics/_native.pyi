@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from os import PathLike
 from typing import TypedDict, final
 
@@ -14,6 +15,7 @@ __all__ = [
     "Sweep",
     "TaskCoordinate",
     "__version__",
+    "command",
     "example",
     "examples",
     "sweep",
@@ -341,3 +343,6 @@ def examples() -> list[str]:
 
 def example(name: str) -> str:
     """The text of one of them."""
+
+def command(arguments: Sequence[str]) -> int:
+    """Do what a command line asks for, the program's name first; the status to exit with."""

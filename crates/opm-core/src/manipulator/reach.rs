@@ -3,9 +3,17 @@
 //! `b` decides each leg's imaginary joint, once for the whole slice. What is left is whether the leg's
 //! lower chain closes on `v · exp(I τ)` within its limits: a fixed shape in the plane of `v`, or a
 //! question a pose.
+//!
+//! One section alone is asked in the same way: the upper one whether `b` leaves every leg that is cut
+//! there a way ([`Manipulator::upper_closes`]), the lower one with the displacements τ of its cuts given
+//! ([`Manipulator::follow_lower`]). A pose is in reach where `b` is in that of the upper section and
+//! `v` with `τ(b)` in that of the lower one. A leg that is cut in its lower section is the lower
+//! section's alone, if its upper joints always close and neither drive nor limit it
+//! ([`Manipulator::sections_decide`]); if they do, too, the whole reaches less than its two sections
+//! have in common.
 
 use super::leg::{LegBranches, Section};
-use super::{Manipulator, Mode};
+use super::{ImaginaryJoint, Manipulator, Mode};
 use crate::chain::region::Region;
 use crate::chain::{Amount, Chain};
 use crate::limits::Limits;
@@ -20,6 +28,16 @@ pub struct Follow {
     b: Displacement,
     /// Found from `b`, where the leg's upper section takes the cut.
     tau: Option<Amount>,
+    /// The leg takes the cut in its lower section, and its upper one has a say at every pose.
+    asks_upper: bool,
+}
+
+impl Follow {
+    /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where whole turns
+    /// do not matter) or metres; `None` of a leg that is cut in its lower section.
+    pub fn cut(&self) -> Option<f64> {
+        self.tau.map(Amount::value)
+    }
 }
 
 impl Manipulator {
@@ -51,7 +69,8 @@ impl Manipulator {
                     }
                 }
             };
-            ways.push(Follow { leg, branches, b: *b, tau });
+            let asks_upper = tau.is_none() && compiled.upper_decides;
+            ways.push(Follow { leg, branches, b: *b, tau, asks_upper });
         };
         match mode {
             Some(mode) => solve(self.modes.branches(mode, leg)),
@@ -61,6 +80,66 @@ impl Manipulator {
                 }
             }
         }
+    }
+
+    /// What the lower section alone may choose beside `v`: the displacement along the intersection
+    /// motion of every leg that is cut in its upper section, as an imaginary joint. Those that
+    /// [`Manipulator::imaginary`] has are among them; the others follow from these, or stay at home.
+    pub fn cuts(&self) -> Vec<ImaginaryJoint> {
+        let legs = self.mechanism.legs.iter().enumerate();
+        legs.filter(|&(number, _)| self.legs[number].cut == Section::Upper)
+            .map(|(number, leg)| ImaginaryJoint::new(leg, number, &self.task))
+            .collect()
+    }
+
+    /// Whether whole turns of the cuts matter: a helical joint follows them.
+    pub fn cuts_count_turns(&self) -> bool {
+        let counts = |chain: &Chain| matches!(chain, Chain::Cylindrical(c) if c.counts_turns());
+        self.legs.iter().any(|leg| counts(&leg.lower.chain) || counts(&leg.upper.chain))
+    }
+
+    /// The ways in which a leg's lower section alone can follow where its cut is at the displacement
+    /// `tau` along the intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in
+    /// one working mode, or (`None`) in any. A leg that is cut in its lower section has no use for it.
+    pub fn follow_lower(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<Follow>) {
+        let compiled = &self.legs[leg];
+        let tau = (compiled.cut == Section::Upper).then_some(Amount::Value(tau));
+        let b = self.task.upper(&self.task.home()[self.task.lower_count..]);
+        let mut push = |branches: LegBranches| {
+            // Choices of the upper section make no difference.
+            if ways.iter().all(|way| way.branches.lower != branches.lower) {
+                ways.push(Follow { leg, branches, b, tau, asks_upper: false });
+            }
+        };
+        match mode {
+            Some(mode) => push(self.modes.branches(mode, leg)),
+            None => {
+                for mode in self.modes.leg_modes(leg) {
+                    push(self.modes.branches(mode, leg));
+                }
+            }
+        }
+    }
+
+    /// Whether the upper section alone closes at `b` within its limits, in one working mode, or
+    /// (`None`) in any: all that legs cut there ask of `b`. `ways` is working memory.
+    pub fn upper_closes(
+        &self,
+        b: &Displacement,
+        mode: Option<Mode>,
+        ways: &mut Vec<Follow>,
+    ) -> bool {
+        (0..self.legs.len()).all(|leg| {
+            ways.clear();
+            self.follow(leg, b, mode, ways);
+            !ways.is_empty()
+        })
+    }
+
+    /// Whether the two sections alone decide on every pose: no leg that is cut in its lower section
+    /// has upper joints that are limited, actuated, or may be out of reach.
+    pub fn sections_decide(&self) -> bool {
+        self.legs.iter().all(|leg| leg.cut == Section::Upper || !leg.upper_decides)
     }
 
     /// The imaginary joint's number and value, for a leg that has one.
@@ -78,7 +157,7 @@ impl Manipulator {
             Some(tau) => leg
                 .solve_lower(&self.task, v, tau, way.branches.lower)
                 .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
-            None if !leg.upper_decides => leg
+            None if !way.asks_upper => leg
                 .lower
                 .chain
                 .inverse(v, way.branches.lower)
@@ -102,7 +181,7 @@ impl Manipulator {
         scale: f64,
     ) -> Option<Region> {
         let leg = &self.legs[way.leg];
-        if way.tau.is_none() && leg.upper_decides {
+        if way.asks_upper {
             return None;
         }
         let limits = leg.lower.slots.map(|slot| match slot {

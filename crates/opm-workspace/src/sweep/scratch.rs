@@ -2,9 +2,9 @@
 
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
 use super::runs::{self, Run};
-use super::{Hits, Modes, Sweep, Tally};
+use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
-use crate::grid::fill;
+use crate::grid::{Sections, fill};
 use nalgebra::Complex;
 use opm_core::manipulator::Follow;
 use opm_core::task::Displacement;
@@ -93,7 +93,8 @@ impl<'a> Scratch<'a> {
             row_step: rows[1] / step,
             rows: Vec::with_capacity(ROWS),
             cuts: Vec::new(),
-            others: vec![0.0; axes.len() - 1],
+            // A row of the upper section alone has no first coordinate that could differ.
+            others: vec![0.0; axes.len() - usize::from(sweep.grid.lower() > 0)],
             displacements: Vec::new(),
             runs: Vec::new(),
             union: Vec::new(),
@@ -116,7 +117,7 @@ impl<'a> Scratch<'a> {
         }
         self.sheet = sheet;
         self.row = (slice * sweep.sheets + sheet) * sweep.side;
-        if !self.alive {
+        if !self.alive || sweep.grid.sections() == Sections::Upper {
             return;
         }
         let (axes, lower) = (sweep.grid.axes(), sweep.grid.lower());
@@ -141,18 +142,24 @@ impl<'a> Scratch<'a> {
     fn enter_slice(&mut self, slice: u64) {
         let sweep = self.sweep;
         let lower = sweep.grid.lower();
-        let upper = &mut self.others[lower - 1..];
+        let upper = &mut self.others[lower.saturating_sub(1)..];
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
-        let b = manipulator.task().upper(upper);
-        let mode = match sweep.modes {
-            Modes::One(mode) => Some(mode),
-            Modes::Any => None,
+        let mode = sweep.modes.one();
+        let b = match sweep.grid.sections() {
+            Sections::Lower => None,
+            Sections::Whole | Sections::Upper => Some(manipulator.task().upper(upper)),
         };
         self.alive = true;
         for (leg, ways) in self.legs.iter_mut().enumerate() {
             self.found.clear();
-            manipulator.follow(leg, &b, mode, &mut self.found);
+            match &b {
+                Some(b) => manipulator.follow(leg, b, mode, &mut self.found),
+                None => {
+                    let tau = sweep.grid.cut(leg, upper);
+                    manipulator.follow_lower(leg, tau, mode, &mut self.found);
+                }
+            }
             ways.clear();
             ways.extend(self.found.iter().map(|&follow| Way {
                 follow,
@@ -163,15 +170,33 @@ impl<'a> Scratch<'a> {
         }
     }
 
+    /// Takes the one pose of a slice of the upper section alone, which closes.
+    fn take_slice(&self, count: &mut Count, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
+        for way in self.legs.iter().flatten() {
+            count.used(self.sweep.manipulator, &way.follow);
+        }
+        count.reachable += 1;
+        if let Some(hit) = hit {
+            let slice = self.slice.unwrap_or_default();
+            let (first, others) = self.others.split_at(1);
+            let runs = &[Run { from: 0, to: 1 }];
+            hit(&Hits { slice, row: self.row, runs, first, others });
+        }
+    }
+
     /// Decides the poses of a window of some of the sheet's rows.
     pub fn decide(
         &mut self,
         mut rows: Range<u64>,
         window: Run,
-        tally: &mut Tally,
+        found: &mut Count,
         hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>,
     ) {
         let sweep = self.sweep;
+        if sweep.grid.sections() == Sections::Upper {
+            self.take_slice(found, hit);
+            return;
+        }
         let axes = sweep.grid.axes();
         let planar = sweep.grid.lower() > 1;
         self.rows.clear();
@@ -206,9 +231,9 @@ impl<'a> Scratch<'a> {
             let doubt = doubts[i] != 0;
             let mut count = self.decide_row(i, window, doubt);
             if count > 0 && self.limit.is_some() {
-                count = self.limit_row(hit.is_none(), tally);
+                count = self.limit_row(hit.is_none(), found);
             } else if count > 0 {
-                self.settle(i, window, doubt, tally);
+                self.settle(i, window, doubt, found);
             }
             if count == 0 {
                 continue;
@@ -225,11 +250,11 @@ impl<'a> Scratch<'a> {
         if plain && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
-                    tally.used(sweep.manipulator, &way.follow);
+                    found.used(sweep.manipulator, &way.follow);
                 }
             }
         }
-        tally.reachable += reachable;
+        found.reachable += reachable;
     }
 
     /// The reachable poses of row number `i`, in `runs`; returns how many they are. A doubtful row is
@@ -271,7 +296,7 @@ impl<'a> Scratch<'a> {
 
     /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
     /// the imaginary joints of the modes in which they are; returns how many are left.
-    fn limit_row(&mut self, ranges: bool, tally: &mut Tally) -> u64 {
+    fn limit_row(&mut self, ranges: bool, found: &mut Count) -> u64 {
         let Some(limit) = &mut self.limit else { return 0 };
         let axis = &self.sweep.grid.axes()[0];
         self.pose[1..].copy_from_slice(&self.others);
@@ -281,7 +306,7 @@ impl<'a> Scratch<'a> {
             let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
                 if ranges {
                     let values = solution.imaginary.iter().enumerate();
-                    values.for_each(|(imaginary, &value)| tally.widen(imaginary, value));
+                    values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
                 }
                 ranges
             });
@@ -309,7 +334,7 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
-    fn settle(&mut self, i: usize, window: Run, doubt: bool, tally: &mut Tally) {
+    fn settle(&mut self, i: usize, window: Run, doubt: bool, found: &mut Count) {
         let mut first = 0;
         for number in 0..self.legs.len() {
             let alone = self.legs[number].len() == 1;
@@ -332,7 +357,7 @@ impl<'a> Scratch<'a> {
                     })
                 };
                 if used {
-                    tally.used(self.sweep.manipulator, &follow);
+                    found.used(self.sweep.manipulator, &follow);
                     self.legs[number][way].pending = false;
                 }
             }

@@ -1,0 +1,69 @@
+//! `opm`: kinematics and workspaces of overconstrained parallel manipulators, from a mechanism file.
+//!
+//! The program as a library with one function, so that the Python package can bring the command along.
+
+mod args;
+mod batch;
+mod cloud;
+mod completions;
+mod decompose;
+mod examples;
+mod failure;
+mod fk;
+mod ik;
+mod inspect;
+mod lines;
+mod linkage;
+mod load;
+mod motion;
+mod output;
+mod plot;
+mod pose;
+mod progress;
+mod record;
+mod scene;
+mod text;
+mod trajectory;
+mod transform;
+mod velocity;
+mod workspace;
+
+use crate::args::{Args, Command};
+use crate::failure::Failure;
+use clap::Parser;
+use std::ffi::OsString;
+
+/// Does what a command line asks for, the program's name first, and returns the status to exit with:
+/// 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. Everything that it had to say is on
+/// standard output and standard error, to the last byte.
+///
+/// It takes Ctrl-C over where work is long, and the second Ctrl-C ends the process; so it is for a
+/// process that does nothing else.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let done = match Args::try_parse_from(arguments) {
+        Ok(args) => run(&args),
+        // Help and the version come this way, too. Whoever does not read them has gone.
+        Err(told) => {
+            let _ = told.print();
+            return u8::try_from(told.exit_code()).unwrap_or(2);
+        }
+    };
+    done.map_or_else(|failure| failure.report(), |()| 0)
+}
+
+fn run(args: &Args) -> Result<(), Failure> {
+    let output = &args.output;
+    match &args.command {
+        Command::Decompose(command) => decompose::run(command, output),
+        Command::Ik(command) => ik::run(command, output),
+        Command::Velocity(command) => velocity::run(command, output),
+        Command::Fk(command) => fk::run(command, output),
+        Command::Linkage(command) => linkage::run(command, output),
+        Command::Trajectory(command) => trajectory::run(command, output),
+        Command::Workspace(command) => workspace::run(command, output),
+        Command::Plot(command) => plot::run(command, output),
+        Command::Inspect(command) => inspect::run(command, output),
+        Command::Examples(command) => examples::run(command, output),
+        Command::Completions(command) => completions::run(command),
+    }
+}

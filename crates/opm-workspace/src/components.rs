@@ -1,0 +1,80 @@
+//! Connected components of a set: points that are neighbours along an axis belong together.
+//!
+//! Runs are joined, not points, by union-find (R. E. Tarjan, *Efficiency of a good but not linear set
+//! union algorithm*, J. ACM 22, 1975).
+
+use crate::set::{GridSet, SetAxis};
+
+/// Numbers of points of a set's connected components, the largest first. Two points are neighbours where
+/// they differ by one step along one axis; a step from the last value of an axis that comes full
+/// circle leads to the first.
+pub fn components(set: &GridSet) -> Vec<u64> {
+    let runs: usize = set.span(set.rows().saturating_sub(1)).end;
+    let mut forest = Forest { parents: (0..runs as u32).collect() };
+    let row_axis = set.varying().first().copied().unwrap_or(0);
+    for row in 0..set.rows() {
+        let span = set.span(row);
+        if set.axes()[row_axis].circle
+            && let [first, .., last] = set.runs(row)
+            && first.from == 0
+            && last.to == set.row()
+        {
+            forest.join(span.start, span.end - 1);
+        }
+        let mut stride = 1;
+        for SetAxis { axis, circle } in &set.axes()[row_axis + 1..] {
+            let (count, number) = (axis.count as usize, row / stride % axis.count as usize);
+            if number > 0 {
+                join_rows(set, &mut forest, row, row - stride);
+            }
+            if *circle && number + 1 == count {
+                join_rows(set, &mut forest, row, row - number * stride);
+            }
+            stride *= count;
+        }
+    }
+    let mut sizes = vec![0; runs];
+    for row in 0..set.rows() {
+        for (number, run) in set.span(row).zip(set.runs(row)) {
+            sizes[forest.root(number)] += run.to - run.from;
+        }
+    }
+    sizes.retain(|&size| size > 0);
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    sizes
+}
+
+/// Joins the runs of two neighbouring rows that overlap.
+fn join_rows(set: &GridSet, forest: &mut Forest, a: usize, b: usize) {
+    let (first_a, first_b) = (set.span(a).start, set.span(b).start);
+    let (runs_a, runs_b) = (set.runs(a), set.runs(b));
+    let (mut i, mut j) = (0, 0);
+    while i < runs_a.len() && j < runs_b.len() {
+        if runs_a[i].from < runs_b[j].to && runs_b[j].from < runs_a[i].to {
+            forest.join(first_a + i, first_b + j);
+        }
+        if runs_a[i].to < runs_b[j].to { i += 1 } else { j += 1 }
+    }
+}
+
+/// Trees of runs that belong together.
+struct Forest {
+    parents: Vec<u32>,
+}
+
+impl Forest {
+    fn root(&mut self, mut run: usize) -> usize {
+        while self.parents[run] as usize != run {
+            // Every node on the way up gets its grandparent for a parent.
+            self.parents[run] = self.parents[self.parents[run] as usize];
+            run = self.parents[run] as usize;
+        }
+        run
+    }
+
+    /// The earlier root stays one: the result does not depend on the order.
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b)] = a.min(b) as u32;
+    }
+}

@@ -1,0 +1,531 @@
+//! Kinds of workspace: sections against the whole, visits against one inverse-kinematics call a pose,
+//! boundaries and components against geometry and flood fills.
+
+use fastrand::Rng;
+use nalgebra::{Matrix3, Vector3};
+use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::mechanism::{examples, file};
+use opm_core::task::euler;
+use opm_tests::by_inverse::by_inverse;
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::{
+    Axis, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep, Visits,
+    boundary, components, rings,
+};
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+fn shipped(name: &str) -> Manipulator {
+    let example = examples::EXAMPLES.iter().find(|example| example.name == name).unwrap();
+    Manipulator::new(file::read(example.text).unwrap().mechanism).unwrap()
+}
+
+fn reached(sweep: &Sweep<'_>) -> GridSet {
+    GridSet::reached(sweep, &Progress::default()).unwrap()
+}
+
+/// Every working mode.
+fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
+    let signs = |bits: u32| -> String {
+        let sign = |choice| if bits >> choice & 1 == 0 { '+' } else { '-' };
+        (0..manipulator.choices()).map(sign).collect()
+    };
+    let modes = (0..1 << manipulator.choices()).map(signs);
+    modes.map(|signs| manipulator.parse_mode(&signs).unwrap()).collect()
+}
+
+/// Whether both sections alone reach a pose: the upper one `b` with some cuts, the lower one `v` with
+/// these.
+fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
+    let task = manipulator.task();
+    let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
+    let mut ways: Vec<Follow> = vec![];
+    if !manipulator.upper_closes(&b, mode, &mut ways) {
+        return false;
+    }
+    // No two legs share a cut or a choice.
+    (0..manipulator.legs()).all(|leg| {
+        ways.clear();
+        manipulator.follow(leg, &b, mode, &mut ways);
+        let mut taus: Vec<f64> = ways.iter().filter_map(Follow::cut).collect();
+        if taus.is_empty() {
+            taus.push(0.0);
+        }
+        taus.into_iter().any(|tau| {
+            ways.clear();
+            manipulator.follow_lower(leg, tau, mode, &mut ways);
+            ways.iter().any(|way| manipulator.follows(way, &v))
+        })
+    })
+}
+
+/// The paper's Discussion: the workspace is what its two sections have in common.
+#[test]
+fn the_whole_is_what_both_sections_reach() {
+    let mut rng = Rng::with_seed(50);
+    let (mut whole, mut poses, mut undecided, mut both) = (0, 0, 0, 0);
+    for round in 0..40 {
+        for pair in PAIRS {
+            let limited = if round % 2 == 0 { 0.0 } else { 0.3 };
+            let options = Options { limited, balls: round % 3 != 0 };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let mut all = manipulator.all_modes();
+            let mut solution = manipulator.solution();
+            let modes = all_modes(&manipulator);
+            for _ in 0..30 {
+                let pose: Vec<f64> = (manipulator.task_coordinates().iter())
+                    .map(|c| c.home + 1.2 * (rng.f64() - rng.f64()))
+                    .collect();
+                manipulator.inverse_all(&pose, &mut all).unwrap();
+                let mut any = false;
+                for &mode in &modes {
+                    let reached =
+                        manipulator.pick(&all, mode, &mut solution) && solution.within_limits;
+                    let meet = sections_meet(&manipulator, &pose, Some(mode));
+                    any |= reached;
+                    assert!(meet || !reached, "{pair:?} {pose:?} {mode:?}");
+                    if manipulator.sections_decide() {
+                        assert_eq!(meet, reached, "{pair:?} {pose:?} {mode:?}");
+                    } else {
+                        undecided += u32::from(meet && !reached);
+                    }
+                    whole += u32::from(reached);
+                    both += u32::from(meet);
+                    poses += 1;
+                }
+                let meet = sections_meet(&manipulator, &pose, None);
+                if manipulator.sections_decide() {
+                    assert_eq!(meet, any, "{pair:?} {pose:?}");
+                } else {
+                    assert!(meet || !any, "{pair:?} {pose:?}");
+                }
+            }
+        }
+    }
+    println!("{whole} of {poses} reached, {both} in both sections, {undecided} in these alone");
+    assert!(whole > 10_000 && both < poses / 2 && undecided > 100);
+}
+
+/// The lower section alone as a grid, its imaginary joints as axes: against each leg asked alone.
+#[test]
+fn a_grid_of_the_lower_section_has_its_cuts_for_axes() {
+    let mut rng = Rng::with_seed(51);
+    let (mut poses, mut partly) = (0, 0);
+    for round in 0..30 {
+        for pair in PAIRS {
+            let options = Options { limited: 0.2, balls: round % 3 != 0 };
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let lower = manipulator.task().lower_count;
+            let coordinates = Sections::Lower.coordinates(&manipulator);
+            let axes = coordinates.iter().enumerate().map(|(i, c)| {
+                let (below, above) = (rng.f64() * 1.5, rng.f64() * 1.5);
+                Axis::new(&*c.name, c.home - below, c.home + above, if i < lower { 7 } else { 2 })
+            });
+            let grid = Grid::of(Sections::Lower, &manipulator, axes.collect()).unwrap();
+            let modes = match rng.u8(..2) {
+                0 => Modes::Any,
+                _ => Modes::One(manipulator.home_mode()),
+            };
+            let set = reached(&Sweep::new(&manipulator, &grid, modes));
+            let cuts = manipulator.cuts();
+            for number in 0..grid.poses() {
+                let pose = grid.pose(number);
+                let v = manipulator.task().lower(&pose);
+                let expected = (0..manipulator.legs()).all(|leg| {
+                    let cut = cuts.iter().position(|cut| cut.leg == leg);
+                    let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
+                    let mut ways = vec![];
+                    manipulator.follow_lower(leg, tau, modes.one(), &mut ways);
+                    ways.iter().any(|way| manipulator.follows(way, &v))
+                });
+                assert_eq!(set.contains(number), expected, "{pair:?} {pose:?}");
+            }
+            poses += grid.poses();
+            partly += u32::from(set.count() > 0 && set.count() < grid.poses());
+        }
+    }
+    println!("{poses} poses, {partly} grids in part");
+    assert!(partly > 200);
+}
+
+/// The upper section alone, whose imaginary joints range as the whole's where the lower one allows all.
+#[test]
+fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations() {
+    let manipulator = shipped("plano-spherical-5dof");
+    let axes = vec![
+        Axis::new("zeta", -PI, PI, 73),
+        Axis::new("xi", 0.0, PI, 61),
+        Axis::new("psi", -PI, PI, 73),
+    ];
+    let grid = Grid::of(Sections::Upper, &manipulator, axes).unwrap();
+    let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
+    let set = reached(&sweep);
+    assert_eq!(set.count(), sweep.count(&Progress::default()).unwrap().reachable);
+    // A leg closes where its platform axis, w, is more than 30 degrees from -z: data/reference.
+    let (mut ties, mut inside) = (0, 0);
+    for number in 0..grid.poses() {
+        let pose = grid.pose(number);
+        let rotation: Matrix3<f64> = euler(pose[0], pose[1], pose[2]);
+        let height = [0.0_f64, 120.0, 240.0].map(|eta| {
+            let (s, c) = eta.to_radians().sin_cos();
+            let tilt = 60_f64.to_radians().sin();
+            -(rotation * Vector3::new(tilt * c, tilt * s, 0.5)).z
+        });
+        let highest = height.into_iter().fold(f64::MIN, f64::max) - 30_f64.to_radians().cos();
+        if highest.abs() < 1e-9 {
+            ties += 1;
+            continue;
+        }
+        assert_eq!(set.contains(number), highest < 0.0, "{pose:?}");
+        inside += u32::from(highest < 0.0);
+    }
+    println!("{inside} inside, {ties} ties");
+    assert!(inside > 100_000 && ties < 20_000);
+    // All orientations but three caps: one piece.
+    assert_eq!(components(&set).len(), 1);
+}
+
+#[test]
+fn visits_are_slices_that_reach_a_place() {
+    let mut rng = Rng::with_seed(52);
+    let mut several = 0;
+    for _ in 0..20 {
+        for pair in PAIRS {
+            let (mechanism, decomposition) =
+                mechanism(&mut rng, pair, Options { limited: 0.1, balls: true });
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let lower = manipulator.task().lower_count;
+            let axes = manipulator.task_coordinates().iter().enumerate().map(|(i, c)| {
+                let half = if i < lower { 1.0 } else { 0.3 };
+                Axis::new(c.name, c.home - half, c.home + half, if i < lower { 8 } else { 3 })
+            });
+            let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+            let modes = match rng.u8(..2) {
+                0 => Modes::Any,
+                _ => Modes::One(manipulator.home_mode()),
+            };
+            let mut expected: HashMap<Vec<u64>, u64> = HashMap::new();
+            for pose in by_inverse(&manipulator, &grid, modes).0 {
+                let place = pose[..lower].iter().map(|value| value.to_bits()).collect();
+                *expected.entry(place).or_default() += 1;
+            }
+            let sweep = Sweep::new(&manipulator, &grid, modes);
+            let count = || Visits::new(&sweep, &Progress::default()).unwrap();
+            let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+            let visits = threads(1).install(count);
+            assert_eq!(visits, threads(5).install(count));
+            let [reachable, dexterous] =
+                [visits.reachable(), visits.dexterous()].map(Result::unwrap);
+            for (place, &found) in visits.counts().iter().enumerate() {
+                let at: Vec<u64> =
+                    grid.pose(place as u64)[..lower].iter().map(|value| value.to_bits()).collect();
+                let expected = expected.get(&at).copied().unwrap_or(0);
+                assert_eq!(found, expected, "{pair:?}");
+                assert_eq!(reachable.contains(place as u64), expected > 0);
+                assert_eq!(dexterous.contains(place as u64), expected == grid.slices());
+                several += u32::from(expected > 1 && expected < grid.slices());
+            }
+            let mut twice = visits.clone();
+            twice.add(&visits);
+            assert!(twice.counts().iter().zip(visits.counts()).all(|(two, one)| *two == 2 * one));
+        }
+    }
+    assert!(several > 1000, "{several}");
+}
+
+/// A set of random points of a grid with these numbers of values.
+fn random_set(rng: &mut Rng, counts: &[u64], circles: &[bool], share: f64) -> (GridSet, Vec<bool>) {
+    let axes = counts.iter().zip(circles).enumerate().map(|(i, (&count, &circle))| {
+        let axis = match count {
+            1 => Axis::fixed(format!("a{i}"), 0.0),
+            _ => Axis::new(format!("a{i}"), 0.0, (count - 1) as f64, count),
+        };
+        SetAxis { axis, circle }
+    });
+    let mask: Vec<bool> = (0..counts.iter().product()).map(|_| rng.f64() < share).collect();
+    (GridSet::of(axes.collect(), |number| mask[number as usize]).unwrap(), mask)
+}
+
+/// Sizes of the pieces of a mask by a flood fill, largest first.
+fn flood(mask: &[bool], counts: &[u64], circles: &[bool]) -> Vec<u64> {
+    let mut left = mask.to_vec();
+    let mut sizes = vec![];
+    for start in 0..mask.len() {
+        let mut open = if std::mem::take(&mut left[start]) { vec![start as u64] } else { vec![] };
+        let mut size = 0;
+        while let Some(point) = open.pop() {
+            size += 1;
+            let mut stride = 1;
+            for (&count, &circle) in counts.iter().zip(circles) {
+                let number = point / stride % count;
+                let mut go = |to: u64| {
+                    let next = point - number * stride + to * stride;
+                    if std::mem::take(&mut left[next as usize]) {
+                        open.push(next);
+                    }
+                };
+                if number > 0 || circle {
+                    go((number + count - 1) % count);
+                }
+                if number + 1 < count || circle {
+                    go((number + 1) % count);
+                }
+                stride *= count;
+            }
+        }
+        if size > 0 {
+            sizes.push(size);
+        }
+    }
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    sizes
+}
+
+#[test]
+fn components_are_those_of_a_flood_fill() {
+    let mut rng = Rng::with_seed(53);
+    let mut many = 0;
+    for round in 0..3000 {
+        let counts: Vec<u64> = (0..1 + rng.usize(..5))
+            .map(|_| if rng.u8(..4) == 0 { 1 } else { 2 + rng.u64(..7) })
+            .collect();
+        let circles: Vec<bool> = counts.iter().map(|&n| n > 2 && rng.bool()).collect();
+        let share = rng.f64();
+        let (set, mask) = random_set(&mut rng, &counts, &circles, share);
+        let expected = flood(&mask, &counts, &circles);
+        assert_eq!(components(&set), expected, "round {round}: {counts:?} {circles:?}");
+        assert_eq!(set.count(), expected.iter().sum::<u64>());
+        let numbers: Vec<u64> = (0..mask.len() as u64).filter(|&i| mask[i as usize]).collect();
+        assert!(set.numbers().eq(numbers));
+        many += u32::from(expected.len() > 3);
+    }
+    assert!(many > 500, "{many}");
+}
+
+/// Pieces of the ground around a mask that meet at corners, too, but for the one outside.
+fn holes(mask: &[bool], [width, height]: [u64; 2]) -> usize {
+    let (w, h) = (width as i64 + 2, height as i64 + 2);
+    let mut left: Vec<bool> = (0..w * h)
+        .map(|p| {
+            let (i, j) = (p % w - 1, p / w - 1);
+            let within = i >= 0 && j >= 0 && i < w - 2 && j < h - 2;
+            !(within && mask[(j * (w - 2) + i) as usize])
+        })
+        .collect();
+    let mut pieces = 0;
+    for start in 0..left.len() {
+        let mut open = if std::mem::take(&mut left[start]) { vec![start as i64] } else { vec![] };
+        pieces += open.len();
+        while let Some(p) = open.pop() {
+            for (di, dj) in (-1..=1).flat_map(|di| (-1..=1).map(move |dj| (di, dj))) {
+                let (i, j) = (p % w + di, p / w + dj);
+                let within = i >= 0 && j >= 0 && i < w && j < h;
+                if within && std::mem::take(&mut left[(j * w + i) as usize]) {
+                    open.push(j * w + i);
+                }
+            }
+        }
+    }
+    pieces - 1
+}
+
+/// Outer rings are the pieces, holes the holes; with the areas that Pick's theorem gives the rings.
+#[test]
+fn boundaries_of_random_masks_have_their_topology_and_area() {
+    let mut rng = Rng::with_seed(54);
+    for round in 0..3000 {
+        let counts = [2 + rng.u64(..12), 2 + rng.u64(..12)];
+        let share = rng.f64();
+        let (set, mask) = random_set(&mut rng, &counts, &[false; 2], share);
+        let outlines = boundary(&set).unwrap();
+        let [outline] = &outlines[..] else { panic!("{} outlines", outlines.len()) };
+        // A point alone in a corner of the grid has an area, if a small one.
+        let outer = outline.rings.iter().filter(|ring| ring.area() > 0.0).count();
+        let inner = outline.rings.iter().filter(|ring| ring.area() < 0.0).count();
+        assert_eq!(outer, flood(&mask, &counts, &[false; 2]).len(), "round {round}");
+        assert_eq!(inner, holes(&mask, counts), "round {round}");
+        assert_eq!(outer + inner, outline.rings.len());
+        // Marching squares, square by square: the area that each has within it.
+        let has = |i: u64, j: u64| usize::from(mask[(j * counts[0] + i) as usize]);
+        let squares = (0..counts[1] - 1).flat_map(|j| (0..counts[0] - 1).map(move |i| (i, j)));
+        let expected: f64 = squares
+            .map(|(i, j)| {
+                let corners = [has(i, j), has(i + 1, j), has(i + 1, j + 1), has(i, j + 1)];
+                match corners.iter().sum::<usize>() {
+                    0 => 0.0,
+                    1 => 0.125,
+                    2 if corners[0] == corners[2] => 0.25,
+                    2 => 0.5,
+                    3 => 0.875,
+                    _ => 1.0,
+                }
+            })
+            .sum();
+        assert!((outline.area() - expected).abs() < 1e-9, "{} {expected}", outline.area());
+    }
+}
+
+/// A slice a value of the third axis, whichever axes have one value alone.
+#[test]
+fn boundaries_of_solids_are_those_of_their_slices() {
+    let mut rng = Rng::with_seed(55);
+    for _ in 0..200 {
+        let (w, h, d) = (2 + rng.u64(..8), 2 + rng.u64(..8), 2 + rng.u64(..4));
+        let (set, mask) = random_set(&mut rng, &[1, w, 1, h, d], &[false; 5], 0.6);
+        let outlines = boundary(&set).unwrap();
+        assert_eq!(outlines.len() as u64, d);
+        for (slice, outline) in outlines.iter().enumerate() {
+            assert_eq!(outline.slice, Some(slice as u64));
+            let area = (w * h) as usize;
+            let axis = |n: u64| Axis::new("a", 0.0, (n - 1) as f64, n);
+            let part = &mask[slice * area..(slice + 1) * area];
+            assert_eq!(outline.rings, rings(&axis(w), &axis(h), part));
+        }
+        assert_eq!(boundary(&random_set(&mut rng, &[w], &[false], 0.5).0), None);
+        assert_eq!(boundary(&random_set(&mut rng, &[2; 4], &[false; 4], 0.5).0), None);
+    }
+}
+
+/// Paper, section 3.2: at a fixed phi the workspace is where three strips meet, a convex polygon.
+#[test]
+fn the_boundary_of_the_helical_mechanism_is_its_polygon() {
+    let manipulator = shipped("translational-helical-3dof");
+    for phi in [0.0, 0.7, -1.9] {
+        // Within S_i = n(alpha_i) P + sin(beta_i) (k_i + [i = 1] S) in ±400 mm, S = p phi.
+        let (alpha, beta) = ([210_f64, 330.0, 90.0], [45_f64, 285.0, 165.0]);
+        let (k, pitch) = ([0.010, 0.015, 0.025], 0.020);
+        let strip = |i: usize| {
+            let (s, c) = alpha[i].to_radians().sin_cos();
+            let shift = if i == 0 { pitch * phi } else { 0.0 };
+            ([-s, c], beta[i].to_radians().sin() * (k[i] + shift))
+        };
+        let mut polygon = vec![[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
+        for (n, offset) in [0, 1, 2].map(strip) {
+            for side in [1.0, -1.0] {
+                polygon = clipped(&polygon, n.map(|c| c * side), 0.4 - side * offset);
+            }
+        }
+        let exact = shoelace(&polygon);
+        let count = 801;
+        let axes = vec![
+            Axis::new("x", -0.6, 0.6, count),
+            Axis::new("y", -0.6, 0.6, count),
+            Axis::fixed("phi", phi),
+        ];
+        let grid = Grid::new(&manipulator, axes).unwrap();
+        let set = reached(&Sweep::new(&manipulator, &grid, Modes::Any));
+        let outlines = boundary(&set).unwrap();
+        let [outline] = &outlines[..] else { panic!("{} outlines", outlines.len()) };
+        assert_eq!(outline.rings.len(), 1);
+        assert_eq!(components(&set), [set.count()]);
+        let step = 1.2 / (count - 1) as f64;
+        // Every corner lies within a step of the polygon, and the areas agree to less than that all
+        // around it.
+        for corner in &outline.rings[0].points {
+            let distance = distance_to(&polygon, *corner);
+            assert!(distance < step, "{corner:?} is {distance} from the polygon");
+        }
+        let around: f64 = sides(&polygon).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
+        let error = (outline.area() - exact).abs() / (around * step);
+        println!("phi {phi}: {} of {exact} m^2, {error} of the rim", outline.area());
+        assert!(error < 0.1);
+    }
+}
+
+fn sides(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    (0..polygon.len()).map(|i| [polygon[i], polygon[(i + 1) % polygon.len()]])
+}
+
+fn shoelace(polygon: &[[f64; 2]]) -> f64 {
+    sides(polygon).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
+}
+
+fn distance_to(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
+    let to_side = |[a, b]: [[f64; 2]; 2]| {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        let along = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+        let along = along.clamp(0.0, 1.0);
+        (p[0] - a[0] - along * d[0]).hypot(p[1] - a[1] - along * d[1])
+    };
+    sides(polygon).map(to_side).fold(f64::MAX, f64::min)
+}
+
+/// What of a convex polygon has `n · p <= most`.
+fn clipped(polygon: &[[f64; 2]], n: [f64; 2], most: f64) -> Vec<[f64; 2]> {
+    let over = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - most;
+    let mut left = vec![];
+    for [a, b] in sides(polygon) {
+        let (u, v) = (over(a), over(b));
+        if u <= 0.0 {
+            left.push(a);
+        }
+        if u * v < 0.0 {
+            let t = u / (u - v);
+            left.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+        }
+    }
+    left
+}
+
+/// A disc and a ring of known radii: what a two-link arm reaches, one and both rims.
+#[test]
+fn rings_have_the_areas_of_discs() {
+    for (inner, outer) in [(0.0, 1.0), (0.4, 1.0), (0.05, 0.9)] {
+        let count = 1001;
+        let axis = |name: &str| Axis::new(name, -1.3, 1.3, count);
+        let (x, y) = (axis("x"), axis("y"));
+        let radius = |number: u64| x.value(number % count).hypot(y.value(number / count));
+        let axes = [&x, &y].map(|axis| SetAxis { axis: axis.clone(), circle: false });
+        let set = GridSet::of(axes.to_vec(), |number| {
+            let radius = radius(number);
+            radius <= outer && (inner == 0.0 || radius >= inner)
+        })
+        .unwrap();
+        let outline = &boundary(&set).unwrap()[0];
+        let area = PI * (outer * outer - inner * inner);
+        assert_eq!(outline.rings.len(), if inner > 0.0 { 2 } else { 1 });
+        let rim = TAU * (inner + outer) * 2.6 / (count - 1) as f64;
+        assert!((outline.area() - area).abs() < 0.05 * rim, "{} {area}", outline.area());
+    }
+}
+
+/// The global index is the mean of what one call a pose gives, whatever the threads.
+#[test]
+fn the_global_index_is_the_mean_of_the_local_ones() {
+    let manipulator = shipped("plano-spherical-5dof");
+    let axes = vec![
+        Axis::new("x", -0.1, 0.1, 5),
+        Axis::new("y", -0.1, 0.1, 4),
+        Axis::new("zeta", -0.3, 0.3, 3),
+        Axis::new("xi", 0.0, 1.0, 3),
+        Axis::fixed("psi", 0.2),
+    ];
+    let grid = Grid::new(&manipulator, axes).unwrap();
+    let mode = manipulator.home_mode();
+    let length = 0.07;
+    let (mut solution, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
+    let (reached, _) = by_inverse(&manipulator, &grid, Modes::One(mode));
+    let local: Vec<f64> = reached
+        .iter()
+        .map(|pose| {
+            assert!(manipulator.inverse(pose, mode, &mut solution).unwrap());
+            manipulator.differentiate(&solution, &mut jacobians).unwrap();
+            manipulator.conditioning(&jacobians, length).condition.recip()
+        })
+        .collect();
+    let sweep = Sweep::new(&manipulator, &grid, Modes::One(mode));
+    let index = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| ConditioningIndex::new(&sweep, length, &Progress::default()).unwrap())
+    };
+    let found = index(1);
+    assert_eq!(found, index(3));
+    assert_eq!(found.poses, local.len() as u64);
+    assert!(local.len() > 50);
+    let mean = local.iter().sum::<f64>() / local.len() as f64;
+    assert!((found.global().unwrap() - mean).abs() < 1e-14 * local.len() as f64);
+    assert_eq!(found.min, local.iter().copied().fold(f64::MAX, f64::min));
+    assert_eq!(found.max, local.iter().copied().fold(0.0, f64::max));
+}

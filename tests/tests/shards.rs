@@ -1,0 +1,93 @@
+//! Shards of a sweep: together they are the whole, however many they are.
+
+use fastrand::Rng;
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Run, Shard, Sweep};
+
+/// The runs of a sweep with their rows, in the order in which they come.
+fn runs(sweep: &Sweep<'_>) -> Vec<(u64, Run)> {
+    let mut all = Vec::new();
+    sweep
+        .points(
+            &Progress::default(),
+            |hits, made: &mut Vec<_>| made.extend(hits.runs.iter().map(|&run| (hits.row, run))),
+            Vec::new,
+            |made| {
+                all.extend(made);
+                Ok::<(), Cancelled>(())
+            },
+        )
+        .unwrap();
+    all
+}
+
+fn grid(manipulator: &Manipulator, counts: [u64; 6]) -> Grid {
+    let coordinates = manipulator.task_coordinates().iter().zip(counts);
+    let axes = coordinates.map(|(c, count)| Axis::new(c.name, c.home - 1.0, c.home + 1.3, count));
+    Grid::new(manipulator, axes.collect()).unwrap()
+}
+
+#[test]
+fn shards_are_the_whole_one_after_the_other() {
+    let mut rng = Rng::with_seed(40);
+    let mut shared = 0;
+    for (number, pair) in PAIRS.into_iter().enumerate() {
+        let options = Options { limited: 0.1, balls: true };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        // Rows of several segments, or several rows a segment.
+        for counts in [[5_000, 3, 3, 2, 2, 2], [40, 30, 4, 5, 5, 5]] {
+            let grid = grid(&manipulator, counts);
+            let modes = [Modes::Any, Modes::One(Mode::default())][number % 2];
+            let whole = Sweep::new(&manipulator, &grid, modes);
+            let (count, all) = (whole.count(&Progress::default()).unwrap(), runs(&whole));
+            for of in [1, 2, 3, 8, 1000] {
+                let shards: Vec<Sweep<'_>> =
+                    (1..=of).map(|i| whole.shard(Shard::new(i, of).unwrap())).collect();
+                let parts: Vec<Count> =
+                    shards.iter().map(|shard| shard.count(&Progress::default()).unwrap()).collect();
+                for (shard, part) in shards.iter().zip(&parts) {
+                    assert_eq!(shard.poses(), part.poses);
+                }
+                let nothing = || Count::nothing(&manipulator);
+                let forth = parts.iter().fold(nothing(), Count::merge);
+                let back = parts.iter().rev().fold(nothing(), Count::merge);
+                assert_eq!([&forth, &back], [&count; 2], "{pair:?} {of}");
+                let together: Vec<_> = shards.iter().flat_map(runs).collect();
+                assert!(together == all, "{pair:?} {of}");
+                shared += u32::from(parts.iter().filter(|part| part.reachable > 0).count() > 1);
+            }
+        }
+    }
+    assert!(shared > 60, "{shared} sweeps had points in several shards");
+}
+
+/// Of zeros, too: which sign a range has must not depend on what came first.
+#[test]
+fn counts_merge_in_any_order() {
+    let count = |low: f64, high: f64| Count {
+        poses: 1,
+        reachable: 1,
+        imaginary: vec![Some([low, high]), None],
+    };
+    let nothing = || Count { poses: 0, reachable: 0, imaginary: vec![None; 2] };
+    let parts = [count(-0.0, 0.5), count(0.0, 0.25), nothing(), count(0.0, -0.0)];
+    for order in [[0, 1, 2, 3], [3, 2, 1, 0], [1, 3, 0, 2], [2, 0, 3, 1]] {
+        let merged = order.into_iter().fold(nothing(), |all, i| all.merge(&parts[i]));
+        assert_eq!((merged.poses, merged.reachable), (3, 3));
+        let [low, high] = merged.imaginary[0].unwrap();
+        assert_eq!([low.to_bits(), high.to_bits()], [0.0_f64.to_bits(), 0.5_f64.to_bits()]);
+        assert_eq!(merged.imaginary[1], None);
+    }
+}
+
+#[test]
+fn a_shard_is_written_as_its_number_of_so_many() {
+    let shard: Shard = "3/8".parse().unwrap();
+    assert_eq!((shard.number(), shard.count(), shard.to_string()), (3, 8, "3/8".to_owned()));
+    for wrong in ["", "3", "0/8", "9/8", "3/0", "-1/8", "3/8/2", "a/b", "1.0/2", "/"] {
+        let error = wrong.parse::<Shard>().unwrap_err().to_string();
+        assert!(error.contains(&format!("{wrong:?}")), "{error}");
+    }
+}
