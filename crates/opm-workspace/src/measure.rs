@@ -8,8 +8,10 @@
 
 mod cell;
 mod domain;
+mod ranges;
 
 pub use domain::{Domain, DomainAxis, DomainError, Over};
+pub use ranges::ranges;
 
 use crate::progress::Progress;
 use crate::sweep::Modes;

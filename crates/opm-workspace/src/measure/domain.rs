@@ -1,9 +1,10 @@
 //! What is measured: a range of every coordinate, and what a part of it weighs.
 
 use super::cell::Cell;
+use crate::grid::Sections;
 use opm_core::enclosure::{Asked, MOST, Piece, Side};
 use opm_core::joint::Quantity;
-use opm_core::manipulator::{LARGEST, Manipulator};
+use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Most first boxes: half turns of tilts.
@@ -38,8 +39,18 @@ pub struct DomainAxis {
     pub min: f64,
     /// Highest value, radians or metres.
     pub max: f64,
-    /// Of a tilt in a sphere: what to add to it for the angle `α` by whose `|sin α|` it is weighed.
-    tilt: Option<f64>,
+    kind: Kind,
+}
+
+/// How a coordinate enters a box.
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// As it is.
+    Plain,
+    /// A tilt in a sphere, which is weighed by `|sin α|`, where `α` is the tilt plus this.
+    Tilt(f64),
+    /// The value of an imaginary joint: as its displacement along the intersection motion.
+    Cut(ImaginaryJoint),
 }
 
 impl DomainAxis {
@@ -47,31 +58,41 @@ impl DomainAxis {
         self.min < self.max
     }
 
-    /// The name of what it is weighed by, where that is not one.
+    /// What it is weighed by, where that is not one.
     pub fn weight(&self) -> Option<&'static str> {
-        let tilt = self.tilt.filter(|_| self.has_width())?;
-        Some(if tilt == 0.0 { "sin xi" } else { "cos nu" })
+        match self.kind {
+            Kind::Tilt(shift) if self.has_width() => {
+                Some(if shift == 0.0 { "sin xi" } else { "cos nu" })
+            }
+            _ => None,
+        }
     }
 
-    /// Its parts: a middle, how far the ends are from it, and which half turn it is of.
-    fn parts(&self) -> Vec<(Side, f64)> {
+    /// Its parts: one, or of a tilt one for every half turn that it is on.
+    fn parts(&self) -> Vec<Side> {
         let (min, max) = (self.min, self.max);
-        let Some(tilt) = self.tilt.filter(|_| self.has_width()) else {
-            let side = Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), piece: None };
-            return vec![(side, max - min)];
+        let plain = |[min, max]: [f64; 2]| {
+            vec![Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), piece: None }]
         };
-        let [from, to] = [min + tilt, max + tilt];
-        let last = Piece::of(to).number;
-        (Piece::of(from).number..=last)
+        let shift = match &self.kind {
+            Kind::Tilt(shift) if self.has_width() => *shift,
+            Kind::Plain | Kind::Tilt(_) => return plain([min, max]),
+            Kind::Cut(joint) => {
+                let [from, to] = [min, max].map(|value| joint.displacement(value));
+                return plain([from.min(to), from.max(to)]);
+            }
+        };
+        let [from, to] = [min + shift, max + shift];
+        let [first, last] = [from, to].map(|end| Piece::of(end).number);
+        (first..=last)
             .map(|number| {
                 let piece = Piece { number };
-                let low =
-                    if number == Piece::of(from).number { piece.from_angle(from) } else { -1.0 };
+                let low = if number == first { piece.from_angle(from) } else { -1.0 };
                 let high = if number == last { piece.from_angle(to) } else { 1.0 };
                 let half = 0.5 * (high - low);
-                (Side { middle: 0.5 * (low + high), half, piece: Some(piece) }, 2.0 * half)
+                Side { middle: 0.5 * (low + high), half, piece: Some(piece) }
             })
-            .filter(|(side, _)| side.half > 0.0)
+            .filter(|side| side.half > 0.0)
             .collect()
     }
 }
@@ -80,10 +101,12 @@ impl DomainAxis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DomainError {
     /// No such coordinate.
-    #[error("no coordinate {name}, expected one of {expected}")]
+    #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
         /// As given.
         name: String,
+        /// What is measured.
+        sections: Sections,
         /// Those that there are.
         expected: String,
     },
@@ -118,7 +141,7 @@ pub enum DomainError {
 /// A range or a value for every coordinate of a manipulator's pose, or of one section alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain {
-    asked: Asked,
+    sections: Sections,
     axes: Vec<DomainAxis>,
     /// Numbers of the axes with a width.
     wide: Vec<usize>,
@@ -134,16 +157,16 @@ impl Domain {
     /// Unknown or repeated coordinates, ends that are not numbers or reversed, more than [`MOST`] ranges.
     pub fn new(
         manipulator: &Manipulator,
-        asked: Asked,
+        sections: Sections,
         given: &[Over],
     ) -> Result<Self, DomainError> {
-        let mut axes = axes(manipulator, asked);
+        let mut axes = axes(manipulator, sections);
         let mut seen = vec![false; axes.len()];
         for Over { name, min, max } in given {
             let Some(number) = axes.iter().position(|axis| axis.name == *name) else {
                 let names: Vec<_> = axes.iter().map(|axis| &*axis.name).collect();
                 let expected = names.join(", ");
-                return Err(DomainError::Unknown { name: name.clone(), expected });
+                return Err(DomainError::Unknown { name: name.clone(), sections, expected });
             };
             if std::mem::replace(&mut seen[number], true) {
                 return Err(DomainError::Twice(name.clone()));
@@ -154,7 +177,7 @@ impl Domain {
             }
             let axis = &mut axes[number];
             (axis.min, axis.max) = (min, max);
-            if axis.tilt.is_some() && (max - min) / PI > (MOST_PIECES - 2) as f64 {
+            if matches!(axis.kind, Kind::Tilt(_)) && (max - min) / PI > (MOST_PIECES - 2) as f64 {
                 return Err(DomainError::Turns { name, min, max });
             }
         }
@@ -167,21 +190,27 @@ impl Domain {
         for axis in &axes {
             let parts = axis.parts();
             if axis.has_width() {
-                whole *= parts.iter().map(|(_, width)| width).sum::<f64>();
+                whole *= parts.iter().map(|part| 2.0 * part.half).sum::<f64>();
             }
             first = first
                 .iter()
-                .flat_map(|sides| {
-                    parts.iter().map(move |(part, _)| [&sides[..], &[*part]].concat())
-                })
+                .flat_map(|sides| parts.iter().map(move |part| [&sides[..], &[*part]].concat()))
                 .collect();
         }
-        Ok(Self { asked, axes, wide, first, whole })
+        Ok(Self { sections, axes, wide, first, whole })
     }
 
-    /// What is asked of its poses.
-    pub fn asked(&self) -> Asked {
-        self.asked
+    /// What is measured.
+    pub fn sections(&self) -> Sections {
+        self.sections
+    }
+
+    pub(super) fn asked(&self) -> Asked {
+        match self.sections {
+            Sections::Whole => Asked::Whole,
+            Sections::Upper => Asked::Upper,
+            Sections::Lower => Asked::Lower,
+        }
     }
 
     /// Its axes, in the order of the coordinates.
@@ -203,22 +232,23 @@ impl Domain {
     pub fn pose(&self, shares: &[f64]) -> Vec<f64> {
         assert_eq!(shares.len(), self.wide.len(), "a share for every axis with a width");
         let mut pose: Vec<f64> = self.axes.iter().map(|axis| axis.min).collect();
-        for (&axis, &share) in self.wide.iter().zip(shares) {
-            let DomainAxis { min, max, tilt, .. } = self.axes[axis];
-            let parts = self.axes[axis].parts();
-            let mut left = share * parts.iter().map(|(_, width)| width).sum::<f64>();
+        for (&number, &share) in self.wide.iter().zip(shares) {
+            let axis = &self.axes[number];
+            let parts = axis.parts();
+            let mut left = share * parts.iter().map(|part| 2.0 * part.half).sum::<f64>();
             let mut parts = parts.into_iter().peekable();
-            while let Some((side, width)) = parts.next() {
-                if left > width && parts.peek().is_some() {
-                    left -= width;
+            while let Some(part) = parts.next() {
+                if left > 2.0 * part.half && parts.peek().is_some() {
+                    left -= 2.0 * part.half;
                     continue;
                 }
-                let at = side.middle - side.half + left;
-                let value = match (side.piece, tilt) {
-                    (Some(piece), Some(tilt)) => piece.angle(at) - tilt,
-                    _ => at,
+                let value = match (part.piece, &axis.kind) {
+                    (Some(piece), Kind::Tilt(shift)) => {
+                        piece.angle(part.middle - part.half + left) - shift
+                    }
+                    _ => axis.min + share * (axis.max - axis.min),
                 };
-                pose[axis] = value.clamp(min, max);
+                pose[number] = value.clamp(axis.min, axis.max);
                 break;
             }
         }
@@ -267,23 +297,26 @@ impl Domain {
     }
 }
 
-/// The coordinates that are asked for, each at its home value.
-fn axes(manipulator: &Manipulator, asked: Asked) -> Vec<DomainAxis> {
+/// The coordinates of what is measured, each at its home value.
+fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
+    let cuts = manipulator.cuts();
     let lower = manipulator.task().lower_count;
-    let task = manipulator.task_coordinates().iter().map(|c| DomainAxis {
-        name: c.name.to_owned(),
-        quantity: c.quantity,
-        min: c.home,
-        max: c.home,
-        tilt: match c.name {
-            "xi" => Some(0.0),
-            "nu" => Some(FRAC_PI_2 - c.home),
-            _ => None,
-        },
-    });
-    match asked {
-        Asked::Whole => task.collect(),
-        Asked::Upper => task.skip(lower).collect(),
-        Asked::Lower => task.take(lower).collect(),
-    }
+    let kind = |number: usize, name: &str, home: f64| match name {
+        _ if sections == Sections::Lower && number >= lower => {
+            Kind::Cut(cuts[number - lower].clone())
+        }
+        "xi" => Kind::Tilt(0.0),
+        "nu" => Kind::Tilt(FRAC_PI_2 - home),
+        _ => Kind::Plain,
+    };
+    let coordinates = sections.coordinates(manipulator).into_iter().enumerate();
+    coordinates
+        .map(|(number, c)| DomainAxis {
+            kind: kind(number, &c.name, c.home),
+            name: c.name,
+            quantity: c.quantity,
+            min: c.home,
+            max: c.home,
+        })
+        .collect()
 }
