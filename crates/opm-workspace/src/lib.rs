@@ -11,6 +11,7 @@ mod conditioning;
 mod extent;
 mod grid;
 mod ordered;
+pub mod measure;
 mod progress;
 mod replay;
 mod set;
