@@ -319,6 +319,9 @@ pub struct TrajectoryArgs {
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
+/// With -o points.npy the points are a structured NumPy array, float64, of the coordinates or joints
+/// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
+///
 /// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
 /// is nothing to do. `opm merge` joins the parts, and takes --axes, --color and --scalars.
 ///
@@ -372,8 +375,8 @@ pub struct WorkspaceArgs {
 /// How points are recorded.
 #[derive(Debug, clap::Args)]
 pub struct CloudArgs {
-    /// Record the points in this MCAP file
-    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    /// Record the points in this file: MCAP, an array for NumPy, or a cloud for mesh tools
+    #[arg(short, long, value_name = "OUT.mcap|.npy|.ply", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// What x, y and z of the cloud are: three task coordinates, or `tip`, the platform's point
     #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]

@@ -6,8 +6,8 @@ use crate::pose::find;
 use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
-use opm_mcap::CloudLayout;
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
+use opm_mcap::{CloudLayout, Packer};
 use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
 
 /// The name of the platform's point among the axes.
@@ -150,9 +150,9 @@ impl<'a> Cloud<'a> {
         source.points(
             progress,
             |hits, points: &mut Points<'_>| points.add(hits),
-            || Points::new(self, &columns),
+            || Points::new(self, &columns, None),
             |mut points| {
-                for value in points.take()?.into_iter().flat_map(|(_, values)| values) {
+                for value in points.take()?.into_iter().flat_map(|portion| portion.values) {
                     let [low, high] = range.unwrap_or([value; 2]);
                     range = Some([low.min(value), high.max(value)]);
                 }
@@ -216,48 +216,26 @@ fn column(manipulator: &Manipulator, name: &str, flag: &str) -> Result<Named, Fa
         })
 }
 
-/// Reachable poses, packed: points that share all but the first coordinate share the rest.
+/// Points of one slice: values, or bytes of a cloud where there is a packer.
 #[derive(Default)]
-pub struct Poses {
-    first: Vec<f64>,
-    /// Where each run of `first` ends.
-    ends: Vec<usize>,
-    others: Vec<f64>,
-    width: usize,
+pub struct Portion {
+    pub slice: u64,
+    pub values: Vec<f64>,
+    pub packed: Vec<u8>,
 }
 
-impl Poses {
-    pub fn add(&mut self, hits: &Hits<'_>) {
-        self.first.extend(hits.first);
-        self.ends.push(self.first.len());
-        self.others.extend(hits.others);
-        self.width = hits.others.len();
-    }
-
-    pub fn each(&self, mut visit: impl FnMut(&[f64])) {
-        let mut pose = vec![0.0; self.width + 1];
-        let mut start = 0;
-        for (number, &end) in self.ends.iter().enumerate() {
-            let others = number * self.width..(number + 1) * self.width;
-            pose[1..].copy_from_slice(&self.others[others]);
-            for &first in &self.first[start..end] {
-                pose[0] = first;
-                visit(&pose);
-            }
-            start = end;
-        }
-    }
-}
-
-/// Rows of a cloud in the making, in runs of one slice.
+/// Points of a cloud in the making, in portions of one slice.
 pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
+    packer: Option<&'a Packer>,
+    /// All columns are task coordinates.
+    plain: bool,
     joints: Joints<'a>,
     pose: Vec<f64>,
-    runs: Vec<(u64, Vec<f64>)>,
-    /// A pose that the sweep found and inverse kinematics did not.
-    lost: Option<Vec<f64>>,
+    portions: Vec<Portion>,
+    /// A pose that the sweep found and inverse kinematics did not, or a value that is no number.
+    wrong: Option<Failure>,
 }
 
 /// Buffers for what inverse kinematics finds.
@@ -271,7 +249,7 @@ enum Joints<'a> {
 }
 
 impl<'a> Points<'a> {
-    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column]) -> Self {
+    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packer: Option<&'a Packer>) -> Self {
         let manipulator = cloud.manipulator;
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
         let joints = match (cloud.modes, cloud.limit) {
@@ -285,7 +263,9 @@ impl<'a> Points<'a> {
                 Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
             }
         };
-        Self { cloud, columns, joints, pose: Vec::new(), runs: Vec::new(), lost: None }
+        let plain = columns.iter().all(|column| matches!(column, Column::Task(_)));
+        let (pose, portions) = (Vec::new(), Vec::new());
+        Self { cloud, columns, packer, plain, joints, pose, portions, wrong: None }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
@@ -293,11 +273,48 @@ impl<'a> Points<'a> {
         pose.clear();
         pose.push(0.0);
         pose.extend(hits.others);
-        for &first in hits.first {
-            pose[0] = first;
-            self.point(hits.slice, &pose);
+        match self.packer {
+            Some(packer) if self.plain => self.line(packer, hits, &pose),
+            _ => {
+                for &first in hits.first {
+                    pose[0] = first;
+                    self.point(hits.slice, &pose);
+                }
+                self.pack();
+            }
         }
         self.pose = pose;
+    }
+
+    /// Points that differ in the first coordinate, and have nothing but coordinates.
+    fn line(&mut self, packer: &Packer, hits: &Hits<'_>, pose: &[f64]) {
+        let value = |column: &Column| match *column {
+            Column::Task(number) => pose[number],
+            _ => unreachable!("plain points are made of task coordinates"),
+        };
+        let row: Vec<f64> = self.columns.iter().map(value).collect();
+        let first = self.columns.iter().position(|column| *column == Column::Task(0));
+        self.open(hits.slice);
+        let Some(portion) = self.portions.last_mut() else { return };
+        if let Err(error) = packer.pack_line(&row, first, hits.first, &mut portion.packed) {
+            self.wrong.get_or_insert(Failure::at("a point", &error));
+        }
+    }
+
+    /// Packs the values so far.
+    fn pack(&mut self) {
+        let (Some(packer), Some(portion)) = (self.packer, self.portions.last_mut()) else { return };
+        if let Err(error) = packer.pack(&portion.values, &mut portion.packed) {
+            self.wrong.get_or_insert(Failure::at("a point", &error));
+        }
+        portion.values.clear();
+    }
+
+    /// Makes the last portion one of this slice.
+    fn open(&mut self, slice: u64) {
+        if self.portions.last().is_none_or(|last| last.slice != slice) {
+            self.portions.push(Portion { slice, ..Default::default() });
+        }
     }
 
     pub fn point(&mut self, slice: u64, pose: &[f64]) {
@@ -322,13 +339,15 @@ impl<'a> Points<'a> {
             _ => true,
         };
         if !found {
-            self.lost.get_or_insert_with(|| pose.to_vec());
+            self.wrong.get_or_insert_with(|| {
+                Failure::Work(format!(
+                    "the sweep counts the pose {pose:?}, but inverse kinematics does not reach it"
+                ))
+            });
             return;
         }
-        if self.runs.last().is_none_or(|(last, _)| *last != slice) {
-            self.runs.push((slice, Vec::new()));
-        }
-        let Some((_, row)) = self.runs.last_mut() else { return };
+        self.open(slice);
+        let Some(Portion { values: row, .. }) = self.portions.last_mut() else { return };
         let mut tip = None;
         for column in self.columns {
             row.push(match (*column, &self.joints) {
@@ -355,13 +374,9 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The rows so far; the next ones start anew.
-    pub fn take(&mut self) -> Result<Vec<(u64, Vec<f64>)>, Failure> {
-        match &self.lost {
-            None => Ok(std::mem::take(&mut self.runs)),
-            Some(pose) => Err(Failure::Work(format!(
-                "the sweep counts the pose {pose:?}, but inverse kinematics does not reach it"
-            ))),
-        }
+    /// The points so far; the next ones start anew.
+    pub fn take(&mut self) -> Result<Vec<Portion>, Failure> {
+        self.pack();
+        self.wrong.take().map_or_else(|| Ok(std::mem::take(&mut self.portions)), Err)
     }
 }

@@ -57,7 +57,7 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     if let Some(path) = &args.cloud.output {
         let inputs: Vec<&Path> = parts.iter().map(|part| &*part.path).collect();
         whole.loaded.refuse_as_output(path, &inputs)?;
-        Recorder::check(grid)?;
+        Recorder::check(path, grid)?;
         let recorder = Recorder::create(path)?;
         let files = parts.iter().map(|part| part.path.clone()).collect();
         work.record(recorder, wishes, &run, &found, &Source::Shards { grid, files })?;

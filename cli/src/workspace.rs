@@ -34,7 +34,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let wishes = Wishes::new(&args.cloud, &manipulator)?;
     if let Some(path) = &args.cloud.output {
         loaded.refuse_as_output(path, &[])?;
-        given.as_ref().map_or(Ok(()), Recorder::check)?;
+        given.as_ref().map_or(Ok(()), |grid| Recorder::check(path, grid))?;
     }
     let recorder = match (&args.cloud.output, args.shard) {
         (Some(path), None) => Some(Recorder::create(path)?),
@@ -93,7 +93,7 @@ impl Work<'_> {
         source: &Source<'_>,
     ) -> Result<(), Failure> {
         let cloud = Cloud::new(wishes, run);
-        let total = cloud.passes() * run.grid.poses();
+        let total = recorder.passes(&cloud) * run.grid.poses();
         let job = || recorder.record(run, &cloud, source, found, self.progress);
         let path = self.watch("recording", total, job)?;
         self.output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));

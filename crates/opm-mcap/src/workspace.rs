@@ -180,6 +180,24 @@ impl<W: Sink> WorkspaceRecorder<W> {
         self.settle(result)
     }
 
+    /// As [`overview`](Self::overview), of points that a [`Packer`](crate::Packer) of the layout packed.
+    ///
+    /// # Errors
+    /// No whole number of points, too many, or after the first slice.
+    pub fn overview_packed(&mut self, points: &[u8]) -> Result<(), RecordError> {
+        let result = self.try_overview_packed(points);
+        self.settle(result)
+    }
+
+    /// As [`push`](Self::push), of points that a [`Packer`](crate::Packer) of the layout packed.
+    ///
+    /// # Errors
+    /// No whole number of points, and as [`push`](Self::push).
+    pub fn push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
+        let result = self.try_push_packed(slice, points);
+        self.settle(result)
+    }
+
     /// Completes the recording: `result` is the last metadata record, with `complete = "true"`
     /// added. Only now does the file get its name.
     ///
@@ -207,18 +225,63 @@ impl<W: Sink> WorkspaceRecorder<W> {
     }
 
     fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
-        if self.open.is_some() {
-            return Err(RecordError::OverviewClosed);
-        }
-        let found = (self.encoder.len() + rows.len() / self.encoder.columns()) as u64;
-        let expected = self.plan.overview_points;
-        if found > expected {
-            return Err(RecordError::Count { what: "overview", found, expected });
-        }
+        self.announce((rows.len() / self.encoder.packer().columns()) as u64)?;
         self.encoder.push(rows)
     }
 
+    fn try_overview_packed(&mut self, points: &[u8]) -> Result<(), RecordError> {
+        let more = self.whole_points(points)?;
+        self.announce(more)?;
+        self.encoder.push_packed(points);
+        Ok(())
+    }
+
+    /// Checks that so many more points belong to the overview.
+    fn announce(&self, more: u64) -> Result<(), RecordError> {
+        if self.open.is_some() {
+            return Err(RecordError::OverviewClosed);
+        }
+        let (found, expected) = (self.encoder.len() as u64 + more, self.plan.overview_points);
+        if found > expected {
+            return Err(RecordError::Count { what: "overview", found, expected });
+        }
+        Ok(())
+    }
+
+    /// How many points are in so many bytes.
+    fn whole_points(&self, points: &[u8]) -> Result<u64, RecordError> {
+        let stride = self.encoder.packer().stride();
+        if points.len().is_multiple_of(stride) {
+            return Ok((points.len() / stride) as u64);
+        }
+        let bytes = points.len();
+        Err(RecordError::Layout(format!("{bytes} bytes are no whole number of points of {stride}")))
+    }
+
     fn try_push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
+        let columns = self.encoder.packer().columns();
+        let more = (rows.len() / columns) as u64;
+        self.push_parts(slice, more, columns, rows, |encoder, rows| encoder.push(rows))
+    }
+
+    fn try_push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
+        let more = self.whole_points(points)?;
+        let stride = self.encoder.packer().stride();
+        self.push_parts(slice, more, stride, points, |encoder, points| {
+            encoder.push_packed(points);
+            Ok(())
+        })
+    }
+
+    /// Adds so many points of a slice, of which each is `width` of `points`, as long as messages allow.
+    fn push_parts<T>(
+        &mut self,
+        slice: u64,
+        more: u64,
+        width: usize,
+        points: &[T],
+        push: impl Fn(&mut CloudEncoder, &[T]) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
         let mut open = self.open_slices()?;
         if slice < open.slice || slice >= self.plan.slices {
             let (first, end) = (open.slice, self.plan.slices);
@@ -227,16 +290,15 @@ impl<W: Sink> WorkspaceRecorder<W> {
         if slice > open.slice {
             open = self.close_until(open, slice)?;
         }
-        let columns = self.encoder.columns();
-        self.pushed += (rows.len() / columns) as u64;
-        let mut rest = rows;
+        self.pushed += more;
+        let mut rest = points;
         while !rest.is_empty() {
             if self.encoder.len() == self.plan.message_points {
                 open = self.write_part(open)?;
             }
-            let room = (self.plan.message_points - self.encoder.len()) * columns;
+            let room = (self.plan.message_points - self.encoder.len()) * width;
             let (now, later) = rest.split_at(room.min(rest.len()));
-            self.encoder.push(now)?;
+            push(&mut self.encoder, now)?;
             rest = later;
         }
         Ok(())
