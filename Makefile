@@ -33,7 +33,7 @@ test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's re
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
 	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
-	CARGO="$(CARGO)" PEERS_PYTHON=$(PEERS_VENV)/bin/python benches/report.sh > target/BENCHMARKS.md
+	CARGO="$(CARGO)" PEERS_PYTHON="$(CURDIR)/$(PEERS_VENV)/bin/python" benches/report.sh > target/BENCHMARKS.md
 	mv target/BENCHMARKS.md BENCHMARKS.md
 	cat BENCHMARKS.md
 
