@@ -6,11 +6,15 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod command;
+mod decomposition;
 mod error;
 mod forward;
+mod html;
 mod interrupt;
 mod manipulator;
 mod rows;
+mod screws;
+mod solids;
 mod solutions;
 mod sweep;
 mod velocity;
@@ -22,11 +26,15 @@ mod _native {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
+    use crate::decomposition::{Decomposition, Intersection, LegSplit};
+    #[pymodule_export]
     use crate::error::OpmError;
     #[pymodule_export]
     use crate::forward::Assembly;
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
+    #[pymodule_export]
+    use crate::solids::Solid;
     #[pymodule_export]
     use crate::solutions::Solutions;
     #[pymodule_export]

@@ -9,13 +9,19 @@ closed form; :func:`sweep` finds which poses of a grid are reachable. Arrays are
 array([ True])
 """
 
+from typing import TYPE_CHECKING, Any
+
 from . import examples
 from ._native import (
     Assembly,
+    Decomposition,
+    Intersection,
+    LegSplit,
     Manipulator,
     Motion,
     OpmError,
     Singularity,
+    Solid,
     Solutions,
     Sweep,
     TaskCoordinate,
@@ -25,14 +31,35 @@ from ._native import (
 
 __all__ = [
     "Assembly",
+    "Decomposition",
+    "Intersection",
+    "LegSplit",
     "Manipulator",
     "Motion",
     "OpmError",
     "Singularity",
+    "Solid",
     "Solutions",
     "Sweep",
     "TaskCoordinate",
     "__version__",
     "examples",
+    "plot",
     "sweep",
 ]
+
+if TYPE_CHECKING:
+    from . import plot
+
+
+def __getattr__(name: str) -> Any:
+    # Only when it is asked for: it needs NumPy, for which the command line has no use.
+    if name == "plot":
+        from importlib import import_module
+
+        return import_module(".plot", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -51,11 +51,11 @@ mod joints;
 mod problem;
 mod reader;
 mod units;
-#[cfg(test)]
-pub(super) mod writer;
+mod writer;
 
 pub use problem::{FileErrors, Place, Places, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
+pub use writer::{Digits, write};
 
 pub(crate) use reader::{LARGEST, Reader, Table, Value};
 
