@@ -17,6 +17,7 @@ mod screws;
 mod solids;
 mod solutions;
 mod sweep;
+mod trajectory;
 mod velocity;
 
 use pyo3::prelude::*;
@@ -39,6 +40,8 @@ mod _native {
     use crate::solutions::Solutions;
     #[pymodule_export]
     use crate::sweep::{Sweep, sweep};
+    #[pymodule_export]
+    use crate::trajectory::{Trajectory, Violation, trajectory};
     #[pymodule_export]
     use crate::velocity::{Motion, Singularity};
     use pyo3::prelude::*;

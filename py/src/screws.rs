@@ -78,8 +78,8 @@ impl Manipulator {
             })?;
         // By way of a file, so that it is checked as any other, can be saved, and crosses processes.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
-        let mechanism = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?.mechanism;
-        Self::compile(mechanism, text, name.to_owned())
+        let file = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?;
+        Self::compile(file, text, name.to_owned())
     }
 
     /// The unit screws of every leg's joints at home, a row a freedom.

@@ -78,6 +78,20 @@ pub fn units(manipulator: &Manipulator) -> BTreeMap<String, &'static str> {
     joints.chain(imaginary).map(|(name, quantity)| (name.clone(), quantity.unit())).collect()
 }
 
+/// The entries of one name, along the last axis of whichever table has it: a view.
+pub fn column<'py>(
+    tables: [(&[String], &Bound<'py, PyAny>); 2],
+    name: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    for (names, table) in tables {
+        if let Some(number) = names.iter().position(|known| known == name) {
+            return table.get_item((PyEllipsis::get(table.py()), number));
+        }
+    }
+    let known = tables.map(|(names, _)| names.join(", ")).join(", ");
+    Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
+}
+
 #[pymethods]
 impl Solutions {
     fn __len__(&self) -> usize {
@@ -86,22 +100,17 @@ impl Solutions {
 
     /// The values of one joint or imaginary joint: a view.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let find = |names: &[String]| names.iter().position(|known| known == name);
-        let (table, column) = match (find(&self.joint_names), find(&self.imaginary_names)) {
-            (Some(column), _) => (&self.joints, column),
-            (None, Some(column)) => (&self.imaginary, column),
-            (None, None) => {
-                let known = [&self.joint_names[..], &self.imaginary_names].concat().join(", ");
-                return Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")));
-            }
-        };
-        table.bind(py).get_item((PyEllipsis::get(py), column))
+        let tables = [
+            (&self.joint_names[..], self.joints.bind(py).as_any()),
+            (&self.imaginary_names[..], self.imaginary.bind(py).as_any()),
+        ];
+        column(tables, name)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (poses, mode) = (self.rows, &self.mode);
         let [reachable, within] = [&self.reachable, &self.within_limits]
-            .map(|answers| Ok::<usize, PyErr>(answers.bind(py).call_method0("sum")?.extract()?));
+            .map(|answers| answers.bind(py).call_method0("sum")?.extract::<usize>());
         let (reachable, within) = (reachable?, within?);
         let of = match self.modes.len() {
             modes if mode == "all" => format!("{modes} modes"),

@@ -54,7 +54,7 @@ impl Screw {
     /// With a unit vector along the axis; `Err` where there is none.
     fn normalized(&self) -> Result<Self, ScrewError> {
         let components = self.to_vector();
-        if let Some(&odd) = components.iter().find(|c| !(c.abs() <= FARTHEST)) {
+        if let Some(&odd) = components.iter().find(|c| c.is_nan() || c.abs() > FARTHEST) {
             return Err(ScrewError::Component(odd));
         }
         let largest = components.amax();
