@@ -1,7 +1,8 @@
 """Kinematics and workspaces of overconstrained parallel manipulators with partial subspaces.
 
 From a mechanism file :class:`Manipulator` finds the decomposition with imaginary joints, and solves inverse kinematics in
-closed form; :func:`sweep` finds which poses of a grid are reachable. Arrays are float64, numbers SI units and radians.
+closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, and :mod:`plot`
+draws. Arrays are float64, numbers SI units and radians.
 
 >>> import opm_kinematics as opm
 >>> m = opm.examples.load("plano-spherical-5dof")
@@ -25,8 +26,11 @@ from ._native import (
     Solutions,
     Sweep,
     TaskCoordinate,
+    Trajectory,
+    Violation,
     __version__,
     sweep,
+    trajectory,
 )
 
 __all__ = [
@@ -42,10 +46,13 @@ __all__ = [
     "Solutions",
     "Sweep",
     "TaskCoordinate",
+    "Trajectory",
+    "Violation",
     "__version__",
     "examples",
     "plot",
     "sweep",
+    "trajectory",
 ]
 
 if TYPE_CHECKING:

@@ -18,11 +18,14 @@ __all__ = [
     "Solutions",
     "Sweep",
     "TaskCoordinate",
+    "Trajectory",
+    "Violation",
     "__version__",
     "command",
     "example",
     "examples",
     "sweep",
+    "trajectory",
 ]
 
 __version__: str
@@ -541,6 +544,151 @@ def sweep(
     ------
     OpmError
         An axis that is none, ends that are not numbers or reversed, an unknown mode.
+    """
+
+@final
+class Trajectory:
+    """A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate."""
+
+    @property
+    def name(self) -> str:
+        """Of the motion."""
+    @property
+    def mode(self) -> str:
+        """The working mode."""
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(n,), seconds."""
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(n, d): task coordinates, metres and radians."""
+    @property
+    def pose_rates(self) -> NDArray[np.float64]:
+        """(n, d): their first derivatives by time."""
+    @property
+    def pose_accelerations(self) -> NDArray[np.float64]:
+        """(n, d): their second derivatives."""
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """(n, k): every joint coordinate; angles go on across half turns."""
+    @property
+    def joint_rates(self) -> NDArray[np.float64]:
+        """(n, k)."""
+    @property
+    def joint_accelerations(self) -> NDArray[np.float64]:
+        """(n, k)."""
+    @property
+    def imaginary(self) -> NDArray[np.float64]:
+        """(n, j): every imaginary joint."""
+    @property
+    def imaginary_rates(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def imaginary_accelerations(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def condition(self) -> NDArray[np.float64]:
+        """(n,): condition number of the actuated joints' Jacobian by the platform's twist."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): in reach, limits apart."""
+    @property
+    def within_limits(self) -> NDArray[np.bool_]:
+        """(n,): in reach, and all joints within their limits."""
+    @property
+    def regular(self) -> NDArray[np.bool_]:
+        """(n,): in reach, and every joint has its rate."""
+    @property
+    def violations(self) -> list[Violation]:
+        """What it cannot follow, found between the samples too, in the order of time."""
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the columns of `joints`."""
+    @property
+    def imaginary_names(self) -> list[str]:
+        """Of the columns of `imaginary`."""
+    @property
+    def units(self) -> dict[str, str]:
+        """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
+    @property
+    def rows(self) -> int:
+        """n."""
+    def __len__(self) -> int: ...
+    def __getitem__(self, name: str, /) -> NDArray[np.float64]:
+        """The values of one joint or imaginary joint, (n,): a view."""
+
+@final
+class Violation:
+    """A part of a motion that the mechanism cannot follow, or a singularity on its way."""
+
+    @property
+    def kind(self) -> str:
+        """``"reach"``, ``"limit"`` or ``"singularity"``."""
+    @property
+    def start(self) -> float:
+        """Seconds."""
+    @property
+    def end(self) -> float:
+        """Seconds; of a singularity, as `start`."""
+    @property
+    def worst(self) -> float:
+        """When it is worst, seconds."""
+    @property
+    def amount(self) -> float:
+        """By how much, there."""
+    @property
+    def unit(self) -> str:
+        """Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure."""
+    @property
+    def leg(self) -> str | None: ...
+    @property
+    def joint(self) -> str | None:
+        """The joint that is past its limit."""
+    @property
+    def section(self) -> str | None:
+        """``"lower"`` or ``"upper"``: what is out of reach or singular."""
+    @property
+    def bound(self) -> str | None:
+        """``"lowest"`` or ``"highest"``: the limit that is passed."""
+    @property
+    def singularity(self) -> str | None:
+        """``"serial"`` or ``"parallel"``."""
+    @property
+    def message(self) -> str:
+        """All of it, as a line."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+def trajectory(
+    manipulator: Manipulator,
+    motion: str | PathLike[str] | ArrayLike,
+    /,
+    *,
+    times: Sequence[float] | NDArray[np.float64] | None = None,
+    rate: float | None = None,
+    mode: str | None = None,
+) -> Trajectory:
+    """Follow a motion of the platform.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    motion : path, str or (w, d) array_like
+        A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
+        coordinate a column, which a natural cubic spline goes through.
+    times : (w,) sequence of float, optional
+        When the waypoints are, seconds, increasing; three at least.
+    rate : float, optional
+        Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+    mode : str, optional
+        ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    OpmError
+        Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
     """
 
 def examples() -> list[str]:

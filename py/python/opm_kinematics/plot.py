@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._native import Manipulator, OpmError, Solid, Solutions, Sweep
+from ._native import Manipulator, OpmError, Solid, Solutions, Sweep, Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -211,22 +211,25 @@ def imaginary(
 
 
 def joints(
-    times: ArrayLike,
-    solutions: Solutions,
+    followed: Trajectory | Solutions,
     names: Sequence[str] | None = None,
     *,
+    rates: bool = False,
+    times: ArrayLike | None = None,
     ax: Axes | Sequence[Axes] | None = None,
 ) -> list[Axes]:
     """Draw joints as curves over time.
 
     Parameters
     ----------
-    times : (n,) array_like
-        Seconds.
-    solutions : Solutions
-        Of one working mode, a row a time.
+    followed : Trajectory or Solutions
+        Solutions of one working mode need `times`.
     names : sequence of str, optional
         Joints and imaginary joints; all imaginary ones if not given.
+    rates : bool
+        Of a trajectory: their rates instead of their values.
+    times : (n,) array_like, optional
+        Seconds.
     ax : Axes or sequence of them, optional
         What to draw on, one for lengths and one for angles where there are both; a new figure if not given.
 
@@ -235,11 +238,25 @@ def joints(
     list of Axes
         Lengths, then angles. Curves have gaps where the motion is out of reach.
     """
-    names = list(names) if names is not None else solutions.imaginary_names
-    t = np.asarray(times, dtype=np.float64)
-    if solutions.mode == "all" or t.shape != (len(solutions),):
-        raise OpmError(f"times of shape {t.shape} for {solutions!r}, expected a time a pose, of one working mode")
-    return _curves(t, {name: solutions[name] for name in names}, {name: solutions.units[name] for name in names}, ax)
+    names = list(names) if names is not None else followed.imaginary_names
+    units = {name: followed.units[name] for name in names}
+    if isinstance(followed, Trajectory):
+        t = followed.times if times is None else np.asarray(times, dtype=np.float64)
+        if rates:
+            columns = [*followed.joint_names, *followed.imaginary_names]
+            table = np.hstack([followed.joint_rates, followed.imaginary_rates])
+            curves = {name: table[:, columns.index(name)] for name in names}
+            units = {name: f"{unit}/s" for name, unit in units.items()}
+        else:
+            curves = {name: followed[name] for name in names}
+    else:
+        t = np.asarray(times if times is not None else [], dtype=np.float64)
+        if rates or followed.mode == "all":
+            raise OpmError(f"{followed!r} has no curves of this kind, expected a Trajectory, or one working mode")
+        curves = {name: followed[name] for name in names}
+    if t.shape != (len(followed),):
+        raise OpmError(f"times of shape {t.shape} for {followed!r}, expected a time a pose")
+    return _curves(t, curves, units, ax)
 
 
 def _curves(
