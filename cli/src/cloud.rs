@@ -1,13 +1,14 @@
 //! What each point of a recorded cloud is made of.
 
-use crate::args::WorkspaceArgs;
+use crate::args::CloudArgs;
 use crate::failure::Failure;
 use crate::pose::find;
+use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::CloudLayout;
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress, Sweep};
+use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
@@ -37,7 +38,7 @@ pub struct Wishes {
 
 impl Wishes {
     /// From the flags, each of which is checked.
-    pub fn new(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
+    pub fn new(args: &CloudArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
         let named = |name: &String, flag| column(manipulator, name, flag);
         let color = args.color.as_ref().map(|name| named(name, "--color")).transpose()?;
         let scalars: Option<Vec<Named>> = (args.scalars.as_ref())
@@ -130,7 +131,7 @@ impl<'a> Cloud<'a> {
     /// limits or what there is.
     pub fn color_range(
         &self,
-        sweep: &Sweep<'_>,
+        source: &Source<'_>,
         found: &Count,
         grid: &Grid,
         progress: &Progress,
@@ -146,7 +147,7 @@ impl<'a> Cloud<'a> {
         }
         let columns = [self.color.1];
         let mut range: Option<[f64; 2]> = None;
-        sweep.points::<_, Failure>(
+        source.points(
             progress,
             |hits, points: &mut Points<'_>| points.add(hits),
             || Points::new(self, &columns),

@@ -15,6 +15,7 @@ mod inspect;
 mod lines;
 mod linkage;
 mod load;
+mod merge;
 mod motion;
 mod output;
 mod plot;
@@ -22,6 +23,8 @@ mod pose;
 mod progress;
 mod record;
 mod scene;
+mod shard;
+mod source;
 mod text;
 mod trajectory;
 mod transform;
@@ -61,6 +64,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Merge(command) => merge::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),

@@ -9,6 +9,7 @@ mod inspect;
 mod linkage;
 mod plot;
 mod run;
+mod shard;
 mod small;
 mod trajectory;
 mod velocity;
