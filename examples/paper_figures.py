@@ -37,7 +37,7 @@ def coordinates(
                 panel.plot(times, values[:, column], label=coordinate.name)
         panel.set(xlabel="t (s)", ylabel=unit + per)
         panel.legend(frameon=False)
-        panel.margins(x=0)
+        panel.margins(x=0, y=0.12)
 
 
 def panels(count: int) -> tuple[Figure, list[Axes]]:
@@ -147,7 +147,7 @@ def figure_16() -> Figure:
 
 def figure_17() -> Figure:
     """Workspace of the 3-DoF manipulator, phi = 0, 120, ..., 600 degrees: it moves along with the helical joint."""
-    turned = opm.sweep(HELICAL, x=(-1.0, 1.0, 161), y=(-1.0, 1.0, 161), phi=(0.0, np.radians(600), 6))
+    turned = opm.sweep(HELICAL, x=(-0.6, 0.6, 161), y=(-0.6, 0.6, 161), phi=(0.0, np.radians(600), 6))
     figure = plot.workspace(turned, slices="phi")[0].figure
     assert isinstance(figure, Figure)
     return figure

@@ -271,7 +271,7 @@ def _curves(
         for name in of_kind:
             panel.plot(times, curves[name], label=name, linewidth=1.2)
         panel.set(xlabel="t (s)", ylabel=kind)
-        panel.margins(x=0)
+        panel.margins(x=0, y=0.12)
         panel.legend(ncols=min(len(of_kind), 3), fontsize="small", frameon=False)
     return panels
 
