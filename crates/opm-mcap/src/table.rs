@@ -131,7 +131,7 @@ fn npy(columns: &[&str], points: u64) -> Vec<u8> {
 /// The header of a PLY file.
 fn ply(layout: &CloudLayout, points: u64, run: &Metadata) -> Vec<u8> {
     // Lines of printable characters, names of one word.
-    let line = |text: &str| text.replace(|c: char| c.is_control(), " ");
+    let line = |text: &str| text.replace(char::is_control, " ");
     let word = |text: &str| text.replace(|c: char| c.is_control() || c.is_whitespace(), "_");
     let mut text = "ply\nformat binary_little_endian 1.0\n".to_owned();
     for (key, value) in run {

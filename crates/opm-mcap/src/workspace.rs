@@ -261,7 +261,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
     fn try_push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
         let columns = self.encoder.packer().columns();
         let more = (rows.len() / columns) as u64;
-        self.push_parts(slice, more, columns, rows, |encoder, rows| encoder.push(rows))
+        self.push_parts(slice, more, columns, rows, CloudEncoder::push)
     }
 
     fn try_push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
