@@ -7,6 +7,7 @@ mod fk;
 mod ik;
 mod inspect;
 mod linkage;
+mod measure;
 mod plot;
 mod run;
 mod shard;
