@@ -2,6 +2,7 @@
 
 use crate::cloud::{Cloud, Points, Poses};
 use crate::failure::Failure;
+use crate::kind::{SetRecording, Study, pose_boundary};
 use crate::text::count;
 use crate::workspace::Run;
 use opm_core::mechanism::file::FileUnits;
@@ -12,6 +13,9 @@ use std::path::{Path, PathBuf};
 
 /// More slices than this play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
+
+/// Points between two looks at whether somebody pressed Ctrl-C.
+const PORTION: u64 = 1 << 12;
 
 /// A file that is open for a recording.
 pub struct Recorder {
@@ -49,6 +53,7 @@ impl Recorder {
         cloud: &Cloud<'_>,
         sweep: &Sweep<'_>,
         found: &Count,
+        study: &Study,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
         let color_range = cloud.color_range(sweep, found, run.grid, progress)?;
@@ -72,8 +77,11 @@ impl Recorder {
             other => other,
         };
 
-        let every = recorder.overview_every();
         let together = together(run.grid);
+        if let Some(lines) = pose_boundary(run.grid, study, together, |pose| cloud.place(pose)) {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
         let mut number = 0;
         let mut overview = Points::new(cloud, &columns);
         sweep
@@ -105,6 +113,56 @@ impl Recorder {
                 },
             )
             .map_err(interrupted)?;
+        recorder.finish(&result(run, found)).map_err(failed)?;
+        Ok(self.path.clone())
+    }
+}
+
+impl Recorder {
+    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
+    pub fn record_set(
+        mut self,
+        run: &Run<'_>,
+        set: &SetRecording<'_>,
+        found: &Count,
+        progress: &Progress,
+    ) -> Result<PathBuf, Failure> {
+        let failed = |error: RecordError| Failure::at(self.path.display(), &error);
+        let mut about = describe(run, found);
+        about.insert("set".to_owned(), set.set_axes());
+        let workspace = Workspace {
+            layout: set.layout(found),
+            mechanism_name: &run.loaded.file_name,
+            mechanism: run.loaded.text.as_bytes(),
+            run: about,
+            points: found.reachable,
+            slices: set.slices,
+        };
+        let Some(file) = self.file.take() else { return Ok(self.path.clone()) };
+        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        if let Some(lines) = set.boundary() {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
+        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+            false => Ok(()),
+            true => Err(Failure::Interrupted(format!(
+                "interrupted; what was recorded is in {}",
+                partial(&self.path).display()
+            ))),
+        };
+        let mut number = 0;
+        set.points(|_, row| {
+            going(number)?;
+            let wanted = number % every == 0;
+            number += 1;
+            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+        })?;
+        set.points(|slice, row| {
+            number += 1;
+            going(number)?;
+            recorder.push(slice, row).map_err(failed)
+        })?;
         recorder.finish(&result(run, found)).map_err(failed)?;
         Ok(self.path.clone())
     }
@@ -145,6 +203,7 @@ fn describe(run: &Run<'_>, found: &Count) -> Metadata {
         ("program", format!("opm {}", env!("CARGO_PKG_VERSION"))),
         ("mechanism", run.manipulator.mechanism().name.clone()),
         ("mechanism_file", run.loaded.file_name.clone()),
+        ("kind", run.kind.name()),
         ("mode", run.mode()),
         ("poses", found.poses.to_string()),
     ]

@@ -3,6 +3,7 @@
 use crate::args::{Output, WorkspaceArgs};
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
+use crate::kind::{self, Kind, Questions, SetRecording, SetWishes, Study};
 use crate::load::{self, Loaded};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
@@ -13,7 +14,8 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sweep, default_grid,
+    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sections, SetError, Sweep,
+    default_grid,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value, json};
@@ -27,13 +29,19 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         "any" => Modes::Any,
         mode => Modes::One(load::mode(&manipulator, mode)?),
     };
-    let limit = limit(args, &manipulator)?;
-    let given = given_grid(&args.grid, &manipulator)?;
-    let wishes = Wishes::new(args, &manipulator)?;
+    let kind = args.kind;
+    kind.check_flags(args, &manipulator)?;
+    let length = characteristic_length(args.length, "--length", &manipulator)?;
+    let limit = args.max_condition.map(|most| ConditionLimit { most, length });
+    let given = given_grid(&args.grid, kind, &manipulator)?;
+    let wishes = match kind.is_of_poses() {
+        true => AnyWishes::Poses(Wishes::new(args, length, &manipulator)?),
+        false => AnyWishes::Set(SetWishes::new(kind, args, &manipulator)?),
+    };
     let recorder = match &args.output {
         Some(path) => {
             loaded.refuse_as_output(path, &[])?;
-            given.as_ref().map_or(Ok(()), Recorder::check)?;
+            given.as_ref().filter(|_| kind.is_of_poses()).map_or(Ok(()), Recorder::check)?;
             Some(Recorder::create(path)?)
         }
         None => None,
@@ -42,62 +50,99 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let pool = threads(args.threads)?;
     let grid = match given {
         Some(grid) => grid,
-        None => fitted_grid(&manipulator, modes, output, &pool, &progress)?,
+        None => fitted_grid(&manipulator, kind, modes, output, &pool, &progress)?,
     };
 
-    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes, limit };
+    if kind.sections() != Sections::Whole && !manipulator.sections_decide() {
+        output.note(
+            "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
+             be out of reach, which no section alone is asked for: the whole reaches less than both",
+        );
+    }
+    let run = Run { loaded: &loaded, manipulator: &manipulator, kind, grid: &grid, modes, limit };
     let sweep = Sweep::new(&manipulator, &grid, modes).limited(limit);
     let before = progress.done();
     let done = || progress.done() - before;
     let start = Instant::now();
     let job = || pool.install(|| sweep.count(&progress));
-    let found = watch(output, "counting", Some(grid.poses()), done, job).map_err(|Cancelled| {
-        let (done, poses) = (count(done()), count(grid.poses()));
-        Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
-    })?;
+    let mut found =
+        watch(output, "counting", Some(grid.poses()), done, job).map_err(|Cancelled| {
+            let (done, poses) = (count(done()), count(grid.poses()));
+            Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
+        })?;
     let seconds = start.elapsed().as_secs_f64().max(1e-9);
+
+    let conditioning = args.conditioning.then_some(length);
+    let questions = Questions { kind, shape: args.shape || kind != Kind::Grid, conditioning };
+    let before = progress.done();
+    let done = || progress.done() - before;
+    let job = || pool.install(|| Study::new(&questions, &sweep, &progress));
+    let total = questions.passes() * grid.poses();
+    let study = watch(output, "studying", Some(total), done, job);
+    let study = study.map_err(|error| match error {
+        SetError::Cancelled(cancelled) => cancelled.into(),
+        SetError::Size { .. } => Failure::Work(format!("--kind {}: {error}", kind.name())),
+    })?;
+    if let Some(set) = &study.set {
+        (found.poses, found.reachable) = (set.points(), set.count());
+    }
     if found.reachable == 0 {
-        output.warn(match limit {
-            Some(_) => "no pose of the grid is in reach, within the limits and well conditioned",
-            None => "no pose of the grid is in reach and within the limits",
-        });
+        output.warn(kind.nothing(limit.is_some()));
     }
 
     if let Some(recorder) = recorder {
-        let cloud = Cloud::new(wishes, &run);
-        let total = cloud.passes() * grid.poses();
-        let before = progress.done();
-        let done = || progress.done() - before;
-        let job = || pool.install(|| recorder.record(&run, &cloud, &sweep, &found, &progress));
-        let path = watch(output, "recording", Some(total), done, job)?;
-        output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
+        let recorded = match wishes {
+            AnyWishes::Poses(wishes) => {
+                let cloud = Cloud::new(wishes, &run);
+                let total = cloud.passes() * grid.poses();
+                let before = progress.done();
+                let done = || progress.done() - before;
+                let job = || recorder.record(&run, &cloud, &sweep, &found, &study, &progress);
+                watch(output, "recording", Some(total), done, || pool.install(job))
+            }
+            AnyWishes::Set(wishes) => {
+                let set = SetRecording::new(wishes, &run, &study)?;
+                recorder.record_set(&run, &set, &found, &progress)
+            }
+        };
+        output.note(format_args!("{}: {} points", recorded?.display(), count(found.reachable)));
     }
-    output.print(&run.json(&found, seconds), run.text(&found, seconds))
+    let (mut json, mut text) = (run.json(&found, seconds), run.text(&found, &study));
+    study.json(&mut json);
+    let rate = short(grid.poses() as f64 / seconds / 1e6);
+    let _ = writeln!(text, "\ncounted in {} s, {rate} million poses/s", short(seconds));
+    output.print(&json, text)
 }
 
-/// The limit on the condition number that the flags give.
-fn limit(
-    args: &WorkspaceArgs,
-    manipulator: &Manipulator,
-) -> Result<Option<ConditionLimit>, Failure> {
-    let Some(most) = args.max_condition else { return Ok(None) };
-    let length = characteristic_length(args.length, "--length", manipulator)?;
-    Ok(Some(ConditionLimit { most, length }))
+/// What the points of a recording are asked to be made of.
+enum AnyWishes {
+    Poses(Wishes),
+    Set(SetWishes),
 }
 
 /// The grid that the flags give; `None` without flags.
-fn given_grid(given: &[GridAxis], manipulator: &Manipulator) -> Result<Option<Grid>, Failure> {
+fn given_grid(
+    given: &[GridAxis],
+    kind: Kind,
+    manipulator: &Manipulator,
+) -> Result<Option<Grid>, Failure> {
     if given.is_empty() {
         return Ok(None);
     }
+    let sections = kind.sections();
+    let coordinates = sections.coordinates(manipulator);
     let axes: Result<Vec<_>, _> =
-        given.iter().map(|axis| axis.resolve(manipulator.task_coordinates())).collect();
-    Grid::new(manipulator, axes?).map(Some).map_err(|error| Failure::flag("--grid", error))
+        given.iter().map(|axis| axis.resolve(sections, &coordinates)).collect();
+    let grid = Grid::of(sections, manipulator, axes?);
+    let grid = grid.map_err(|error| Failure::flag("--grid", error))?;
+    kind.check(&grid)?;
+    Ok(Some(grid))
 }
 
 /// A grid over the whole workspace.
 fn fitted_grid(
     manipulator: &Manipulator,
+    kind: Kind,
     modes: Modes,
     output: &Output,
     pool: &ThreadPool,
@@ -106,6 +151,7 @@ fn fitted_grid(
     let find = || pool.install(|| default_grid(manipulator, modes, progress));
     let (grid, extents) = watch(output, "fitting a grid", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting a grid".into()))?;
+    let grid = kind.fit(manipulator, grid);
     // As flags in SI, so that the same run can be asked for again.
     let flags: Vec<String> = grid
         .axes()
@@ -116,7 +162,7 @@ fn fitted_grid(
         })
         .collect();
     output.note(format_args!("grid fitted to the workspace: {}", flags.join(" ")));
-    for extent in extents.iter().filter(|extent| extent.unbounded) {
+    for extent in extents.iter().filter(|extent| extent.unbounded && kind.asks(extent, &grid)) {
         output.warn(format_args!(
             "the workspace goes on beyond this grid along {}; limit a joint, or give --grid",
             extent.name
@@ -134,6 +180,7 @@ fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
 pub struct Run<'a> {
     pub loaded: &'a Loaded,
     pub manipulator: &'a Manipulator,
+    pub kind: Kind,
     pub grid: &'a Grid,
     pub modes: Modes,
     pub limit: Option<ConditionLimit>,
@@ -148,22 +195,12 @@ impl Run<'_> {
         }
     }
 
-    /// The counted share of the grid's box, over the axes with more than one value.
+    /// The counted share of the box of the set's axes, those with more than one value.
     pub fn measure(&self, found: &Count, units: FileUnits) -> (f64, String) {
-        let mut value = found.reachable as f64 / found.poses as f64;
-        let mut powers = [(Quantity::Length, 0), (Quantity::Angle, 0)];
-        for (axis, coordinate) in self.grid.axes().iter().zip(self.manipulator.task_coordinates()) {
-            if axis.count > 1 {
-                value *= (axis.max - axis.min) / units.factor(coordinate.quantity);
-                powers.iter_mut().filter(|p| p.0 == coordinate.quantity).for_each(|p| p.1 += 1);
-            }
-        }
-        let factors = powers.iter().filter(|p| p.1 > 0).map(|&(quantity, power)| {
-            let symbol = units.symbol(quantity);
-            if power == 1 { symbol.to_owned() } else { format!("{symbol}^{power}") }
-        });
-        let units: Vec<String> = factors.collect();
-        (value, if units.is_empty() { "1".to_owned() } else { units.join(" ") })
+        let Self { kind, grid, .. } = self;
+        let fraction = found.reachable as f64 / found.poses as f64;
+        let axes = kind.axes(grid).map(|i| (&grid.axes()[i], grid.coordinates()[i].quantity));
+        kind::measure(fraction, axes, units)
     }
 
     fn json(&self, found: &Count, seconds: f64) -> Value {
@@ -184,7 +221,7 @@ impl Run<'_> {
             "measure": { "value": value, "units": units, "method": "grid" },
             "imaginary_range": ranges,
             "seconds": seconds,
-            "poses_per_second": found.poses as f64 / seconds,
+            "poses_per_second": self.grid.poses() as f64 / seconds,
         });
         if let Some(ConditionLimit { most, length }) = self.limit {
             json["max_condition"] = most.into();
@@ -193,15 +230,18 @@ impl Run<'_> {
         json
     }
 
-    fn text(&self, found: &Count, seconds: f64) -> String {
+    fn text(&self, found: &Count, study: &Study) -> String {
         let units = self.loaded.file.units;
         let mut text = self.manipulator.mechanism().name.clone();
+        if self.kind != Kind::Grid {
+            let _ = write!(text, ", {}", self.kind.title());
+        }
         let mode = self.mode();
         if !mode.is_empty() {
             let _ = write!(text, ", mode {mode}");
         }
         let mut axes = Table::new(["grid", ">from", ">to", "unit", ">values"]);
-        for (axis, c) in self.grid.axes().iter().zip(self.manipulator.task_coordinates()) {
+        for (axis, c) in self.grid.axes().iter().zip(self.grid.coordinates()) {
             let end = |value| text::number(value, c.quantity, units);
             let symbol = units.symbol(c.quantity);
             axes.row([&*axis.name, &end(axis.min), &end(axis.max), symbol, &count(axis.count)]);
@@ -214,12 +254,15 @@ impl Run<'_> {
 
         let share = 100.0 * found.reachable as f64 / found.poses as f64;
         let (value, measured) = self.measure(found, units);
-        let mut results = Table::new(["poses", &format!(">{}", count(found.poses))]);
-        results.row(["reachable".into(), count(found.reachable), format!("{} %", short(share))]);
+        let points = [self.kind.points(), &format!(">{}", count(found.poses)), ">"];
+        let mut results = Table::new(points);
+        let reached = self.kind.reached().to_owned();
+        results.row([reached, count(found.reachable), format!("{} %", short(share))]);
         let _ = write!(text, "{results}");
         if self.grid.poses() > 1 {
             let _ = writeln!(text, "measure {} {measured}", short(value));
         }
+        text += &study.text(units);
 
         if found.imaginary.iter().any(Option::is_some) {
             let mut ranges = Table::new(["imaginary joint", ">min", ">max", "unit"]);
@@ -230,8 +273,6 @@ impl Run<'_> {
             }
             let _ = write!(text, "\n{ranges}");
         }
-        let rate = short(found.poses as f64 / seconds / 1e6);
-        let _ = writeln!(text, "\ncounted in {} s, {rate} million poses/s", short(seconds));
         text
     }
 }

@@ -123,11 +123,11 @@ pub enum Sections {
 
 impl Sections {
     /// What its coordinates are called.
-    fn coordinate(self) -> &'static str {
+    pub fn coordinate(self) -> &'static str {
         match self {
             Self::Whole => "task coordinate",
-            Self::Upper => "task coordinate of the upper section",
-            Self::Lower => "task coordinate of the lower section or imaginary joint",
+            Self::Upper => "coordinate of the upper section",
+            Self::Lower => "coordinate of the lower section or imaginary joint",
         }
     }
 }
