@@ -6,21 +6,25 @@ use crate::solutions::Solutions;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{self as core, Mode};
+use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::{examples as shipped, file};
 use opm_core::subspace::SubspaceClass;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyList, PyMapping};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A mechanism, decomposed and compiled for closed-form inverse kinematics. Immutable.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Manipulator {
     pub inner: Arc<core::Manipulator>,
-    /// The text that it was read from, and what its file is called: what pickling keeps.
-    text: String,
+    /// The text that it was read from, and what its file is called: what pickling keeps. Written when
+    /// somebody asks where parameters have been changed.
+    text: OnceLock<String>,
     label: String,
+    /// What it was assembled from; `None` for a list of joints.
+    family: Option<Family>,
 }
 
 /// One coordinate of the pose.
@@ -69,12 +73,63 @@ impl Manipulator {
         let label = label.unwrap_or_else(|| "mechanism".to_owned());
         let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
         let inner = core::Manipulator::new(read.mechanism).map_err(|e| failed(&e))?;
-        Ok(Self { inner: Arc::new(inner), text, label })
+        Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: read.family })
+    }
+
+    /// The parameters of its family by name: numbers, pairs, `None` for limits that there are not.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (name, value) in self.family.iter().flat_map(Family::parameters) {
+            match value {
+                ParameterValue::None => dict.set_item(name, py.None())?,
+                ParameterValue::Number(value) => dict.set_item(name, value)?,
+                ParameterValue::Pair([a, b]) => dict.set_item(name, (a, b))?,
+            }
+        }
+        Ok(dict)
+    }
+
+    /// The same mechanism with some of the parameters changed.
+    #[pyo3(signature = (changes = None, /, **named))]
+    fn with_parameters(
+        &self,
+        py: Python<'_>,
+        changes: Option<&Bound<'_, PyMapping>>,
+        named: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let Some(family) = &self.family else {
+            let message = "is a list of joints, which has no parameters: expected a family";
+            return Err(wrong(format!("{} {message}", self.inner.mechanism().name)));
+        };
+        let mut values: Vec<(String, ParameterValue)> = Vec::new();
+        let named = named.map(PyDictMethods::as_mapping);
+        for given in changes.into_iter().chain(named) {
+            for item in given.items()? {
+                let (name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
+                let Ok(name) = name.extract::<String>() else {
+                    return Err(wrong(format!("{} is no name of a parameter", name.repr()?)));
+                };
+                if values.iter().any(|(other, _)| *other == name) {
+                    return Err(wrong(format!("`{name}` is given twice")));
+                }
+                let value = parameter(&name, &value)?;
+                values.push((name, value));
+            }
+        }
+        py.detach(|| {
+            let changes = values.iter().map(|(name, value)| (name.as_str(), *value));
+            let family = family.with(changes).map_err(|e| failed(&e))?;
+            let mechanism = family.assemble().map_err(|e| failed(&family.explain(&e)))?;
+            let inner = core::Manipulator::new(mechanism).map_err(|e| failed(&e))?;
+            let (text, label) = (OnceLock::new(), self.label.clone());
+            Ok(Self { inner: Arc::new(inner), text, label, family: Some(family) })
+        })
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
         let this = slf.get();
-        Ok((slf.get_type().getattr("parse")?, (this.text.clone(), this.label.clone())))
+        Ok((slf.get_type().getattr("parse")?, (this.text().to_owned(), this.label.clone())))
     }
 
     /// The mechanism's name.
@@ -86,7 +141,7 @@ impl Manipulator {
     /// The mechanism file.
     #[getter]
     fn text(&self) -> &str {
-        &self.text
+        self.text.get_or_init(|| self.family.as_ref().map_or_else(String::new, Family::write))
     }
 
     /// The coordinates of the pose, in order.
@@ -211,6 +266,28 @@ impl Manipulator {
             decomposition.mobility,
             coordinates.join(" ")
         )
+    }
+}
+
+/// The value of a parameter, as Python gives it.
+fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
+    if value.is_none() {
+        return Ok(ParameterValue::None);
+    }
+    if let Ok(number) = value.extract() {
+        return Ok(ParameterValue::Number(number));
+    }
+    let numbers = |items: Bound<'_, PyIterator>| -> PyResult<Vec<f64>> {
+        items.map(|item| item?.extract()).collect()
+    };
+    match value.try_iter().and_then(numbers).as_deref() {
+        Ok(&[a, b]) => Ok(ParameterValue::Pair([a, b])),
+        _ => {
+            let found = value.repr()?;
+            Err(wrong(format!(
+                "`{name}` is {found}, expected a number, a pair of numbers, or None"
+            )))
+        }
     }
 }
 

@@ -1,12 +1,11 @@
-//! Sweeps by intervals against the exact predicate, pose by pose: every planar lower section, with
-//! the limits of its sliders or of all its joints, on many long rows, and rows that end exactly on a
-//! pose.
+//! Sweeps by intervals against the exact predicate, pose by pose: every pair of subspaces, with the
+//! limits of its sliders or of all its joints, on many long rows, and limits that lie exactly on poses.
 
 use fastrand::Rng;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Follow, Manipulator};
 use opm_core::mechanism::{Mechanism, examples, file};
-use opm_tests::random::{Kind, Options, PAIRS, mechanism};
+use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
 
@@ -56,25 +55,23 @@ fn without_limits_on_angles(mut mechanism: Mechanism) -> Mechanism {
 #[test]
 fn intervals_hold_the_poses_that_the_chains_reach() {
     let mut rng = Rng::with_seed(20);
-    let planar: Vec<_> = PAIRS
-        .into_iter()
-        .filter(|[lower, _]| matches!(lower, Kind::Planar(_) | Kind::TranslationalPlane))
-        .collect();
     let (mut poses, mut reachable, mut partly, mut round) = (0, 0, 0, 0);
     while poses < POSES {
-        let pair = planar[round % planar.len()];
-        let options = Options { limited: [0.0, 0.3, 0.7][rng.usize(..3)], balls: true };
+        let pair = PAIRS[round % PAIRS.len()];
+        let options = Options { limited: [0.0, 0.3, 0.7, 1.0][rng.usize(..4)], balls: rng.bool() };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mechanism = match round % 4 {
-            0 => mechanism,
-            _ => without_limits_on_angles(mechanism),
+        let mechanism = match rng.u8(..3) {
+            0 => without_limits_on_angles(mechanism),
+            _ => mechanism,
         };
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let counts = [50 + rng.u64(..1500), 20 + rng.u64(..200), 1, 1, 1];
         let axes = manipulator.task_coordinates().iter().zip(counts).map(|(c, count)| {
-            let (below, above) = (rng.f64() * 2.0, rng.f64() * 2.0);
+            // Of angles several turns.
+            let most = if rng.u8(..4) == 0 { 10.0 } else { 2.0 };
+            let (below, above) = (rng.f64() * most, rng.f64() * most);
             match count {
-                1 => Axis::fixed(c.name, c.home + 0.5 * (above - below)),
+                1 => Axis::fixed(c.name, c.home + (above - below) / most),
                 _ => Axis::new(c.name, c.home - below, c.home + above, count),
             }
         });
@@ -121,4 +118,51 @@ fn round_numbers_are_no_exception() {
             }
         }
     }
+}
+
+/// Limits that joints are exactly at in poses of the grid: on them counts as inside, for every way of
+/// finding out.
+#[test]
+fn limits_that_lie_on_poses_are_no_exception() {
+    let mut rng = Rng::with_seed(21);
+    let mut met = 0;
+    for round in 0..400 {
+        let pair = PAIRS[round % PAIRS.len()];
+        let options = Options { limited: 0.0, balls: false };
+        let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let free = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
+        let free = free.unwrap();
+        let axes = free.task_coordinates().iter().zip([41, 9, 3, 3, 3]).map(|(c, count)| {
+            Axis::new(c.name, c.home - rng.f64() - 0.1, c.home + rng.f64() + 0.1, count)
+        });
+        let axes: Vec<_> = axes.collect();
+        let grid = Grid::new(&free, axes.clone()).unwrap();
+        let mut solution = free.solution();
+        let reached: Vec<Vec<f64>> = (0..200)
+            .filter_map(|_| {
+                let pose = grid.pose(rng.u64(..grid.poses()));
+                let reached = free.inverse(&pose, free.home_mode(), &mut solution).unwrap();
+                reached.then(|| solution.joints.clone())
+            })
+            .take(2)
+            .collect();
+        let [one, other] = &reached[..] else { continue };
+        let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+        for (i, coordinate) in joints.flat_map(|joint| &mut joint.coordinates).enumerate() {
+            if rng.u8(..3) > 0 {
+                coordinate.limits = Some([one[i].min(other[i]), one[i].max(other[i])]);
+            }
+        }
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let grid = Grid::new(&manipulator, axes).unwrap();
+        for modes in [Modes::Any, Modes::One(manipulator.home_mode())] {
+            let sweep = Sweep::new(&manipulator, &grid, modes);
+            let count = sweep.count(&Progress::default()).unwrap();
+            let expected = by_predicate(&manipulator, &grid, modes);
+            assert_eq!(count.reachable, expected, "round {round}: {pair:?} {modes:?}");
+            met += expected;
+        }
+    }
+    println!("{met} poses");
+    assert!(met > 10_000);
 }

@@ -13,18 +13,22 @@
 //!   parallel sliders) is refused when it is built.
 
 pub mod cylindrical;
+pub mod equation;
 pub mod planar;
 pub mod region;
 pub mod spherical;
+pub mod surface;
 pub mod translational;
 
 use crate::joint::Quantity;
+use crate::limits::Limits;
 use crate::task::{Displacement, Subspace, SubspaceKind};
 use cylindrical::{CoaxialJoint, CylindricalChain};
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use planar::{PlanarChain, PlanarJoint};
 use spherical::{Ball, SphericalChain};
 use std::f64::consts::TAU;
+use surface::Surface;
 use translational::TranslationalChain;
 
 /// How far beyond its reach a chain still answers, as a share of its size: rounding in a target
@@ -36,9 +40,10 @@ pub const RIM: f64 = 1e-12;
 const DEGENERATE: f64 = 1e-9;
 
 /// One of the two solutions of a two-valued choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Branch {
     /// The solution with the plus sign.
+    #[default]
     Plus,
     /// The solution with the minus sign.
     Minus,
@@ -279,6 +284,51 @@ impl Chain {
                 chain.first(&(r * chain.third_axis()), branch).map(Amount::Turn)
             }
             _ => self.inverse(target, branch).map(|amounts| amounts[0]),
+        }
+    }
+}
+
+/// What is known of a chain with one joint held, for a few amounts of each joint.
+impl Chain {
+    /// The targets on which the chain closes with joint number `joint` at `amount`; `None` of a ball,
+    /// whose rotation vector has no closed form along a path.
+    pub(crate) fn held(&self, joint: usize, amount: Amount) -> Option<Surface> {
+        match self {
+            Self::Planar(chain) => Some(chain.held(joint, amount)),
+            Self::Spherical(chain) => Some(chain.held(joint, amount)),
+            Self::Ball(_) => None,
+            Self::Cylindrical(chain) => Some(chain.held(joint, amount)),
+            Self::Translational(chain) => Some(chain.held(joint, amount)),
+        }
+    }
+
+    /// The targets on which its two branches meet, or on which it stops closing.
+    pub(crate) fn folds(&self) -> Vec<Surface> {
+        let middle = match self {
+            Self::Planar(chain) => chain.folds(),
+            Self::Spherical(chain) => chain.folds().to_vec(),
+            Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => Vec::new(),
+        };
+        middle.into_iter().filter_map(|amount| self.held(1, amount)).collect()
+    }
+
+    /// The limits of a joint as amounts that it can be held at.
+    pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[Amount; 2]> {
+        let turns = match self {
+            Self::Planar(chain) => chain.turns(joint),
+            Self::Spherical(_) => true,
+            Self::Ball(_) | Self::Translational(_) => false,
+            Self::Cylindrical(chain) => chain.turns(joint),
+        };
+        if turns { limits.turns() } else { limits.values() }
+    }
+
+    /// No length of the chain at home is longer, metres.
+    pub(crate) fn size(&self) -> f64 {
+        match self {
+            Self::Planar(chain) => chain.size(),
+            Self::Cylindrical(chain) => chain.joints().iter().map(|j| j.advance.abs()).sum(),
+            Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => 0.0,
         }
     }
 }

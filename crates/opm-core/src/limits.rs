@@ -102,6 +102,22 @@ impl Limits {
         }
     }
 
+    /// The ends of the limits of a length, or of an angle that counts whole turns.
+    pub(crate) fn values(&self) -> Option<[Amount; 2]> {
+        match self {
+            Self::Free => None,
+            Self::Range { low, high, .. } => Some([low, high].map(|&end| Amount::Value(end))),
+        }
+    }
+
+    /// The ends of the limits of an angle that does not count whole turns; none of a full turn.
+    pub(crate) fn turns(&self) -> Option<[Amount; 2]> {
+        match self {
+            Self::Range { arc: Some(arc), .. } => Some([arc.from, arc.to].map(Amount::Turn)),
+            _ => None,
+        }
+    }
+
     /// Lowest and highest value of a length, as a displacement from home.
     #[inline]
     pub fn range(&self) -> (f64, f64) {

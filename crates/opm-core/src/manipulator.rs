@@ -11,12 +11,14 @@
 //! Either way both sections have as many freedoms as their subspace, and each is one
 //! [`Chain`].
 
+mod breaks;
 mod inverse;
 mod leg;
 mod locate;
 mod mode;
 mod reach;
 
+pub use breaks::Breaks;
 pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;

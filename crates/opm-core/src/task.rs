@@ -48,6 +48,8 @@ mod subspace;
 pub use displacement::{Cut, Displacement};
 pub use subspace::{Subspace, SubspaceKind};
 
+use crate::chain::cylindrical::CylindricalDisplacement;
+use crate::chain::surface::Path;
 use crate::chain::unit;
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::joint::Quantity;
@@ -340,6 +342,21 @@ impl Task {
             (SubspaceKind::TranslationalPlane, _) => {
                 Displacement::Translational(Complex::new(q(0), q(1)))
             }
+        }
+    }
+
+    /// How `v`, or `v` with a cut after it, moves as the first coordinate grows from home, where it is
+    /// `start`.
+    pub(crate) fn row(&self, start: &Displacement) -> Path {
+        let rate = Complex::new(1.0, 0.0);
+        match (*start, self.lower_cut) {
+            (Displacement::Planar(start), _) => Path::Slide { start, rate },
+            (Displacement::Spherical(start), _) => Path::Tilt { start, axis: Vector3::x() },
+            (Displacement::Cylindrical(start), cut) => {
+                let [angle, advance] = if cut == Cut::Turn { [0.0, 1.0] } else { [1.0, 0.0] };
+                Path::Coaxial { start, rate: CylindricalDisplacement { angle, advance } }
+            }
+            (Displacement::Translational(start), _) => Path::Translation { start, rate },
         }
     }
 

@@ -2,9 +2,10 @@
 //!
 //! The poses that share the upper section's coordinates are a slice: it is solved once, and leaves
 //! each leg a set of poses. Where that is a region of the plane, it is cut by whole rows at a time
-//! ([`cuts`]), else asked for pose by pose.
+//! ([`cuts`]), else it is asked for in pieces of rows ([`pieces`]).
 
 mod cuts;
+mod pieces;
 mod runs;
 mod scratch;
 mod shard;

@@ -1,6 +1,6 @@
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import TypedDict, final
+from typing import TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,8 @@ __version__: str
 
 class OpmError(ValueError):
     """A mechanism, a pose or an option that cannot be computed with."""
+
+_Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
 
 class _Subspace(TypedDict):
     subspace: str
@@ -88,7 +90,46 @@ class Manipulator:
     def name(self) -> str: ...
     @property
     def text(self) -> str:
-        """The mechanism file."""
+        """The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit."""
+    @property
+    def parameters(self) -> dict[str, float | tuple[float, float] | None]:
+        """The geometric parameters of its family by name; empty for a list of joints.
+
+        ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
+        of its joints. Metres and radians; points ``(x, y)``, limits ``(lowest, highest)`` or None where there are none.
+        """
+    def with_parameters(
+        self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
+    ) -> Manipulator:
+        """The same mechanism with some of its :attr:`parameters` changed: assembled, decomposed and compiled anew.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it, and a
+            whole one (``leg1.h``) in one leg, whatever the other says.
+        **named
+            Likewise, for names without dots.
+
+        Returns
+        -------
+        Manipulator
+            A new one; this one stays as it is. It is assembled at the same home pose in the same working mode.
+
+        Raises
+        ------
+        OpmError
+            Every name that is no parameter, with those that there are, and every value that is none; every leg that does not
+            reach home; home poses that are singular.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof")
+        >>> longer = m.with_parameters({"leg1.h": 0.13, "limits.S": (-0.25, 0.25)}, a2=0.05)
+        >>> longer.parameters["leg1.h"], longer.parameters["leg2.h"], longer.parameters["leg2.a2"]
+        (0.13, 0.12, 0.05)
+        """
     @property
     def task_coordinates(self) -> list[TaskCoordinate]:
         """The coordinates of the pose: the columns of poses."""

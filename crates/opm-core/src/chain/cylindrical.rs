@@ -1,7 +1,9 @@
 //! Chains of two coaxial joints: revolute, prismatic or helical. Linear, and counting whole turns,
 //! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
 
+use super::surface::Surface;
 use super::{Amount, ChainError, DEGENERATE, unit};
+use std::f64::consts::TAU;
 
 /// A displacement about and along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +64,19 @@ impl CylindricalChain {
     /// Whether targets whole turns apart differ: no revolute joint makes up for a turn.
     pub fn counts_turns(&self) -> bool {
         !self.joints.iter().any(CoaxialJoint::is_revolute)
+    }
+
+    /// Whether an amount of a joint is a turn.
+    pub(super) fn turns(&self, joint: usize) -> bool {
+        self.joints[joint].is_revolute()
+    }
+
+    /// The targets with joint number `joint` at `amount`: those of [`CylindricalChain::inverse`].
+    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+        let [p, q] = self.joints;
+        let (turn, advance) = if joint == 0 { (q.advance, -q.turn) } else { (-p.advance, p.turn) };
+        let period = self.turns(joint).then_some(TAU * self.determinant);
+        Surface::Coaxial { turn, advance, at: amount.value() * self.determinant, period }
     }
 
     /// The joints' amounts that displace the outer link by `target`.

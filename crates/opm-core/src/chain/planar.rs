@@ -3,6 +3,7 @@
 //! A planar displacement takes the point `z` to `r z + t`, `|r| = 1`. The two-valued chains find
 //! their one hard coordinate from a triangle and the rest by complex division.
 
+mod held;
 mod ppr;
 mod prp;
 mod prr;

@@ -1,5 +1,6 @@
 //! Chains inside a sphere: three revolutes through its centre, with any axes, and the ball.
 
+use super::surface::Surface;
 use super::{Amount, Branch, ChainError, DEGENERATE, Gap, RIM};
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 
@@ -99,6 +100,29 @@ impl SphericalChain {
     #[inline]
     pub fn third_axis(&self) -> &Vector3<f64> {
         &self.axes[2]
+    }
+
+    /// The targets on which the chain closes with joint number `joint` at `amount`: two axes are left.
+    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+        let [a1, a2, a3] = self.axes;
+        let turned =
+            |v: &Vector3<f64>, q: Complex<f64>| rotate_back(&self.axes[joint], q.conj(), v);
+        let turn = amount.turn();
+        let (fixed, carried, cosine) = match joint {
+            // E₂E₃ = E₁⁻¹ R
+            0 => (turned(&a2, turn), a3, a2.dot(&a3)),
+            // a₁ · R a₃ = a₁ · E₂ a₃
+            1 => (a1, a3, a1.dot(&turned(&a3, turn))),
+            // E₁E₂ = R E₃⁻¹
+            _ => (a1, turned(&a2, turn.conj()), a1.dot(&a2)),
+        };
+        Surface::Cone { fixed, carried, cosine }
+    }
+
+    /// The second joint's rotations at which the two branches meet, the three axes in one plane.
+    pub(super) fn folds(&self) -> [Amount; 2] {
+        let turn = angle(&self.third_on_second, &self.axes[0]);
+        [Amount::Turn(turn), Amount::Turn(-turn)]
     }
 
     /// The joints' axes at home, base first.

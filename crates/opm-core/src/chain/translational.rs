@@ -2,6 +2,7 @@
 
 use super::planar::{along, cross};
 use super::region::{Region, parallelogram};
+use super::surface::Surface;
 use super::{Amount, ChainError, DEGENERATE};
 use nalgebra::Complex;
 
@@ -32,6 +33,13 @@ impl TranslationalChain {
     /// The translations at which the sliders are in their ranges.
     pub fn region(&self, ranges: [[f64; 2]; 2]) -> Region {
         parallelogram(self.slides, Complex::new(0.0, 0.0), ranges)
+    }
+
+    /// The targets with slider number `joint` at `amount`: taken across the other one.
+    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+        let across = self.slides[1 - joint] * Complex::i();
+        let slide = self.slides[joint];
+        Surface::Band { across, at: amount.value() * (across.conj() * slide).re }
     }
 
     /// The sliders' amounts that translate the outer link by `target`.

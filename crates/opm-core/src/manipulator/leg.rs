@@ -74,7 +74,7 @@ pub(crate) struct CompiledLeg {
     /// The upper section has a say in whether the leg follows, or drives it.
     pub upper_decides: bool,
     /// The cut is a turn, and the section that it is handed on to counts whole turns.
-    unwinds: bool,
+    pub unwinds: bool,
 }
 
 /// What a leg is compiled in.

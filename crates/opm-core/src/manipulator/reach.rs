@@ -23,13 +23,13 @@ use nalgebra::Complex;
 /// One way in which a leg can follow a slice of poses that share `b`.
 #[derive(Clone, Copy, Debug)]
 pub struct Follow {
-    leg: usize,
-    branches: LegBranches,
-    b: Displacement,
+    pub(super) leg: usize,
+    pub(super) branches: LegBranches,
+    pub(super) b: Displacement,
     /// Found from `b`, where the leg's upper section takes the cut.
-    tau: Option<Amount>,
+    pub(super) tau: Option<Amount>,
     /// The leg takes the cut in its lower section, and its upper one has a say at every pose.
-    asks_upper: bool,
+    pub(super) asks_upper: bool,
 }
 
 impl Follow {

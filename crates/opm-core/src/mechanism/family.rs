@@ -6,15 +6,19 @@
 //! from.
 
 mod assembly;
+mod parameter;
 pub mod planar_planar;
 pub mod plano_spherical;
 mod slider;
 pub mod translational_helical;
 
 pub use assembly::{AssemblyError, AssemblyProblem, AssemblyReason};
+pub use parameter::{ParameterErrors, ParameterValue};
 pub use planar_planar::PlanarPlanar;
 pub use plano_spherical::PlanoSpherical;
 pub use translational_helical::TranslationalHelical;
+
+pub(in crate::mechanism) use parameter::{Group, Parameter, Slot, TableKey};
 
 use super::Mechanism;
 
@@ -48,6 +52,24 @@ impl Family {
             Self::PlanoSpherical(family) => family.mode(),
             Self::TranslationalHelical(_) => String::new(),
             Self::PlanarPlanar(family) => family.mode(),
+        }
+    }
+
+    /// The mechanism's name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::PlanoSpherical(family) => &family.name,
+            Self::TranslationalHelical(family) => &family.name,
+            Self::PlanarPlanar(family) => &family.name,
+        }
+    }
+
+    /// What files call the family.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::PlanoSpherical(_) => "plano-spherical",
+            Self::TranslationalHelical(_) => "translational-helical",
+            Self::PlanarPlanar(_) => "planar-planar",
         }
     }
 }

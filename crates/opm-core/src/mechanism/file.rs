@@ -46,8 +46,10 @@
 //! imaginary joint (`tau.leg1`): tables have columns of these names. Whatever a file does not need to have
 //! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
 
+pub(crate) mod checks;
 mod hint;
 mod joints;
+mod parameters;
 mod problem;
 mod reader;
 mod units;
@@ -57,6 +59,7 @@ pub(super) mod writer;
 pub use problem::{FileErrors, Place, Places, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 
+pub(super) use parameters::{read_home, read_leg, table_of, tables_of};
 pub(crate) use reader::{LARGEST, Reader, Table, Value};
 
 use super::Mechanism;
@@ -64,7 +67,6 @@ use super::family::{
     AssemblyError, AssemblyReason, Family, planar_planar, plano_spherical, translational_helical,
 };
 use crate::chain::Branch;
-use crate::joint::Quantity;
 use toml::de::DeTable;
 
 /// The format that this version reads.
@@ -176,37 +178,6 @@ fn read_units(root: &Table<'_>) -> FileUnits {
 pub(super) fn leg_name(leg: &Table<'_>, index: usize) -> String {
     let given = leg.get("name").and_then(|value| value.name());
     given.map_or_else(|| format!("leg{}", index + 1), str::to_owned)
-}
-
-/// A family's parameter that must be there, SI; NaN where it is not, which has been reported then.
-pub(super) fn quantity(leg: &Table<'_>, key: &str, of: Quantity, expected: &str) -> f64 {
-    leg.require(key, expected).and_then(|value| value.quantity(of)).unwrap_or(f64::NAN)
-}
-
-/// The point of a family's leg in its plane, likewise.
-pub(super) fn point(leg: &Table<'_>, key: &str, expected: &str) -> [f64; 2] {
-    leg.require(key, expected).and_then(|value| value.point()).unwrap_or([f64::NAN; 2])
-}
-
-/// Reads a family's `home`: zero where a coordinate is not given, NaN where it is not understood.
-pub(super) fn home<'a>(
-    root: &Table<'a>,
-    keys: &[&str],
-) -> impl Fn(&str, Quantity) -> f64 + use<'a> {
-    let table = root.get("home").and_then(|value| value.table(keys));
-    move |key, of| {
-        let value = table.and_then(|table| table.get(key));
-        value.map_or(0.0, |value| value.quantity(of).unwrap_or(f64::NAN))
-    }
-}
-
-/// Reads the `limits` of a family's leg.
-pub(super) fn limits<'a>(
-    leg: Option<&Table<'a>>,
-    keys: &[&str],
-) -> impl Fn(&str, Quantity) -> Option<[f64; 2]> + use<'a> {
-    let table = leg.and_then(|leg| leg.get("limits")).and_then(|value| value.table(keys));
-    move |key, of| table?.get(key)?.limits(of)
 }
 
 /// The branches of `mode`: a group of signs for each leg with choices, in one row. All plus where

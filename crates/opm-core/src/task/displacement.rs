@@ -3,7 +3,8 @@
 use crate::chain::Amount;
 use crate::chain::cylindrical::CylindricalDisplacement;
 use crate::chain::planar::PlanarDisplacement;
-use nalgebra::{Complex, Matrix3};
+use crate::chain::surface::Path;
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// A displacement inside one subspace, in that subspace's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +17,18 @@ pub enum Displacement {
     Cylindrical(CylindricalDisplacement),
     /// In the plane, without rotation.
     Translational(Complex<f64>),
+}
+
+impl Displacement {
+    /// Its largest number, radians or metres; of a rotation about a centre zero.
+    pub(crate) fn size(&self) -> f64 {
+        match self {
+            Self::Planar(g) => g.translation.norm(),
+            Self::Spherical(_) => 0.0,
+            Self::Cylindrical(g) => g.angle.abs().max(g.advance.abs()),
+            Self::Translational(t) => t.norm(),
+        }
+    }
 }
 
 /// The intersection motion as seen in one subspace's frame.
@@ -79,6 +92,30 @@ impl Cut {
                 })
             }
             _ => self.commuting(b, tau),
+        }
+    }
+
+    /// `exp(I τ) · b` for every τ.
+    pub(crate) fn path(&self, b: &Displacement) -> Path {
+        match (self, *b) {
+            (Self::Slide(along), Displacement::Planar(start)) => {
+                Path::Slide { start, rate: *along }
+            }
+            (_, Displacement::Planar(start)) => Path::Turn { start },
+            (_, Displacement::Spherical(start)) => Path::Tilt { start, axis: Vector3::z() },
+            (Self::Turn, Displacement::Cylindrical(start)) => {
+                Path::Coaxial { start, rate: CylindricalDisplacement { angle: 1.0, advance: 0.0 } }
+            }
+            (_, Displacement::Cylindrical(start)) => {
+                Path::Coaxial { start, rate: CylindricalDisplacement { angle: 0.0, advance: 1.0 } }
+            }
+            (Self::Slide(along), Displacement::Translational(start)) => {
+                Path::Translation { start, rate: *along }
+            }
+            // A subspace that does not hold the motion, as below.
+            (_, Displacement::Translational(start)) => {
+                Path::Translation { start, rate: Complex::new(0.0, 0.0) }
+            }
         }
     }
 

@@ -16,10 +16,21 @@ pub fn poses(runs: &[Run]) -> impl Iterator<Item = u64> {
 
 /// Adds a number that is greater than all.
 pub fn push(runs: &mut Vec<Run>, pose: u64) {
+    append(runs, Run { from: pose, to: pose + 1 });
+}
+
+/// Adds a run whose numbers are greater than all.
+pub fn append(runs: &mut Vec<Run>, run: Run) {
     match runs.last_mut() {
-        Some(run) if run.to == pose => run.to += 1,
-        _ => runs.push(Run { from: pose, to: pose + 1 }),
+        Some(last) if last.to == run.from => last.to = run.to,
+        _ => runs.push(run),
     }
+}
+
+/// The parts of some runs that are in another.
+pub fn within(runs: &[Run], run: Run) -> impl Iterator<Item = Run> {
+    let parts = runs.iter().map(move |r| Run { from: r.from.max(run.from), to: r.to.min(run.to) });
+    parts.filter(|part| part.from < part.to)
 }
 
 /// Whether any number of `run` is among `runs`.

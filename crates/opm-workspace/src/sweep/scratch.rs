@@ -1,14 +1,16 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
 use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
+use super::pieces::Changes;
 use super::runs::{self, Run};
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Sections, fill};
 use nalgebra::Complex;
-use opm_core::manipulator::Follow;
-use opm_core::task::Displacement;
+use opm_core::chain::equation::Span;
+use opm_core::manipulator::{Breaks, Follow};
 use pulp::Arch;
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// One way in which a leg can follow the present sheet.
@@ -17,6 +19,8 @@ struct Way {
     follow: Follow,
     /// Where it does, if that is a region of the plane.
     region: Option<RowRegion>,
+    /// What else tells where it does, if anything but asking does; found when first needed.
+    breaks: OnceCell<Option<Breaks>>,
     /// No reachable pose has used it yet.
     pending: bool,
 }
@@ -47,8 +51,9 @@ pub struct Scratch<'a> {
     cuts: Vec<Cuts>,
     /// All coordinates but the first.
     others: Vec<f64>,
-    /// `v` of every pose of a window, once a row asks for it.
-    displacements: Vec<Displacement>,
+    /// Where each of them follows in the present row, if its leg is not decided by cuts.
+    followed: Vec<Vec<Run>>,
+    changes: Changes,
     /// Reachable poses of the present row, and what they are made from.
     runs: Vec<Run>,
     union: Vec<Run>,
@@ -95,7 +100,8 @@ impl<'a> Scratch<'a> {
             cuts: Vec::new(),
             // A row of the upper section alone has no first coordinate that could differ.
             others: vec![0.0; axes.len() - usize::from(sweep.grid.lower() > 0)],
-            displacements: Vec::new(),
+            followed: Vec::new(),
+            changes: Changes::default(),
             runs: Vec::new(),
             union: Vec::new(),
             next_runs: Vec::new(),
@@ -164,6 +170,7 @@ impl<'a> Scratch<'a> {
             ways.extend(self.found.iter().map(|&follow| Way {
                 follow,
                 region: None,
+                breaks: OnceCell::new(),
                 pending: true,
             }));
             self.alive &= !ways.is_empty();
@@ -206,7 +213,9 @@ impl<'a> Scratch<'a> {
         let mut doubts = [0; ROWS];
         let mut counts = Counts::default();
         let plain = self.plain && hit.is_none() && self.limit.is_none();
-        self.cuts.resize_with(self.legs.iter().map(Vec::len).sum(), Cuts::new);
+        let ways = self.legs.iter().map(Vec::len).sum();
+        self.cuts.resize_with(ways, Cuts::new);
+        self.followed.resize_with(ways, Vec::new);
         let (heights, doubts) = (&self.rows[..], &mut doubts);
         for (cuts, way) in self.cuts.iter_mut().zip(self.legs.iter().flatten()) {
             if let Some(region) = &way.region {
@@ -233,7 +242,7 @@ impl<'a> Scratch<'a> {
             if count > 0 && self.limit.is_some() {
                 count = self.limit_row(hit.is_none(), found);
             } else if count > 0 {
-                self.settle(i, window, doubt, found);
+                self.settle(i, doubt, found);
             }
             if count == 0 {
                 continue;
@@ -257,41 +266,70 @@ impl<'a> Scratch<'a> {
         found.reachable += reachable;
     }
 
-    /// The reachable poses of row number `i`, in `runs`; returns how many they are. A doubtful row is
-    /// decided pose by pose, and so are legs that have a way without a region, where the others
-    /// leave any poses.
+    /// The reachable poses of row number `i`, in `runs`; returns how many they are. Legs of which all
+    /// ways are cut come first, where the row is not in doubt, and leave the others fewer poses to ask
+    /// for.
     fn decide_row(&mut self, i: usize, window: Run, doubt: bool) -> u64 {
         self.runs.clear();
         self.runs.push(window);
-        self.displacements.clear();
-        let regional = |ways: &[Way]| !doubt && ways.iter().all(|way| way.region.is_some());
         let mut first = 0;
-        for ways in &self.legs {
-            let cuts = &self.cuts[first..first + ways.len()];
-            first += ways.len();
-            if regional(ways) {
-                let all = cuts.iter().flat_map(|cuts| cuts.runs(i));
+        for leg in 0..self.legs.len() {
+            let ways = self.legs[leg].len();
+            if !doubt && is_cut(&self.legs[leg]) {
+                let all = self.cuts[first..first + ways].iter().flat_map(|cuts| cuts.runs(i));
                 runs::union(all, &mut self.union);
-                runs::intersection(&self.runs, &self.union, &mut self.next_runs);
-                std::mem::swap(&mut self.runs, &mut self.next_runs);
+                self.keep_union();
             }
+            first += ways;
         }
-        for number in 0..self.legs.len() {
-            if !regional(&self.legs[number]) && !self.runs.is_empty() {
-                self.take_displacements(window);
-                let ways = &self.legs[number];
-                let manipulator = self.sweep.manipulator;
-                self.next_runs.clear();
-                for pose in runs::poses(&self.runs) {
-                    let v = &self.displacements[(pose - window.from) as usize];
-                    if ways.iter().any(|way| manipulator.follows(&way.follow, v)) {
-                        runs::push(&mut self.next_runs, pose);
-                    }
+        first = 0;
+        for leg in 0..self.legs.len() {
+            let ways = self.legs[leg].len();
+            if (doubt || !is_cut(&self.legs[leg])) && !self.runs.is_empty() {
+                for way in 0..ways {
+                    self.follow_row(leg, way, window, first + way);
                 }
-                std::mem::swap(&mut self.runs, &mut self.next_runs);
+                let all = self.followed[first..first + ways].iter().flatten();
+                runs::union(all.copied(), &mut self.union);
+                self.keep_union();
             }
+            first += ways;
         }
         self.runs.iter().map(|run| run.to - run.from).sum()
+    }
+
+    fn keep_union(&mut self) {
+        runs::intersection(&self.runs, &self.union, &mut self.next_runs);
+        std::mem::swap(&mut self.runs, &mut self.next_runs);
+    }
+
+    /// Where in the present row one way follows, among the poses that are left.
+    fn follow_row(&mut self, leg: usize, way: usize, window: Run, number: usize) {
+        let sweep = self.sweep;
+        let manipulator = sweep.manipulator;
+        let lower = sweep.grid.lower();
+        let axis = &sweep.grid.axes()[0];
+        let Way { follow, breaks, .. } = &self.legs[leg][way];
+        let others = &self.others[..lower - 1];
+        self.changes.clear();
+        match breaks.get_or_init(|| manipulator.breaks(follow)) {
+            Some(breaks) if window.to - window.from > 1 => {
+                let step = self.step;
+                let (from, to) = (axis.value(window.from) - step, axis.value(window.to - 1) + step);
+                let span = Span { from, to, step };
+                manipulator.changes((follow, breaks), others, &span, &mut |ends| {
+                    self.changes.add(ends.map(|end| (end - axis.min) / step), self.extent);
+                });
+            }
+            _ => self.changes.add_all(window),
+        }
+        let mut pose = [0.0; 3];
+        pose[1..lower].copy_from_slice(others);
+        let follows = |i: u64| {
+            pose[0] = axis.value(i);
+            manipulator.follows(follow, &manipulator.task().lower(&pose[..lower]))
+        };
+        self.changes.decide(&self.runs, follows, &mut self.followed[number]);
     }
 
     /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
@@ -318,50 +356,31 @@ impl<'a> Scratch<'a> {
         self.runs.iter().map(|run| run.to - run.from).sum()
     }
 
-    /// `v` of every pose of the present row's window, unless they are there.
-    fn take_displacements(&mut self, window: Run) {
-        if !self.displacements.is_empty() {
-            return;
-        }
-        let (sweep, lower) = (self.sweep, self.sweep.grid.lower());
-        let axis = &sweep.grid.axes()[0];
-        let mut pose = [0.0; 3];
-        pose[1..lower].copy_from_slice(&self.others[..lower - 1]);
-        self.displacements.extend((window.from..window.to).map(|i| {
-            pose[0] = axis.value(i);
-            sweep.manipulator.task().lower(&pose)
-        }));
-    }
-
     /// Takes the imaginary joints of the ways that reach any of the row's poses, which are in `runs`.
-    fn settle(&mut self, i: usize, window: Run, doubt: bool, found: &mut Count) {
-        let mut first = 0;
-        for number in 0..self.legs.len() {
-            let alone = self.legs[number].len() == 1;
-            for way in 0..self.legs[number].len() {
-                let Way { follow, region, pending } = &self.legs[number][way];
-                if !pending {
-                    continue;
-                }
-                let (follow, regional) = (*follow, region.is_some());
-                let used = if alone {
-                    true
-                } else if regional && !doubt {
-                    let mut of_way = self.cuts[first + way].runs(i);
-                    of_way.any(|run| runs::meet(&self.runs, run))
-                } else {
-                    self.take_displacements(window);
-                    runs::poses(&self.runs).any(|pose| {
-                        let v = &self.displacements[(pose - window.from) as usize];
-                        self.sweep.manipulator.follows(&follow, v)
-                    })
-                };
+    fn settle(&mut self, i: usize, doubt: bool, found: &mut Count) {
+        let mut number = 0;
+        for ways in &mut self.legs {
+            let (alone, cut) = (ways.len() == 1, !doubt && is_cut(ways));
+            for way in ways {
+                let reached = |run: Run| runs::meet(&self.runs, run);
+                let used = way.pending
+                    && (alone
+                        || if cut {
+                            self.cuts[number].runs(i).any(reached)
+                        } else {
+                            self.followed[number].iter().copied().any(reached)
+                        });
                 if used {
-                    found.used(self.sweep.manipulator, &follow);
-                    self.legs[number][way].pending = false;
+                    found.used(self.sweep.manipulator, &way.follow);
+                    way.pending = false;
                 }
+                number += 1;
             }
-            first += self.legs[number].len();
         }
     }
+}
+
+/// All ways are regions of the plane.
+fn is_cut(ways: &[Way]) -> bool {
+    ways.iter().all(|way| way.region.is_some())
 }

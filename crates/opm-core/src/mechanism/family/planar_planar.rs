@@ -73,7 +73,7 @@ pub struct SliderLimits {
 }
 
 /// A PRR(RR) leg: metres and radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SliderLeg {
     /// Name, unique in the mechanism.
     pub name: String,
@@ -115,7 +115,7 @@ pub struct ArmLimits {
 }
 
 /// The RR(RRR) leg: metres and radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmLeg {
     /// Name, unique in the mechanism.
     pub name: String,
@@ -144,7 +144,7 @@ pub struct ArmLeg {
 }
 
 /// Geometric parameters of the manipulator.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanarPlanar {
     /// Name of the mechanism.
     pub name: String,

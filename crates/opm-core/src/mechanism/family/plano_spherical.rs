@@ -66,7 +66,7 @@ pub struct SliderLimits {
 }
 
 /// A PRR(RR) leg: metres and radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SliderLeg {
     /// Name, unique in the mechanism.
     pub name: String,
@@ -95,7 +95,7 @@ pub struct SliderLeg {
 }
 
 /// The RRS leg: metres and radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmLeg {
     /// Name, unique in the mechanism.
     pub name: String,
@@ -114,7 +114,7 @@ pub struct ArmLeg {
 }
 
 /// Geometric parameters of the manipulator.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanoSpherical {
     /// Name of the mechanism.
     pub name: String,

@@ -60,7 +60,7 @@ pub struct LegLimits {
 }
 
 /// A PPR leg, or the PPH leg where it has a pitch: metres and radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TranslationalLeg {
     /// Name, unique in the mechanism.
     pub name: String,
@@ -77,7 +77,7 @@ pub struct TranslationalLeg {
 }
 
 /// Geometric parameters of the manipulator.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TranslationalHelical {
     /// Name of the mechanism.
     pub name: String,

@@ -2,6 +2,7 @@
 //!
 //! A method that returns `None` has already reported why: its caller only has to do without.
 
+use super::checks;
 use super::hint::expected_one_of;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
@@ -169,15 +170,7 @@ impl<'a> Value<'a> {
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
         let units = self.reader.units();
         let value = units.si(self.number()?, quantity);
-        if value.abs() > LARGEST {
-            let limit = units.show(LARGEST, quantity);
-            self.report(format!(
-                "is {}, expected a size of at most {limit}",
-                units.show(value, quantity)
-            ));
-            return None;
-        }
-        Some(value)
+        checks::size(value, quantity, units).map_err(|problem| self.report(problem)).ok()
     }
 
     pub(crate) fn length(&self) -> Option<f64> {
@@ -255,17 +248,9 @@ impl<'a> Value<'a> {
 
     /// Lowest and highest value, both included.
     pub(crate) fn limits(&self, quantity: Quantity) -> Option<[f64; 2]> {
-        let [low, high] = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
-        if low > high {
-            let units = self.reader.units();
-            self.report(format!(
-                "are reversed: {} is above {}, expected [lowest, highest]",
-                units.show(low, quantity),
-                units.show(high, quantity)
-            ));
-            return None;
-        }
-        Some([low, high])
+        let limits = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
+        let ordered = checks::ordered(limits, quantity, self.reader.units());
+        ordered.map_err(|problem| self.report(problem)).ok()
     }
 
     /// Whether it is a table.

@@ -1,21 +1,15 @@
-//! `family = "planar-planar"` in a mechanism file.
+//! `family = "planar-planar"` in a mechanism file, and its parameters by name.
 
-use super::{ArmLeg, ArmLimits, Home, PlanarPlanar, SLIDER_LEGS, SliderLeg, SliderLimits};
+use super::{ArmLeg, Home, PlanarPlanar, SLIDER_LEGS, SliderLeg};
 use crate::chain::Branch;
-use crate::joint::Quantity::{Angle, Length};
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::Family;
+use crate::mechanism::family::{Family, Group, Parameter, TableKey};
 use crate::mechanism::file::{
-    Table, branches, home, leg_name, limits, point, quantity, report_problems,
+    Table, branches, leg_name, read_home, read_leg, report_problems, table_of, tables_of,
 };
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
-const HOME_KEYS: &[&str] = &["x", "y", "w", "phi"];
-const SLIDER_KEYS: &[&str] = &["name", "alpha", "h", "a1", "c", "g", "l", "platform", "limits"];
-const SLIDER_LIMIT_KEYS: &[&str] = &["S", "phi1", "phi2", "rod", "hinge"];
-const ARM_KEYS: &[&str] = &["name", "base", "b1", "c", "f", "g", "d1", "d2", "platform", "limits"];
-const ARM_LIMIT_KEYS: &[&str] = &["phi1", "phi2", "fold1", "fold2", "hinge"];
 /// Signs of each leg's choices in the working mode.
 const CHOICES: &[usize] = &[2, 2, 2, 2];
 
@@ -23,83 +17,116 @@ const CHOICES: &[usize] = &[2, 2, 2, 2];
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let coordinate = home(root, HOME_KEYS);
+    let mut family = PlanarPlanar { name: name.to_owned(), ..PlanarPlanar::default() };
+    read_home(root, family.home.parameters());
     let mode = branches(root, CHOICES);
-    let slider_legs = root.tables("slider_leg", SLIDER_KEYS);
-    let arm_leg = root
-        .require("arm_leg", "a table [arm_leg]: the RR(RRR) leg")
-        .and_then(|value| value.table(ARM_KEYS));
     let signs = |i: usize| match mode.get(2 * i..2 * i + 2) {
-        Some(&[first, second]) => [first, second],
-        _ => [Branch::Plus; 2],
+        Some(&[first, second]) => (first, second),
+        _ => (Branch::Plus, Branch::Plus),
     };
-    let sliders = slider_legs.iter().enumerate();
-    let family = PlanarPlanar {
-        name: name.to_owned(),
-        home: Home {
-            x: coordinate("x", Length),
-            y: coordinate("y", Length),
-            w: coordinate("w", Length),
-            phi: coordinate("phi", Angle),
-        },
-        slider_legs: sliders.map(|(i, leg)| slider_leg(leg, i, signs(i))).collect(),
-        arm_leg: arm(arm_leg.as_ref(), signs(SLIDER_LEGS)),
-    };
+
+    let mut legs = tables_of(root, "slider_leg", &SliderLeg::default().parameters());
+    for (index, table) in legs.iter().enumerate() {
+        let mut leg = SliderLeg { name: leg_name(table, index), ..SliderLeg::default() };
+        (leg.upper, leg.slider) = signs(index);
+        read_leg(Some(table), leg.parameters());
+        family.slider_legs.push(leg);
+    }
+    let arm = &mut family.arm_leg;
+    let table = table_of(root, "arm_leg", "a table [arm_leg]: the RR(RRR) leg", &arm.parameters());
+    arm.name = table.map_or_else(String::new, |table| leg_name(&table, SLIDER_LEGS));
+    (arm.lower, arm.fold) = signs(SLIDER_LEGS);
+    read_leg(table.as_ref(), arm.parameters());
+    legs.extend(table);
+
     match family.assemble() {
         Ok(mechanism) => Some((Family::PlanarPlanar(family), mechanism)),
         Err(error) => {
-            let legs: Vec<_> = slider_legs.into_iter().chain(arm_leg).collect();
             report_problems(&error, root, &legs);
             None
         }
     }
 }
 
-fn slider_leg(leg: &Table<'_>, index: usize, [upper, slider]: [Branch; 2]) -> SliderLeg {
-    let limit = limits(Some(leg), SLIDER_LIMIT_KEYS);
-    SliderLeg {
-        name: leg_name(leg, index),
-        alpha: quantity(leg, "alpha", Angle, "the direction of the leg, an angle"),
-        h: quantity(leg, "h", Length, "the slider's distance from the origin"),
-        a1: quantity(leg, "a1", Length, "the length of the link on the slider"),
-        c: quantity(leg, "c", Length, "the carriage's distance from the vertical plane"),
-        g: quantity(leg, "g", Length, "the height of the rod's lower end"),
-        l: quantity(leg, "l", Length, "the length of the rod"),
-        platform: point(leg, "platform", "a point [u, z]: where the rod ends in the platform"),
-        upper,
-        slider,
-        limits: SliderLimits {
-            s: limit("S", Length),
-            phi1: limit("phi1", Angle),
-            phi2: limit("phi2", Angle),
-            rod: limit("rod", Angle),
-            hinge: limit("hinge", Angle),
-        },
+impl PlanarPlanar {
+    /// Every parameter, home's first, then leg by leg.
+    pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
+        let home = Group::home(self.home.parameters());
+        let sliders = self.slider_legs.iter_mut().map(SliderLeg::group);
+        [home].into_iter().chain(sliders).chain([self.arm_leg.group()]).collect()
     }
 }
 
-fn arm(leg: Option<&Table<'_>>, [lower, fold]: [Branch; 2]) -> ArmLeg {
-    let limit = limits(leg, ARM_LIMIT_KEYS);
-    let length = |key, expected| leg.map_or(f64::NAN, |leg| quantity(leg, key, Length, expected));
-    let point = |key, expected| leg.map_or([f64::NAN; 2], |leg| point(leg, key, expected));
-    ArmLeg {
-        name: leg.map_or_else(String::new, |leg| leg_name(leg, SLIDER_LEGS)),
-        base: point("base", "a point [x, y]: where the arm stands"),
-        b1: length("b1", "the length of the arm's first link"),
-        c: length("c", "the elbow's distance from the vertical plane"),
-        f: length("f", "the distance from the elbow to the support, along the vertical plane"),
-        g: length("g", "the height of the support's lower end"),
-        d1: length("d1", "the length of the support's lower link"),
-        d2: length("d2", "the length of the support's upper link"),
-        platform: point("platform", "a point [u, z]: where the support ends in the platform"),
-        lower,
-        fold,
-        limits: ArmLimits {
-            phi1: limit("phi1", Angle),
-            phi2: limit("phi2", Angle),
-            fold1: limit("fold1", Angle),
-            fold2: limit("fold2", Angle),
-            hinge: limit("hinge", Angle),
-        },
+impl Home {
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        vec![
+            Parameter::length("x", &mut self.x, "O along x"),
+            Parameter::length("y", &mut self.y, "O along y"),
+            Parameter::length("w", &mut self.w, "the platform's height"),
+            Parameter::angle("phi", &mut self.phi, "the platform's turn"),
+        ]
+    }
+}
+
+impl SliderLeg {
+    fn group(&mut self) -> Group<'_> {
+        let name = self.name.clone();
+        Group { table: TableKey::Legs("slider_leg"), name, parameters: self.parameters() }
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        let limits = &mut self.limits;
+        vec![
+            Parameter::angle("alpha", &mut self.alpha, "the direction of the leg, an angle"),
+            Parameter::length("h", &mut self.h, "the slider's distance from the origin"),
+            Parameter::length("a1", &mut self.a1, "the length of the link on the slider"),
+            Parameter::length("c", &mut self.c, "the carriage's distance from the vertical plane"),
+            Parameter::length("g", &mut self.g, "the height of the rod's lower end"),
+            Parameter::length("l", &mut self.l, "the length of the rod"),
+            Parameter::point(
+                "platform",
+                &mut self.platform,
+                "a point [u, z]: where the rod ends in the platform",
+            ),
+            Parameter::travel("S", &mut limits.s),
+            Parameter::turn("phi1", &mut limits.phi1),
+            Parameter::turn("phi2", &mut limits.phi2),
+            Parameter::turn("rod", &mut limits.rod),
+            Parameter::turn("hinge", &mut limits.hinge),
+        ]
+    }
+}
+
+impl ArmLeg {
+    fn group(&mut self) -> Group<'_> {
+        let name = self.name.clone();
+        Group { table: TableKey::Leg("arm_leg"), name, parameters: self.parameters() }
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        let limits = &mut self.limits;
+        vec![
+            Parameter::point("base", &mut self.base, "a point [x, y]: where the arm stands"),
+            Parameter::length("b1", &mut self.b1, "the length of the arm's first link"),
+            Parameter::length("c", &mut self.c, "the elbow's distance from the vertical plane"),
+            Parameter::length(
+                "f",
+                &mut self.f,
+                "the distance from the elbow to the support, along the vertical plane",
+            ),
+            Parameter::length("g", &mut self.g, "the height of the support's lower end"),
+            Parameter::length("d1", &mut self.d1, "the length of the support's lower link"),
+            Parameter::length("d2", &mut self.d2, "the length of the support's upper link"),
+            Parameter::point(
+                "platform",
+                &mut self.platform,
+                "a point [u, z]: where the support ends in the platform",
+            ),
+            Parameter::turn("phi1", &mut limits.phi1),
+            Parameter::turn("phi2", &mut limits.phi2),
+            Parameter::turn("fold1", &mut limits.fold1),
+            Parameter::turn("fold2", &mut limits.fold2),
+            Parameter::turn("hinge", &mut limits.hinge),
+        ]
     }
 }

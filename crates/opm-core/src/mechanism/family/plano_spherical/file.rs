@@ -1,22 +1,14 @@
-//! `family = "plano-spherical"` in a mechanism file.
+//! `family = "plano-spherical"` in a mechanism file, and its parameters by name.
 
-use super::{ArmLeg, Home, PlanoSpherical, SLIDER_LEGS, SliderLeg, SliderLimits};
-use crate::chain::Branch;
-use crate::joint::Quantity::{Angle, Length};
+use super::{ArmLeg, Home, PlanoSpherical, SLIDER_LEGS, SliderLeg};
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::Family;
+use crate::mechanism::family::{Family, Group, Parameter, TableKey};
 use crate::mechanism::file::{
-    Table, branches, home, leg_name, limits, point, quantity, report_problems,
+    Table, branches, leg_name, read_home, read_leg, report_problems, table_of, tables_of,
 };
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
-const HOME_KEYS: &[&str] = &["x", "y", "zeta", "xi", "psi"];
-const SLIDER_KEYS: &[&str] =
-    &["name", "alpha", "h", "a1", "a2", "alpha1", "alpha2", "eta", "beta", "limits"];
-const SLIDER_LIMIT_KEYS: &[&str] = &["S", "phi1", "phi2", "theta2", "theta3"];
-const ARM_KEYS: &[&str] = &["name", "base", "b1", "b2", "limits"];
-const ARM_LIMIT_KEYS: &[&str] = &["phi1", "phi2"];
 /// Signs of each leg's choices in the working mode.
 const CHOICES: &[usize] = &[2, 2, 2, 1];
 
@@ -24,78 +16,103 @@ const CHOICES: &[usize] = &[2, 2, 2, 1];
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let coordinate = home(root, HOME_KEYS);
+    let mut family = PlanoSpherical { name: name.to_owned(), ..PlanoSpherical::default() };
+    read_home(root, family.home.parameters());
     let mode = branches(root, CHOICES);
-    let slider_legs = root.tables("slider_leg", SLIDER_KEYS);
-    let arm_leg = root
-        .require("arm_leg", "a table [arm_leg]: the RRS leg")
-        .and_then(|value| value.table(ARM_KEYS));
-    let family = PlanoSpherical {
-        name: name.to_owned(),
-        home: Home {
-            x: coordinate("x", Length),
-            y: coordinate("y", Length),
-            zeta: coordinate("zeta", Angle),
-            xi: coordinate("xi", Angle),
-            psi: coordinate("psi", Angle),
-        },
-        slider_legs: slider_legs
-            .iter()
-            .enumerate()
-            .map(|(i, leg)| slider_leg(leg, i, mode.get(2 * i..2 * i + 2)))
-            .collect(),
-        arm_leg: arm(arm_leg.as_ref(), mode.last().copied()),
-    };
+
+    let mut legs = tables_of(root, "slider_leg", &SliderLeg::default().parameters());
+    for (index, table) in legs.iter().enumerate() {
+        let mut leg = SliderLeg { name: leg_name(table, index), ..SliderLeg::default() };
+        if let Some(&[upper, slider]) = mode.get(2 * index..2 * index + 2) {
+            (leg.upper, leg.slider) = (upper, slider);
+        }
+        read_leg(Some(table), leg.parameters());
+        family.slider_legs.push(leg);
+    }
+    let arm = &mut family.arm_leg;
+    let table = table_of(root, "arm_leg", "a table [arm_leg]: the RRS leg", &arm.parameters());
+    arm.name = table.map_or_else(String::new, |table| leg_name(&table, SLIDER_LEGS));
+    arm.elbow = mode.last().copied().unwrap_or_default();
+    read_leg(table.as_ref(), arm.parameters());
+    legs.extend(table);
+
     match family.assemble() {
         Ok(mechanism) => Some((Family::PlanoSpherical(family), mechanism)),
         Err(error) => {
-            let legs: Vec<_> = slider_legs.into_iter().chain(arm_leg).collect();
             report_problems(&error, root, &legs);
             None
         }
     }
 }
 
-fn slider_leg(leg: &Table<'_>, index: usize, mode: Option<&[Branch]>) -> SliderLeg {
-    let [upper, slider] = match mode {
-        Some(&[upper, slider]) => [upper, slider],
-        _ => [Branch::Plus; 2],
-    };
-    let limit = limits(Some(leg), SLIDER_LIMIT_KEYS);
-    SliderLeg {
-        name: leg_name(leg, index),
-        alpha: quantity(leg, "alpha", Angle, "the direction of the planar leg, an angle"),
-        h: quantity(leg, "h", Length, "the slider's distance from the origin"),
-        a1: quantity(leg, "a1", Length, "the length of the link on the slider"),
-        a2: quantity(leg, "a2", Length, "the length of the link at the platform"),
-        alpha1: quantity(leg, "alpha1", Angle, "the first arc, an angle"),
-        alpha2: quantity(leg, "alpha2", Angle, "the second arc, an angle"),
-        eta: quantity(leg, "eta", Angle, "the platform axis's angle about the platform's z"),
-        beta: quantity(leg, "beta", Angle, "the platform axis's angle from the platform's z"),
-        upper,
-        slider,
-        limits: SliderLimits {
-            s: limit("S", Length),
-            phi1: limit("phi1", Angle),
-            phi2: limit("phi2", Angle),
-            theta2: limit("theta2", Angle),
-            theta3: limit("theta3", Angle),
-        },
+impl PlanoSpherical {
+    /// Every parameter, home's first, then leg by leg.
+    pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
+        let home = Group::home(self.home.parameters());
+        let sliders = self.slider_legs.iter_mut().map(SliderLeg::group);
+        [home].into_iter().chain(sliders).chain([self.arm_leg.group()]).collect()
     }
 }
 
-fn arm(leg: Option<&Table<'_>>, elbow: Option<Branch>) -> ArmLeg {
-    let limit = limits(leg, ARM_LIMIT_KEYS);
-    let length = |key, expected| leg.map_or(f64::NAN, |leg| quantity(leg, key, Length, expected));
-    ArmLeg {
-        name: leg.map_or_else(String::new, |leg| leg_name(leg, SLIDER_LEGS)),
-        base: leg.map_or([f64::NAN; 2], |leg| {
-            point(leg, "base", "a point [x, y]: where the arm stands")
-        }),
-        b1: length("b1", "the length of the arm's first link"),
-        b2: length("b2", "the length of the arm's second link"),
-        elbow: elbow.unwrap_or(Branch::Plus),
-        phi1: limit("phi1", Angle),
-        phi2: limit("phi2", Angle),
+impl Home {
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        vec![
+            Parameter::length("x", &mut self.x, "P along x"),
+            Parameter::length("y", &mut self.y, "P along y"),
+            Parameter::angle("zeta", &mut self.zeta, "the first Euler angle"),
+            Parameter::angle("xi", &mut self.xi, "the second Euler angle"),
+            Parameter::angle("psi", &mut self.psi, "the third Euler angle"),
+        ]
+    }
+}
+
+impl SliderLeg {
+    fn group(&mut self) -> Group<'_> {
+        let name = self.name.clone();
+        Group { table: TableKey::Legs("slider_leg"), name, parameters: self.parameters() }
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        let limits = &mut self.limits;
+        vec![
+            Parameter::angle("alpha", &mut self.alpha, "the direction of the planar leg, an angle"),
+            Parameter::length("h", &mut self.h, "the slider's distance from the origin"),
+            Parameter::length("a1", &mut self.a1, "the length of the link on the slider"),
+            Parameter::length("a2", &mut self.a2, "the length of the link at the platform"),
+            Parameter::angle("alpha1", &mut self.alpha1, "the first arc, an angle"),
+            Parameter::angle("alpha2", &mut self.alpha2, "the second arc, an angle"),
+            Parameter::angle(
+                "eta",
+                &mut self.eta,
+                "the platform axis's angle about the platform's z",
+            ),
+            Parameter::angle(
+                "beta",
+                &mut self.beta,
+                "the platform axis's angle from the platform's z",
+            ),
+            Parameter::travel("S", &mut limits.s),
+            Parameter::turn("phi1", &mut limits.phi1),
+            Parameter::turn("phi2", &mut limits.phi2),
+            Parameter::turn("theta2", &mut limits.theta2),
+            Parameter::turn("theta3", &mut limits.theta3),
+        ]
+    }
+}
+
+impl ArmLeg {
+    fn group(&mut self) -> Group<'_> {
+        let name = self.name.clone();
+        Group { table: TableKey::Leg("arm_leg"), name, parameters: self.parameters() }
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        vec![
+            Parameter::point("base", &mut self.base, "a point [x, y]: where the arm stands"),
+            Parameter::length("b1", &mut self.b1, "the length of the arm's first link"),
+            Parameter::length("b2", &mut self.b2, "the length of the arm's second link"),
+            Parameter::turn("phi1", &mut self.phi1),
+            Parameter::turn("phi2", &mut self.phi2),
+        ]
     }
 }

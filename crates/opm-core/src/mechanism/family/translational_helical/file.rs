@@ -1,32 +1,29 @@
-//! `family = "translational-helical"` in a mechanism file.
+//! `family = "translational-helical"` in a mechanism file, and its parameters by name.
 
-use super::{Home, LegLimits, TranslationalHelical, TranslationalLeg};
-use crate::joint::Quantity::{Angle, Length};
+use super::{Home, TranslationalHelical, TranslationalLeg};
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::Family;
-use crate::mechanism::file::{Table, branches, home, leg_name, limits, quantity, report_problems};
+use crate::mechanism::family::{Family, Group, Parameter, TableKey};
+use crate::mechanism::file::{
+    Table, branches, leg_name, read_home, read_leg, report_problems, tables_of,
+};
 
 const KEYS: &[&str] = &["format", "name", "units", "family", "home", "mode", "leg"];
-const HOME_KEYS: &[&str] = &["x", "y", "phi"];
-const LEG_KEYS: &[&str] = &["name", "alpha", "beta", "k", "pitch", "limits"];
-const LIMIT_KEYS: &[&str] = &["S", "r", "phi"];
 
 /// The parameters and what they assemble to. What cannot be read is reported, and is NaN for the
 /// others to be checked nevertheless.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
-    let coordinate = home(root, HOME_KEYS);
+    let mut family =
+        TranslationalHelical { name: name.to_owned(), ..TranslationalHelical::default() };
+    read_home(root, family.home.parameters());
     branches(root, &[]);
-    let legs = root.tables("leg", LEG_KEYS);
-    let family = TranslationalHelical {
-        name: name.to_owned(),
-        home: Home {
-            x: coordinate("x", Length),
-            y: coordinate("y", Length),
-            phi: coordinate("phi", Angle),
-        },
-        legs: legs.iter().enumerate().map(|(i, leg)| read_leg(leg, i)).collect(),
-    };
+    let legs = tables_of(root, "leg", &TranslationalLeg::default().parameters());
+    for (index, table) in legs.iter().enumerate() {
+        let name = leg_name(table, index);
+        let mut leg = TranslationalLeg { name, ..TranslationalLeg::default() };
+        read_leg(Some(table), leg.parameters());
+        family.legs.push(leg);
+    }
     match family.assemble() {
         Ok(mechanism) => Some((Family::TranslationalHelical(family), mechanism)),
         Err(error) => {
@@ -36,18 +33,40 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
     }
 }
 
-fn read_leg(leg: &Table<'_>, index: usize) -> TranslationalLeg {
-    let limit = limits(Some(leg), LIMIT_KEYS);
-    TranslationalLeg {
-        name: leg_name(leg, index),
-        alpha: quantity(leg, "alpha", Angle, "the direction of the planar leg, an angle"),
-        beta: quantity(leg, "beta", Angle, "the angle from it to the common axis"),
-        k: quantity(leg, "k", Length, "the distance along the common axis"),
-        pitch: leg.get("pitch").map(|value| value.length().unwrap_or(f64::NAN)),
-        limits: LegLimits {
-            s: limit("S", Length),
-            r: limit("r", Length),
-            phi: limit("phi", Angle),
-        },
+impl TranslationalHelical {
+    /// Every parameter, home's first, then leg by leg.
+    pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
+        let home = Group::home(self.home.parameters());
+        [home].into_iter().chain(self.legs.iter_mut().map(TranslationalLeg::group)).collect()
+    }
+}
+
+impl Home {
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        vec![
+            Parameter::length("x", &mut self.x, "P along x"),
+            Parameter::length("y", &mut self.y, "P along y"),
+            Parameter::angle("phi", &mut self.phi, "the platform's turn"),
+        ]
+    }
+}
+
+impl TranslationalLeg {
+    fn group(&mut self) -> Group<'_> {
+        let name = self.name.clone();
+        Group { table: TableKey::Legs("leg"), name, parameters: self.parameters() }
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter<'_>> {
+        let limits = &mut self.limits;
+        vec![
+            Parameter::angle("alpha", &mut self.alpha, "the direction of the planar leg, an angle"),
+            Parameter::angle("beta", &mut self.beta, "the angle from it to the common axis"),
+            Parameter::length("k", &mut self.k, "the distance along the common axis"),
+            Parameter::pitch("pitch", &mut self.pitch, "the advance per radian"),
+            Parameter::travel("S", &mut limits.s),
+            Parameter::travel("r", &mut limits.r),
+            Parameter::turn("phi", &mut limits.phi),
+        ]
     }
 }

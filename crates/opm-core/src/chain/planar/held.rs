@@ -1,0 +1,100 @@
+//! Planar chains with one joint held: what is left are two joints, a link, a slider or a cross slide.
+
+use super::{PlanarChain, PlanarDisplacement, PlanarJoint};
+use crate::chain::Amount;
+use crate::chain::surface::Surface;
+use PlanarJoint::{Prismatic, Revolute};
+use nalgebra::Complex;
+
+impl PlanarChain {
+    /// The targets on which the chain closes with joint number `joint` at `amount`.
+    pub(in crate::chain) fn held(&self, joint: usize, amount: Amount) -> Surface {
+        let joints = self.joints();
+        let hold = joints[joint].displacement(amount);
+        let free = PlanarDisplacement::IDENTITY;
+        match joint {
+            // E₂E₃ = E₁⁻¹ g
+            0 => pair([joints[1], joints[2]], [hold, free]),
+            // E₁ (E₂E₃E₂⁻¹) = g E₂⁻¹
+            1 => pair([joints[0], carried(&joints[2], &hold)], [free, hold]),
+            // E₁E₂ = g E₃⁻¹
+            _ => pair([joints[0], joints[1]], [free, hold]),
+        }
+    }
+
+    /// The amounts of the middle joint at which the two branches meet, or two slides are parallel.
+    pub(in crate::chain) fn folds(&self) -> Vec<Amount> {
+        // A rotation that lays one direction along another, and that against it.
+        let laid = |from: Complex<f64>, to: Complex<f64>, reversed: bool| {
+            let turn = to * from.conj();
+            let turn = if reversed { turn.conj() } else { turn };
+            vec![Amount::Turn(turn), Amount::Turn(-turn)]
+        };
+        let square = Complex::<f64>::i();
+        match self.joints() {
+            [Revolute { at: p1, .. }, Revolute { at: p2, reversed }, Revolute { at: p3, .. }] => {
+                laid(p3 - p2, p2 - p1, reversed)
+            }
+            [Prismatic { along }, Revolute { at: p2, reversed }, Revolute { at: p3, .. }] => {
+                laid(p3 - p2, along * square, reversed)
+            }
+            [Revolute { at: p1, .. }, Revolute { at: p2, reversed }, Prismatic { along }] => {
+                laid(along, (p2 - p1) * square, reversed)
+            }
+            [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
+                vec![Amount::Value(-((p3 - p1) * along.conj()).re)]
+            }
+            [Prismatic { along: d1 }, Revolute { reversed, .. }, Prismatic { along: d3 }] => {
+                laid(d3, d1, reversed)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether an amount of a joint is a turn.
+    pub(in crate::chain) fn turns(&self, joint: usize) -> bool {
+        matches!(self.joints()[joint], Revolute { .. })
+    }
+
+    /// The sum of its pivots' distances from the origin.
+    pub(in crate::chain) fn size(&self) -> f64 {
+        let size = |joint: &PlanarJoint| match joint {
+            Revolute { at, .. } => at.norm(),
+            Prismatic { .. } => 0.0,
+        };
+        self.joints().iter().map(size).sum()
+    }
+}
+
+/// The targets `g` with `first⁻¹ g last⁻¹` a product of the displacements of two joints.
+fn pair(joints: [PlanarJoint; 2], [first, last]: [PlanarDisplacement; 2]) -> Surface {
+    let back = last.inverse();
+    match joints {
+        [Revolute { at: a, .. }, Revolute { at: b, .. }] => Surface::Circle {
+            point: back.apply(b),
+            centre: first.apply(a),
+            square: (b - a).norm_sqr(),
+        },
+        [Prismatic { along }, Revolute { at, .. }] => {
+            let across = first.rotation * along * Complex::i();
+            let on = first.apply(at);
+            Surface::Line { point: back.apply(at), across, at: (across.conj() * on).re }
+        }
+        [Revolute { at, .. }, Prismatic { along }] => {
+            let across = back.rotation * along * Complex::i();
+            let on = back.apply(at);
+            Surface::Carried { point: first.apply(at), across, at: (across.conj() * on).re }
+        }
+        [Prismatic { .. }, Prismatic { .. }] => {
+            Surface::Rotation { rotation: first.rotation * last.rotation }
+        }
+    }
+}
+
+/// A joint, displaced.
+fn carried(joint: &PlanarJoint, by: &PlanarDisplacement) -> PlanarJoint {
+    match *joint {
+        Revolute { at, reversed } => Revolute { at: by.apply(at), reversed },
+        Prismatic { along } => Prismatic { along: by.rotation * along },
+    }
+}

@@ -1,0 +1,149 @@
+//! Where along a row of a sweep a leg may begin or cease to follow.
+//!
+//! In a row all coordinates but the first are fixed, and the target of the leg's lower chain moves along
+//! a [`Path`](crate::chain::surface::Path). The leg changes its mind only where that meets the [`Surface`]s of its chain: a joint at
+//! its limit, two branches that meet. Of a leg whose lower section takes the cut, and whose upper section
+//! has a say, what the upper section allows is arcs of the cut's amount, since in a slice that is all that
+//! moves its target; their ends are limits of the cut, the last joint of the lower chain.
+
+use super::leg::CompiledSection;
+use super::{Follow, Manipulator};
+use crate::chain::equation::Span;
+use crate::chain::surface::Surface;
+use crate::chain::{Amount, unit};
+use crate::joint::Quantity;
+use crate::limits::Limits;
+use std::f64::consts::PI;
+
+/// How far a cut may slide, in sizes of the leg, and its upper section still be asked for: beyond, its
+/// rounding is no longer that of a number of that size.
+const FAR: f64 = 1e4;
+
+/// What can change a leg's mind within a slice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breaks {
+    surfaces: Vec<Surface>,
+    /// Ends of what the upper section allows, each known to within a share.
+    cuts: Vec<(Surface, f64)>,
+    /// No number of the leg is larger, metres.
+    size: f64,
+    /// How far the cut may slide for the above to hold, metres.
+    most: Option<f64>,
+}
+
+impl CompiledSection {
+    /// Where the section's chain enters and leaves its limits, and where its branches meet; `None` where
+    /// there is no closed form for that.
+    fn surfaces(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
+        let mut surfaces = self.chain.folds();
+        for (joint, slot) in self.slots.iter().enumerate() {
+            let Some(slot) = slot else { continue };
+            for end in self.chain.ends(joint, &limits[slot.coordinate]).into_iter().flatten() {
+                surfaces.push(self.chain.held(joint, end)?);
+            }
+        }
+        Some(surfaces)
+    }
+
+    /// The sum of its lengths, limits included.
+    fn size(&self, manipulator: &Manipulator) -> f64 {
+        let limit = |coordinate: usize| {
+            let (low, high) = manipulator.limits[coordinate].range();
+            let length = manipulator.coordinates[coordinate].quantity == Quantity::Length;
+            if length && low.is_finite() { low.abs().max(high.abs()) } else { 0.0 }
+        };
+        let limits: f64 = self.slots.iter().flatten().map(|slot| limit(slot.coordinate)).sum();
+        self.chain.size() + limits
+    }
+}
+
+impl Manipulator {
+    /// What can change a leg's mind within the slice. `None` where no closed form tells: limits on
+    /// the rotation vector of a spherical joint.
+    pub fn breaks(&self, way: &Follow) -> Option<Breaks> {
+        let leg = &self.legs[way.leg];
+        let size = self.length + leg.lower.size(self);
+        let mut breaks = Breaks {
+            surfaces: leg.lower.surfaces(&self.limits)?,
+            cuts: Vec::new(),
+            size,
+            most: None,
+        };
+        if way.asks_upper {
+            self.add_cuts(way, &mut breaks)?;
+        }
+        Some(breaks)
+    }
+
+    /// What the upper section allows, as limits of the cut.
+    fn add_cuts(&self, way: &Follow, breaks: &mut Breaks) -> Option<()> {
+        let leg = &self.legs[way.leg];
+        let last = leg.lower.chain.freedoms() - 1;
+        breaks.size += leg.upper.size(self) + way.b.size();
+        let turns = self.task.cut_point.is_some();
+        let most = if turns { PI } else { FAR * breaks.size };
+        breaks.most = (!turns).then_some(most);
+        let span = Span { from: -most, to: most, step: 0.0 };
+        let path = self.task.upper_cut.path(&way.b);
+        let hold = |at: f64| {
+            let amount = if turns { Amount::Turn(unit(at)) } else { Amount::Value(at) };
+            leg.lower.chain.held(last, amount)
+        };
+        let cuts = &mut breaks.cuts;
+        for surface in leg.upper.surfaces(&self.limits)? {
+            surface.meet(&path, &span, [breaks.size, 0.0], &mut |[from, to]| {
+                let blur = 0.5 * (to - from);
+                let share = if turns { blur } else { blur / breaks.size };
+                cuts.extend(hold(0.5 * (from + to)).map(|surface| (surface, share)));
+            });
+        }
+        if leg.unwinds {
+            // Where it is unwound to the other side.
+            cuts.extend(hold(PI).map(|surface| (surface, 0.0)));
+        }
+        Some(())
+    }
+
+    /// Gives the intervals of a span of the first coordinate in which the leg may change its mind, when
+    /// the other coordinates of `v` are `others`: outside of them, it follows everywhere between two or
+    /// nowhere, as [`Manipulator::follows`] says.
+    pub fn changes(
+        &self,
+        (way, breaks): (&Follow, &Breaks),
+        others: &[f64],
+        span: &Span,
+        found: &mut impl FnMut([f64; 2]),
+    ) {
+        let leg = &self.legs[way.leg];
+        let home = self.task.coordinates[0].home;
+        let moved = Span { from: span.from - home, to: span.to - home, step: span.step };
+        let mut found = |[from, to]: [f64; 2]| found([from + home, to + home]);
+        let at = |first: f64| {
+            let mut pose = [first, 0.0, 0.0];
+            pose[1..=others.len()].copy_from_slice(others);
+            self.task.lower(&pose)
+        };
+        let start = match way.tau {
+            Some(tau) => self.task.lower_cut.after(&at(home), tau),
+            None => at(home),
+        };
+        let path = self.task.row(&start);
+        for surface in &breaks.surfaces {
+            surface.meet(&path, &moved, [breaks.size, 0.0], &mut found);
+        }
+        // A cut that slides farther than the leg is long is linear along the row: most at one of its ends.
+        let beyond = |most: f64| {
+            [span.from, span.to].into_iter().any(|first| {
+                let amounts = leg.lower.chain.inverse(&at(first), way.branches.lower);
+                let last = leg.lower.chain.freedoms() - 1;
+                amounts.is_ok_and(|amounts| amounts[last].value().abs() > most)
+            })
+        };
+        if breaks.most.is_some_and(beyond) {
+            found([moved.from, moved.to]);
+        }
+        for (surface, blur) in &breaks.cuts {
+            surface.meet(&path, &moved, [breaks.size, *blur], &mut found);
+        }
+    }
+}
