@@ -56,6 +56,14 @@ impl<'a> Slices<'a> {
         view: Option<[usize; 2]>,
     ) -> Result<Self, Failure> {
         let view = view.unwrap_or_else(|| fast(layout));
+        if view[0] == view[1] {
+            let name = layout.coordinates.get(view[0]).map_or("one coordinate", |c| &*c.name);
+            return Err(Failure::Work(format!(
+                "{}: nothing to draw: its points differ in {name} alone, and a slice shows two \
+                 coordinates; record with --axes or --scalars, and choose with --values",
+                source.label
+            )));
+        }
         let asked = asked(layout, args, view)?;
         let free: Vec<usize> = (0..layout.coordinates.len())
             .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
@@ -256,7 +264,7 @@ impl<'a> Slices<'a> {
             title.push_str(&format!(", at any {names}"));
         }
         let [a, b] = &self.view;
-        let columns = columns(self.tiles.len());
+        let columns = self.columns();
         let marks: Vec<Option<[f64; 2]>> =
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
@@ -293,6 +301,21 @@ impl<'a> Slices<'a> {
         });
         let tiles = tiles.into_iter().zip(marks).map(tile).collect();
         Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+    }
+
+    /// Tiles in a row: fewer where tiles that are much wider than high would be too small.
+    fn columns(&self) -> usize {
+        /// Room for a row of tiles, and the least height of one, roughly.
+        const ROOM: [f64; 2] = [800.0, 70.0];
+        let most = columns(self.tiles.len());
+        let [a, b] = self.view.each_ref().map(|seen| &self.layout.coordinates[seen.number]);
+        let (Some(x), Some(y)) = (&a.axis, &b.axis) else { return most };
+        if a.quantity != b.quantity {
+            return most;
+        }
+        let steep = (y.max - y.min) / (x.max - x.min).max(f64::MIN_POSITIVE);
+        let fits = |columns: &usize| ROOM[0] / *columns as f64 * steep >= ROOM[1];
+        (1..=most).rfind(fits).unwrap_or(1)
     }
 
     /// The boundary of what is in a tile, where the recording has it, too.
