@@ -42,6 +42,7 @@
 
 pub mod chain;
 pub mod decomposition;
+pub mod enclosure;
 pub mod forward;
 pub mod joint;
 pub mod leg;

@@ -402,6 +402,12 @@ impl Task {
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn))
     }
 
+    /// What an orientation by Euler angles is turned back by to be a displacement from home, unless
+    /// that is the identity.
+    pub(crate) fn home_orientation_inverse(&self) -> Option<&Matrix3<f64>> {
+        self.home_orientation_inverse.as_ref()
+    }
+
     /// The pose at home.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()

@@ -86,13 +86,9 @@ struct Range {
 impl Range {
     fn new(manipulator: &Manipulator, coordinate: &TaskCoordinate, size: f64) -> Self {
         let (name, home) = (coordinate.name, coordinate.home);
-        let [min, max] = match (coordinate.quantity, name) {
-            (Quantity::Length, _) => [home - size, home + size],
-            // Euler angles and tilts of every orientation, each but once, home's among them.
-            (Quantity::Angle, "xi") => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
-            (Quantity::Angle, "zeta" | "psi") => [-PI, PI].map(|end| end + whole_turns(home)),
-            (Quantity::Angle, "nu") => [home - FRAC_PI_2, home + FRAC_PI_2],
-            (Quantity::Angle, _) => [home - PI, home + PI],
+        let [min, max] = match coordinate.quantity {
+            Quantity::Length => [home - size, home + size],
+            Quantity::Angle => one_turn(name, home),
         };
         let grows = coordinate.quantity == Quantity::Length || manipulator.counts_turns(name);
         let extent = Extent { name, min, max, unbounded: false };
@@ -259,6 +255,17 @@ impl<'a> Search<'a> {
             Ok::<(), Cancelled>(())
         })?;
         Ok(found)
+    }
+}
+
+/// The range of an angle that knows no whole turns: of Euler angles and tilts every orientation or
+/// direction, each but once, home's among them.
+pub(crate) fn one_turn(name: &str, home: f64) -> [f64; 2] {
+    match name {
+        "xi" => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
+        "zeta" | "psi" => [-PI, PI].map(|end| end + whole_turns(home)),
+        "nu" => [home - FRAC_PI_2, home + FRAC_PI_2],
+        _ => [home - PI, home + PI],
     }
 }
 

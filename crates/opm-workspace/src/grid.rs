@@ -126,8 +126,8 @@ impl Sections {
     pub fn coordinate(self) -> &'static str {
         match self {
             Self::Whole => "task coordinate",
-            Self::Upper => "coordinate of the upper section",
-            Self::Lower => "coordinate of the lower section or imaginary joint",
+            Self::Upper => "task coordinate of the upper section",
+            Self::Lower => "task coordinate of the lower section or imaginary joint",
         }
     }
 }

@@ -10,6 +10,7 @@ mod condition;
 mod conditioning;
 mod extent;
 mod grid;
+pub mod measure;
 mod progress;
 mod set;
 mod sweep;

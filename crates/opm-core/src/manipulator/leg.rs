@@ -237,6 +237,11 @@ impl CompiledLeg {
         }
     }
 
+    /// Whether the cut is a turn, and handed on to a section that counts whole turns.
+    pub fn unwinds(&self) -> bool {
+        self.unwinds
+    }
+
     #[inline(always)]
     pub fn unwound(&self, cut: Amount, near: f64) -> Amount {
         if self.unwinds { Amount::Value(cut.nearest(near)) } else { cut }

@@ -1,0 +1,357 @@
+//! Boxes of poses: how much of one is in reach and within the limits, from both sides, for certain.
+//!
+//! The closed forms that decide on one pose ([`crate::manipulator`]) are gone through for a whole box at
+//! once, in affine arithmetic (`affine.rs`): every quantity is a linear function of the box's coordinates,
+//! and a bound on what that is off by, rounding included. So every condition that a pose has to meet, that
+//! a chain closes, that a joint is within its limits, is met on one side of a plane but for a known error,
+//! and the share of the box on that side has a closed form (`share.rs`). Shares of several conditions are
+//! put together by what holds whatever they have in common.
+//!
+//! The bounds hold for the poses that [`Manipulator::inverse`] calls reached and within limits, and for
+//! those that are so without its allowances for rounding on a limit or on the rim of reach: both lie
+//! within the margins.
+//!
+//! A box is even in the measure: coordinates are lengths and angles, but for `xi` and `nu`, which tilt an
+//! axis in a sphere. Of these a box is even in the cosine or sine, so that all its points weigh the same
+//! in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
+
+mod affine;
+mod chain;
+mod share;
+mod target;
+
+use crate::chain::Branch;
+use crate::leg::Section;
+use crate::limits::Limits;
+use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
+use affine::{Affine, Plane};
+use share::Share;
+use std::f64::consts::{PI, TAU};
+use target::{Coordinate, Enclosed, Target};
+
+pub use share::MOST;
+
+/// One coordinate of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// The middle: a value, radians or metres, or what stands for it in a `piece`.
+    pub middle: f64,
+    /// How far it is from the middle to either end; zero where the coordinate has one value.
+    pub half: f64,
+    /// The coordinate is an angle of which the box is even in the cosine: see [`Piece`].
+    pub piece: Option<Piece>,
+}
+
+/// Half a turn of an angle `α`, from `number` times π to the next multiple, over which `-cos α` or `cos α`
+/// rises from -1 to 1: what rises stands for the angle. `α` is `xi`, or `nu` less its home value plus a
+/// quarter of a turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Multiples of π at its beginning.
+    pub number: i64,
+}
+
+impl Piece {
+    /// The piece that holds an angle.
+    pub fn of(angle: f64) -> Self {
+        Self { number: (angle / PI).floor() as i64 }
+    }
+
+    /// What stands for an angle of this piece.
+    pub fn from_angle(self, angle: f64) -> f64 {
+        -(angle - self.start()).cos()
+    }
+
+    /// The angle that a number from -1 to 1 stands for.
+    pub fn angle(self, at: f64) -> f64 {
+        self.start() + (-at).clamp(-1.0, 1.0).acos()
+    }
+
+    fn start(self) -> f64 {
+        self.number as f64 * PI
+    }
+
+    /// Of the sine over the piece.
+    fn sign(self) -> f64 {
+        if self.number.rem_euclid(2) == 0 { 1.0 } else { -1.0 }
+    }
+}
+
+/// What is asked of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// That poses are in reach and within all limits: a side for every task coordinate.
+    Whole,
+    /// That the upper section alone is: a side for every task coordinate of `b`.
+    Upper,
+    /// That the lower section alone is, with the displacements along the intersection motion given: a
+    /// side for every task coordinate of `v`, and one for the displacement of every leg that is cut in
+    /// its upper section, leg by leg.
+    Lower,
+}
+
+/// What is known of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// At least this share of the box meets what was asked; 1 where all of it does.
+    pub lower: f64,
+    /// At most this share does; 0 where nothing does.
+    pub upper: f64,
+    /// The side that is best split to bring the bounds together; `None` where no split helps.
+    pub split: Option<usize>,
+}
+
+impl Manipulator {
+    /// How much of a box of poses meets what is asked, in one working mode, or (`None`) in any.
+    ///
+    /// # Panics
+    /// If there is another number of sides than coordinates, or more than [`MOST`] have a width.
+    pub fn enclose(&self, asked: Asked, mode: Option<Mode>, sides: &[Side]) -> Verdict {
+        let wide = sides.iter().filter(|side| side.half > 0.0).count();
+        match wide {
+            0..=2 => self.enclose_in::<2>(asked, mode, sides),
+            3 => self.enclose_in::<3>(asked, mode, sides),
+            4..=5 => self.enclose_in::<5>(asked, mode, sides),
+            _ => self.enclose_in::<MOST>(asked, mode, sides),
+        }
+    }
+
+    fn enclose_in<const N: usize>(
+        &self,
+        asked: Asked,
+        mode: Option<Mode>,
+        sides: &[Side],
+    ) -> Verdict {
+        let lower_count = self.task().lower_count;
+        let mut numbers = [None; N];
+        let mut next = 0;
+        let coordinate = |(number, side): (usize, &Side)| {
+            let value = if side.half > 0.0 {
+                numbers[next] = Some(number);
+                next += 1;
+                Affine::<N>::coordinate(side.middle, side.half, next - 1)
+            } else {
+                Affine::constant(side.middle)
+            };
+            let of_upper = asked == Asked::Upper || number >= lower_count;
+            match side.piece {
+                None => Coordinate::Linear(value),
+                Some(piece) => Coordinate::Polar(polar(piece, value, of_upper)),
+            }
+        };
+        let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
+        let task = self.task();
+        let query = Query { manipulator: self, mode };
+        let legs = 0..self.legs.len();
+        let share = match asked {
+            Asked::Whole => {
+                let v = target::task::lower(task, &coordinates[..lower_count]);
+                let b = target::task::upper(task, &coordinates[lower_count..]);
+                all(legs, |leg| query.whole(leg, &v, &b))
+            }
+            Asked::Upper => {
+                let b = target::task::upper(task, &coordinates);
+                all(legs, |leg| query.upper(leg, &b))
+            }
+            Asked::Lower => {
+                let v = target::task::lower(task, &coordinates[..lower_count]);
+                let mut cuts = coordinates[lower_count..].iter();
+                all(legs, |leg| {
+                    let tau = match self.legs[leg].cut {
+                        Section::Upper => match cuts.next() {
+                            Some(&Coordinate::Linear(tau)) => tau,
+                            _ => unreachable!("a length or an angle for every cut"),
+                        },
+                        Section::Lower => Affine::constant(0.0),
+                    };
+                    query.lower(leg, &v, tau)
+                })
+            }
+        };
+        let contributions = share.contributions();
+        let mut split = None;
+        for (&contribution, number) in contributions.iter().zip(numbers) {
+            let larger = split.is_none_or(|(_, most)| contribution > most);
+            if contribution > 0.0 && larger {
+                split = number.map(|number| (number, contribution));
+            }
+        }
+        let split = match split {
+            Some((number, _)) => Some(number),
+            // Nothing is known of where the gap comes from.
+            None if contributions.iter().any(|c| !c.is_finite()) => numbers[0],
+            None => None,
+        };
+        Verdict { lower: share.lower, upper: share.upper, split }
+    }
+}
+
+/// The unit vector at the angle that `at` stands for.
+fn polar<const N: usize>(piece: Piece, at: Affine<N>, of_upper: bool) -> Plane<N> {
+    let sign = piece.sign();
+    let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
+    let alpha = Plane { re: cosine, im: sine };
+    // nu is a quarter of a turn less than what the piece is of.
+    if of_upper { alpha } else { Plane { re: alpha.im, im: -alpha.re } }
+}
+
+/// The share that all legs have in common; those after one that reaches nothing are not asked.
+fn all<const N: usize>(
+    legs: impl Iterator<Item = usize>,
+    mut of_leg: impl FnMut(usize) -> Share<N>,
+) -> Share<N> {
+    let mut common = Share::ALL;
+    for leg in legs {
+        common = common.and(of_leg(leg));
+        if common.is_none() {
+            break;
+        }
+    }
+    common
+}
+
+/// The share that any of some ways reaches.
+fn any<T, const N: usize>(
+    ways: impl IntoIterator<Item = T>,
+    mut of_way: impl FnMut(T) -> Share<N>,
+) -> Share<N> {
+    ways.into_iter().fold(Share::NONE, |share, way| share.or(of_way(way)))
+}
+
+/// A leg's conditions over a box.
+struct Query<'a> {
+    manipulator: &'a Manipulator,
+    mode: Option<Mode>,
+}
+
+impl Query<'_> {
+    fn leg(&self, number: usize) -> &CompiledLeg {
+        &self.manipulator.legs[number]
+    }
+
+    /// The branches of a leg's section that count.
+    fn branches(&self, leg: usize, section: Section) -> impl Iterator<Item = Branch> + use<> {
+        let both = self.mode.is_none() && self.leg(leg).section(section).chain.has_choice();
+        let first = self.mode.map_or(Branch::Plus, |mode| {
+            let branches = self.manipulator.branches(mode, leg);
+            match section {
+                Section::Lower => branches.lower,
+                Section::Upper => branches.upper,
+            }
+        });
+        [Some(first), both.then_some(Branch::Minus)].into_iter().flatten()
+    }
+
+    /// The share for which a section closes within its limits; `then` is asked of its joints'
+    /// displacements.
+    fn section<const N: usize>(
+        &self,
+        leg: usize,
+        section: Section,
+        target: &Target<N>,
+        then: impl Fn(&[Enclosed<N>; 3]) -> Share<N>,
+    ) -> Share<N> {
+        let compiled = self.leg(leg).section(section);
+        let closes = chain::closes(&compiled.chain, target);
+        if closes.is_none() {
+            return closes;
+        }
+        closes.and(any(self.branches(leg, section), |branch| {
+            let amounts = chain::amounts(&compiled.chain, target, branch);
+            let within = self.admits(compiled, &amounts);
+            if within.is_none() { within } else { within.and(then(&amounts)) }
+        }))
+    }
+
+    fn upper<const N: usize>(&self, leg: usize, b: &Target<N>) -> Share<N> {
+        match self.leg(leg).cut {
+            Section::Upper => self.section(leg, Section::Upper, b, |_| Share::ALL),
+            Section::Lower => Share::ALL,
+        }
+    }
+
+    fn lower<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
+        match self.leg(leg).cut {
+            Section::Upper => self.follows(leg, v, Enclosed::Value(tau)),
+            Section::Lower => self.section(leg, Section::Lower, v, |_| Share::ALL),
+        }
+    }
+
+    fn whole<const N: usize>(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
+        let compiled = self.leg(leg);
+        match compiled.cut {
+            Section::Upper => self.section(leg, Section::Upper, b, |amounts| {
+                self.unwound(compiled, amounts[0], |tau| self.follows(leg, v, tau))
+            }),
+            Section::Lower => self.section(leg, Section::Lower, v, |amounts| {
+                if !compiled.upper_decides {
+                    return Share::ALL;
+                }
+                let cut = amounts[compiled.lower.chain.freedoms() - 1];
+                self.unwound(compiled, cut, |cut| {
+                    let target = target::before(self.manipulator.task().upper_cut, b, cut);
+                    self.section(leg, Section::Upper, &target, |_| Share::ALL)
+                })
+            }),
+        }
+    }
+
+    /// The share for which the lower section follows to `v · exp(I τ)`.
+    fn follows<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
+        let target = target::after(self.manipulator.task().lower_cut, v, tau);
+        self.section(leg, Section::Lower, &target, |_| Share::ALL)
+    }
+
+    /// What follows from a cut, near zero where whole turns count: within half a turn, where a box may
+    /// hold both ends of that.
+    fn unwound<const N: usize>(
+        &self,
+        leg: &CompiledLeg,
+        cut: Enclosed<N>,
+        then: impl Fn(Enclosed<N>) -> Share<N>,
+    ) -> Share<N> {
+        if !leg.unwinds() || matches!(cut, Enclosed::Value(_)) {
+            return then(cut);
+        }
+        let number = cut.number();
+        let turns = (number.centre / TAU).round();
+        let near = number - TAU * turns;
+        let here = then(Enclosed::Value(near));
+        if near.low() > -PI && near.high() < PI {
+            return here;
+        }
+        let shift = if near.centre > 0.0 { -TAU } else { TAU };
+        here.either(then(Enclosed::Value(near + shift)))
+    }
+
+    /// The share for which a section's joints are within their limits.
+    fn admits<const N: usize>(
+        &self,
+        section: &CompiledSection,
+        amounts: &[Enclosed<N>; 3],
+    ) -> Share<N> {
+        if !section.limited {
+            return Share::ALL;
+        }
+        let limits = self.manipulator.limits();
+        let joints = section.slots.iter().zip(amounts);
+        joints.fold(Share::ALL, |share, (slot, amount)| match slot {
+            Some(slot) if !share.is_none() => share.and(within(&limits[slot.coordinate], amount)),
+            _ => share,
+        })
+    }
+}
+
+/// The share for which a joint's displacement is within its limits.
+fn within<const N: usize>(limits: &Limits, amount: &Enclosed<N>) -> Share<N> {
+    match (limits, amount) {
+        (Limits::Free, _) => Share::ALL,
+        (Limits::Range { low, high, .. }, Enclosed::Value(value)) => {
+            Share::within(value, [*low, *high], 0.0)
+        }
+        (Limits::Range { arc: None, .. }, _) => Share::ALL,
+        (Limits::Range { low, high, .. }, turn) => {
+            Share::within_turns(&turn.number(), [*low, *high], TAU)
+        }
+    }
+}

@@ -1,0 +1,432 @@
+//! Affine arithmetic: a function over a box as a linear function and a bound on what that is off by.
+//!
+//! A quantity is `centre + slope · δ` with `δ` in the cube `[-1, 1]^N`, one coordinate of the box each, to
+//! within the sum of `error`. Errors are quadratic in the size of the box, so that boxes of half the size
+//! are known four times as well (L. H. de Figueiredo and J. Stolfi, *Affine arithmetic: concepts and
+//! applications*, Numerical Algorithms 37, 2004). They are kept by the coordinate that they come from,
+//! which tells where a box is worth splitting.
+
+use nalgebra::Complex;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// What one operation rounds, as a share of the largest number in it: some nine times the unit roundoff,
+/// for the dozen roundings that it is made of.
+const ROUNDING: f64 = 1e-15;
+
+/// In place of an error without a bound: too large for anything to be decided, and products of three of
+/// them are still finite.
+const UNBOUNDED: f64 = 1e90;
+
+/// A wider range of an angle than this, on each side of its middle, leaves its sine and cosine unknown.
+const WIDE: f64 = 1.2;
+
+/// Rotations whose `(1 - cos θ)/2` may be larger are too near to half a turn for their rotation vector.
+const NEAR_HALF_TURN: f64 = 0.999;
+
+/// Half the largest second derivative of the arctangent, `3√3/8`.
+const ARCTANGENT_BEND: f64 = 0.325;
+
+/// A linear function on the cube `[-1, 1]^N`, to within an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine<const N: usize> {
+    /// The value in the middle.
+    pub centre: f64,
+    /// What each coordinate adds at its end.
+    pub slope: [f64; N],
+    /// By how much the function may differ from the linear one, by coordinate.
+    pub error: [f64; N],
+    /// What rounding adds to that.
+    pub rounding: f64,
+}
+
+impl<const N: usize> Affine<N> {
+    pub fn constant(centre: f64) -> Self {
+        Self { centre, slope: [0.0; N], error: [0.0; N], rounding: 0.0 }
+    }
+
+    /// Coordinate number `i`, from `centre - half` to `centre + half`.
+    pub fn coordinate(centre: f64, half: f64, i: usize) -> Self {
+        let mut slope = [0.0; N];
+        slope[i] = half;
+        Self { centre, slope, ..Self::constant(centre) }.rounded(centre.abs() + half)
+    }
+
+    /// How much each coordinate may change it, from the middle to an end.
+    pub fn spread(&self) -> [f64; N] {
+        std::array::from_fn(|i| self.slope[i].abs() + self.error[i])
+    }
+
+    /// How far from `centre` it may be.
+    pub fn radius(&self) -> f64 {
+        self.spread().iter().sum::<f64>() + self.rounding
+    }
+
+    pub fn low(&self) -> f64 {
+        self.centre - self.radius()
+    }
+
+    pub fn high(&self) -> f64 {
+        self.centre + self.radius()
+    }
+
+    /// How far it may be from the linear function.
+    pub fn total_error(&self) -> f64 {
+        self.error.iter().sum::<f64>() + self.rounding
+    }
+
+    /// One operation that gave this, on numbers up to `size`, has rounded.
+    fn rounded(mut self, size: f64) -> Self {
+        self.rounding += ROUNDING * size;
+        self
+    }
+
+    fn size(&self) -> f64 {
+        self.centre.abs() + self.radius()
+    }
+
+    /// Anything within `bound` of `centre`, for the reason that these spreads were too large.
+    fn unknown(centre: f64, bound: f64, spread: &[f64; N]) -> Self {
+        let total: f64 = spread.iter().sum();
+        if total > 0.0 && total.is_finite() {
+            let error = spread.map(|s| bound * s / total);
+            Self { error, ..Self::constant(centre) }
+        } else {
+            Self { rounding: bound, ..Self::constant(centre) }
+        }
+    }
+
+    pub fn square(self) -> Self {
+        let spread = self.spread();
+        let all: f64 = spread.iter().sum();
+        // The square of what is off the centre lies between zero and this.
+        let bend = 0.5 * all * all;
+        let error = |i: usize| 2.0 * self.centre.abs() * self.error[i] + 0.5 * all * spread[i];
+        let off = self.rounding * (2.0 * (self.centre.abs() + all) + self.rounding);
+        let size = self.size();
+        Self {
+            centre: self.centre * self.centre + bend,
+            slope: self.slope.map(|s| 2.0 * self.centre * s),
+            error: std::array::from_fn(error),
+            rounding: off,
+        }
+        .rounded(size * size)
+    }
+
+    /// A convex (`bend` 1) or concave (-1) function with its derivative, on those values that are at
+    /// least `least`: it lies on one side of a tangent, farthest from it at an end.
+    fn curved(self, least: f64, bend: f64, f: impl Fn(f64) -> [f64; 2]) -> Self {
+        let (low, high) = (self.low().max(least), self.high());
+        let at = if self.low() < least { 0.5 * (low + high) } else { self.centre };
+        let [value, slope] = f(at);
+        let tangent = |x: f64| value + slope * (x - at);
+        let off = |x: f64| (bend * (f(x)[0] - tangent(x))).max(0.0);
+        let most = off(low).max(off(high));
+        let spread = self.spread();
+        let all: f64 = spread.iter().sum();
+        let share = if all > 0.0 { 0.5 * most / all } else { 0.0 };
+        let size = value.abs() + slope.abs() * self.size() + most;
+        Self {
+            centre: tangent(self.centre) + 0.5 * bend * most,
+            slope: self.slope.map(|s| slope * s),
+            error: std::array::from_fn(|i| slope.abs() * self.error[i] + share * spread[i]),
+            rounding: slope.abs() * self.rounding + if all > 0.0 { 0.0 } else { 0.5 * most },
+        }
+        .rounded(4.0 * size)
+    }
+
+    /// The root, where it has one: what is said is said of those values.
+    pub fn sqrt(self) -> Self {
+        let high = self.high();
+        if high <= 0.0 {
+            return Self::constant(0.0);
+        }
+        self.curved(0.0, -1.0, |x| [x.sqrt(), 0.5 / x.sqrt()])
+    }
+
+    pub fn recip(self) -> Self {
+        if self.low() > 0.0 {
+            self.curved(0.0, 1.0, |x| [1.0 / x, -1.0 / (x * x)])
+        } else if self.high() < 0.0 {
+            -(-self).recip()
+        } else {
+            Self::unknown(0.0, UNBOUNDED, &self.spread())
+        }
+    }
+
+    /// One over the root of a number that is not negative.
+    fn recip_sqrt(self) -> Self {
+        if self.low() > 0.0 {
+            self.curved(0.0, 1.0, |x| [1.0 / x.sqrt(), -0.5 / (x * x.sqrt())])
+        } else {
+            Self::unknown(0.0, UNBOUNDED, &self.spread())
+        }
+    }
+
+    /// `θ / sin θ` for the cosine of an angle from zero to half a turn: `Σ aₙ yⁿ` with `y = (1 - cos θ)/2`
+    /// and `aₙ₊₁ = aₙ (2n + 2)/(2n + 3)`, so that it is convex.
+    pub fn angle_over_sine(self) -> Self {
+        let y = (-self + 1.0) * 0.5;
+        if y.high() > NEAR_HALF_TURN {
+            return Self::unknown(0.0, UNBOUNDED, &self.spread());
+        }
+        y.curved(0.0, 1.0, |y| {
+            if y < 0.01 {
+                let mut term = 1.0;
+                let (mut value, mut slope) = (0.0, 0.0);
+                for n in 0..10 {
+                    let n = f64::from(n);
+                    value += term;
+                    term *= (2.0 * n + 2.0) / (2.0 * n + 3.0);
+                    slope += (n + 1.0) * term;
+                    term *= y;
+                }
+                return [value, slope];
+            }
+            let sine_square = 4.0 * y * (1.0 - y);
+            let value = 2.0 * y.sqrt().asin() / sine_square.sqrt();
+            // The derivative by the cosine is (cos θ · value - 1) / sin² θ, and the cosine 1 - 2y.
+            [value, 2.0 * (1.0 - (1.0 - 2.0 * y) * value) / sine_square]
+        })
+    }
+
+    /// The unit vector at this angle.
+    pub fn turn(self) -> Plane<N> {
+        let radius = self.radius();
+        let spread = self.spread();
+        if radius > WIDE || radius.is_nan() {
+            return Plane::anywhere(&spread);
+        }
+        let (sin, cos) = self.centre.sin_cos();
+        let share = 0.5 * radius;
+        let along = |value: f64, slope: f64| {
+            Self {
+                centre: value,
+                slope: self.slope.map(|s| slope * s),
+                error: std::array::from_fn(|i| slope.abs() * self.error[i] + share * spread[i]),
+                rounding: (slope.abs() + share) * self.rounding,
+            }
+            .rounded(1.0 + self.centre.abs())
+        };
+        Plane { re: along(cos, -sin), im: along(sin, cos) }
+    }
+
+    fn atan(self) -> Self {
+        let slope = 1.0 / (1.0 + self.centre * self.centre);
+        let radius = self.radius();
+        let share = ARCTANGENT_BEND * radius;
+        let spread = self.spread();
+        Self {
+            centre: self.centre.atan(),
+            slope: self.slope.map(|s| slope * s),
+            error: std::array::from_fn(|i| slope * self.error[i] + share * spread[i]),
+            rounding: (slope + share) * self.rounding,
+        }
+        .rounded(4.0)
+    }
+}
+
+impl<const N: usize> Add for Affine<N> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            centre: self.centre + other.centre,
+            slope: std::array::from_fn(|i| self.slope[i] + other.slope[i]),
+            error: std::array::from_fn(|i| self.error[i] + other.error[i]),
+            rounding: self.rounding + other.rounding,
+        }
+        .rounded(self.size() + other.size())
+    }
+}
+
+impl<const N: usize> Sub for Affine<N> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const N: usize> Neg for Affine<N> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { centre: -self.centre, slope: self.slope.map(|s| -s), ..self }
+    }
+}
+
+impl<const N: usize> Add<f64> for Affine<N> {
+    type Output = Self;
+
+    fn add(self, number: f64) -> Self {
+        let size = self.size() + number.abs();
+        Self { centre: self.centre + number, ..self }.rounded(size)
+    }
+}
+
+impl<const N: usize> Sub<f64> for Affine<N> {
+    type Output = Self;
+
+    fn sub(self, number: f64) -> Self {
+        self + -number
+    }
+}
+
+impl<const N: usize> Mul<f64> for Affine<N> {
+    type Output = Self;
+
+    fn mul(self, number: f64) -> Self {
+        let size = self.size() * number.abs();
+        Self {
+            centre: self.centre * number,
+            slope: self.slope.map(|s| s * number),
+            error: self.error.map(|e| e * number.abs()),
+            rounding: self.rounding * number.abs(),
+        }
+        .rounded(size)
+    }
+}
+
+impl<const N: usize> Mul for Affine<N> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.centre, other.centre);
+        let (p, q) = (self.spread(), other.spread());
+        let (all_p, all_q): (f64, f64) = (p.iter().sum(), q.iter().sum());
+        // The product of what is off the centres, half of it by the coordinates of either.
+        let error = |i: usize| {
+            a.abs() * other.error[i] + b.abs() * self.error[i] + 0.5 * (p[i] * all_q + q[i] * all_p)
+        };
+        let (r, s) = (self.rounding, other.rounding);
+        let size = (a.abs() + all_p + r) * (b.abs() + all_q + s);
+        Self {
+            centre: a * b,
+            slope: std::array::from_fn(|i| a * other.slope[i] + b * self.slope[i]),
+            error: std::array::from_fn(error),
+            rounding: (a.abs() + all_p) * s + (b.abs() + all_q + s) * r,
+        }
+        .rounded(size)
+    }
+}
+
+/// A point of the plane, or a complex number, over a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<const N: usize> {
+    pub re: Affine<N>,
+    pub im: Affine<N>,
+}
+
+impl<const N: usize> Plane<N> {
+    pub fn constant(z: Complex<f64>) -> Self {
+        Self { re: Affine::constant(z.re), im: Affine::constant(z.im) }
+    }
+
+    /// Some unit vector.
+    fn anywhere(spread: &[f64; N]) -> Self {
+        let any = Affine::unknown(0.0, 1.0, spread);
+        Self { re: any, im: any }
+    }
+
+    pub fn conj(self) -> Self {
+        Self { im: -self.im, ..self }
+    }
+
+    pub fn scaled(self, factor: Affine<N>) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+
+    pub fn norm_sqr(self) -> Affine<N> {
+        self.re.square() + self.im.square()
+    }
+
+    /// `self × other`, the third component of the cross product.
+    pub fn cross(self, other: Self) -> Affine<N> {
+        self.re * other.im - self.im * other.re
+    }
+
+    fn spread(&self) -> [f64; N] {
+        let (re, im) = (self.re.spread(), self.im.spread());
+        std::array::from_fn(|i| re[i] + im[i])
+    }
+
+    /// The unit vector in its direction.
+    pub fn direction(self) -> Self {
+        self.divided(self.norm_sqr().recip_sqrt())
+    }
+
+    /// The unit vector that it is when multiplied by `factor`.
+    pub fn divided(self, factor: Affine<N>) -> Self {
+        let unit = self.scaled(factor);
+        // Wider than all unit vectors: they are known to be these.
+        let wide = |x: &Affine<N>| x.radius() > 1.0 || x.radius().is_nan();
+        if wide(&unit.re) && wide(&unit.im) {
+            return Self::anywhere(&unit.spread());
+        }
+        unit
+    }
+
+    /// Its argument, within half a turn in the middle of the box, and on either side continuous.
+    pub fn argument(self) -> Affine<N> {
+        let middle = Complex::new(self.re.centre, self.im.centre);
+        let angle = middle.im.atan2(middle.re);
+        let length = middle.norm();
+        let unknown = || Affine::unknown(angle, std::f64::consts::TAU, &self.spread());
+        if length == 0.0 || !length.is_finite() {
+            return unknown();
+        }
+        let ahead = self * (middle.conj() / length);
+        if ahead.re.low() > 0.0 { (ahead.im * ahead.re.recip()).atan() + angle } else { unknown() }
+    }
+}
+
+impl<const N: usize> Add for Plane<N> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+}
+
+impl<const N: usize> Sub for Plane<N> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+}
+
+impl<const N: usize> Mul for Plane<N> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self {
+            re: self.re * other.re - self.im * other.im,
+            im: self.re * other.im + self.im * other.re,
+        }
+    }
+}
+
+impl<const N: usize> Add<Complex<f64>> for Plane<N> {
+    type Output = Self;
+
+    fn add(self, z: Complex<f64>) -> Self {
+        Self { re: self.re + z.re, im: self.im + z.im }
+    }
+}
+
+impl<const N: usize> Sub<Complex<f64>> for Plane<N> {
+    type Output = Self;
+
+    fn sub(self, z: Complex<f64>) -> Self {
+        self + -z
+    }
+}
+
+impl<const N: usize> Mul<Complex<f64>> for Plane<N> {
+    type Output = Self;
+
+    fn mul(self, z: Complex<f64>) -> Self {
+        Self { re: self.re * z.re - self.im * z.im, im: self.re * z.im + self.im * z.re }
+    }
+}

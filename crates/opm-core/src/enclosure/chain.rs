@@ -1,0 +1,306 @@
+//! The closed forms of the chains over a box of targets: which of them close, and the joints'
+//! displacements where they do.
+
+use super::affine::{Affine, Plane};
+use super::share::Share;
+use super::target::{Enclosed, PlanarTarget, Rotation, Target, dot};
+use crate::chain::cylindrical::CoaxialJoint;
+use crate::chain::planar::PlanarJoint;
+use crate::chain::spherical::{Ball, SphericalChain};
+use crate::chain::{Branch, Chain, RIM};
+use nalgebra::{Complex, Vector3};
+
+/// No end.
+const INFINITE: f64 = f64::INFINITY;
+
+/// The share of a box of targets for which a chain closes, whatever its joints' limits.
+pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
+    match (chain, target) {
+        (Chain::Planar(chain), Target::Planar(g)) => planar_closes(&chain.joints(), g),
+        (Chain::Spherical(chain), Target::Spherical(r)) => Arcs::new(chain).closes(r),
+        _ => Share::ALL,
+    }
+}
+
+/// The joints' displacements, as they are for those targets of the box for which the chain closes.
+pub fn amounts<const N: usize>(
+    chain: &Chain,
+    target: &Target<N>,
+    branch: Branch,
+) -> [Enclosed<N>; 3] {
+    let none = Enclosed::Value(Affine::constant(0.0));
+    match (chain, target) {
+        (Chain::Planar(chain), Target::Planar(g)) => planar(&chain.joints(), g, branch),
+        (Chain::Spherical(chain), Target::Spherical(r)) => spherical(chain, r, branch),
+        (Chain::Ball(ball), Target::Spherical(r)) => self::ball(ball, r),
+        (Chain::Cylindrical(chain), &Target::Cylindrical(angle, advance)) => {
+            let [p, q] = *chain.joints();
+            let determinant = p.turn * q.advance - q.turn * p.advance;
+            let amount = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
+                let value = angle * (by_angle / determinant) + advance * (by_advance / determinant);
+                let revolute = joint.turn != 0.0 && joint.advance == 0.0;
+                if revolute { Enclosed::Angle(value) } else { Enclosed::Value(value) }
+            };
+            [amount(p, q.advance, -q.turn), amount(q, -p.advance, p.turn), none]
+        }
+        (Chain::Translational(chain), &Target::Translational(t)) => {
+            let [m, n] = along(*chain.slides(), t);
+            [Enclosed::Value(m), Enclosed::Value(n), none]
+        }
+        _ => unreachable!("a chain and a target of two kinds of subspace"),
+    }
+}
+
+/// `z = m u + n v`.
+fn along<const N: usize>([u, v]: [Complex<f64>; 2], z: Plane<N>) -> [Affine<N>; 2] {
+    let crossing = u.re * v.im - u.im * v.re;
+    [z.cross(Plane::constant(v)) * (1.0 / crossing), Plane::constant(u).cross(z) * (1.0 / crossing)]
+}
+
+/// The amount of a revolute for a rotation to the direction of `r`.
+fn turned<const N: usize>(reversed: bool, r: Plane<N>) -> Enclosed<N> {
+    Enclosed::Turn(if reversed { r.conj() } else { r })
+}
+
+/// Where the pivot at `at` is taken to, from `from`.
+fn reach<const N: usize>(g: &PlanarTarget<N>, at: Complex<f64>, from: Complex<f64>) -> Plane<N> {
+    g.rotation * at + g.translation - from
+}
+
+fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>) -> Share<N> {
+    use PlanarJoint::{Prismatic, Revolute};
+    match *joints {
+        [Revolute { at: p1, .. }, Revolute { at: p2, .. }, Revolute { at: p3, .. }] => {
+            let arm = Arm::new(p1, p2, p3);
+            let nearest = if arm.folds() { -INFINITE } else { -1.0 };
+            Share::within(&arm.cosine(&reach(g, p3, p1)), [nearest, 1.0], 0.0)
+        }
+        [Prismatic { along }, Revolute { at: p2, .. }, Revolute { at: p3, .. }] => {
+            let link = (p3 - p2).norm();
+            Share::within(&(reach(g, p3, p2) * along.conj()).im, [-link, link], 0.0)
+        }
+        [Revolute { .. }, Revolute { .. }, Prismatic { .. }] => {
+            planar_closes(&backwards(joints), &g.inverse())
+        }
+        [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
+            let aside = ((p3 - p1) * along.conj()).im;
+            let square = reach(g, p3, p1).norm_sqr();
+            // Its rounding is in proportion to the square that it is subtracted from.
+            Share::within(&square, [aside * aside, INFINITE], 0.0)
+        }
+        [Prismatic { along: d1 }, Revolute { .. }, Prismatic { along: d3 }] => {
+            // All but a line where the slides come to be parallel.
+            let crossing = Plane::constant(d1).cross(g.rotation * d3);
+            Share::outside(&crossing, [-RIM, RIM])
+        }
+        _ => Share::ALL,
+    }
+}
+
+/// The joints' amounts of a planar chain: see the closed forms.
+fn planar<const N: usize>(
+    joints: &[PlanarJoint; 3],
+    g: &PlanarTarget<N>,
+    branch: Branch,
+) -> [Enclosed<N>; 3] {
+    use PlanarJoint::{Prismatic, Revolute};
+    match *joints {
+        [
+            Revolute { at: p1, reversed: r1 },
+            Revolute { at: p2, reversed: r2 },
+            Revolute { at: p3, reversed: r3 },
+        ] => {
+            let arm = Arm::new(p1, p2, p3);
+            let wrist = reach(g, p3, p1);
+            let cosine = arm.cosine(&wrist);
+            let sine = (-cosine.square() + 1.0).sqrt() * branch.sign();
+            let second = Plane { re: cosine, im: sine } * arm.straighten;
+            let first = wrist * (second * arm.second + arm.first).conj();
+            let third = g.rotation * (first * second).conj();
+            [turned(r1, first), turned(r2, second), turned(r3, third)]
+        }
+        [
+            Prismatic { along },
+            Revolute { at: p2, reversed: r2 },
+            Revolute { at: p3, reversed: r3 },
+        ] => {
+            let link = p3 - p2;
+            let local = reach(g, p3, p2) * along.conj();
+            let root = (-local.im.square() + link.norm_sqr()).sqrt() * branch.sign();
+            let slider = local.re + root;
+            let second = Plane { re: -root, im: local.im } * (along * link.conj());
+            let third = g.rotation * second.conj();
+            [Enclosed::Value(slider), turned(r2, second), turned(r3, third)]
+        }
+        [Revolute { .. }, Revolute { .. }, Prismatic { .. }]
+        | [Prismatic { .. }, Prismatic { .. }, Revolute { .. }] => {
+            let [a3, a2, a1] = planar(&backwards(joints), &g.inverse(), branch);
+            [a1.inverse(), a2.inverse(), a3.inverse()]
+        }
+        [
+            Revolute { at: p1, reversed: r1 },
+            Prismatic { along },
+            Revolute { at: p3, reversed: r3 },
+        ] => {
+            let offset = (p3 - p1) * along.conj();
+            let reach = reach(g, p3, p1);
+            let square = reach.norm_sqr() - offset.im * offset.im;
+            let ahead = square.sqrt() * branch.sign();
+            let telescope = Plane { re: ahead, im: Affine::constant(offset.im) } * along;
+            let first = reach * telescope.conj();
+            let third = g.rotation * first.conj();
+            [turned(r1, first), Enclosed::Value(ahead - offset.re), turned(r3, third)]
+        }
+        [Revolute { at, reversed }, Prismatic { along: d2 }, Prismatic { along: d3 }] => {
+            let moved = reach(g, at, at);
+            let [s2, s3] = along([d2, d3], moved * g.rotation.conj());
+            [turned(reversed, g.rotation), Enclosed::Value(s2), Enclosed::Value(s3)]
+        }
+        [Prismatic { along: d1 }, Revolute { at, reversed }, Prismatic { along: d3 }] => {
+            let moved = reach(g, at, at);
+            let (first, second) = (Plane::constant(d1), g.rotation * d3);
+            let inverse = first.cross(second).recip();
+            [
+                Enclosed::Value(moved.cross(second) * inverse),
+                turned(reversed, g.rotation),
+                Enclosed::Value(first.cross(moved) * inverse),
+            ]
+        }
+        [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
+            unreachable!("three sliders make no chain")
+        }
+    }
+}
+
+/// A chain seen from its end.
+fn backwards(&[first, second, third]: &[PlanarJoint; 3]) -> [PlanarJoint; 3] {
+    [third, second, first]
+}
+
+/// The two links of an arm.
+struct Arm {
+    first: Complex<f64>,
+    second: Complex<f64>,
+    straighten: Complex<f64>,
+    mean_square: f64,
+    product: f64,
+}
+
+impl Arm {
+    fn new(p1: Complex<f64>, p2: Complex<f64>, p3: Complex<f64>) -> Self {
+        let (first, second) = (p2 - p1, p3 - p2);
+        let (a, b) = (first.norm(), second.norm());
+        Self {
+            first,
+            second,
+            straighten: first * second.conj() / (a * b),
+            mean_square: (a * a + b * b) / 2.0,
+            product: a * b,
+        }
+    }
+
+    /// The links are as long: no target is too near.
+    fn folds(&self) -> bool {
+        self.mean_square / self.product <= 1.0 + 0.5 * RIM
+    }
+
+    fn cosine<const N: usize>(&self, wrist: &Plane<N>) -> Affine<N> {
+        (wrist.norm_sqr() * 0.5 - self.mean_square) * (1.0 / self.product)
+    }
+}
+
+/// What a spherical chain's first two joints depend on: `z = a₁ · R a₃`.
+struct Arcs {
+    first: Vector3<f64>,
+    third: Vector3<f64>,
+    /// `a₂` square to `a₁`, and `a₁ × a₂`.
+    second_on_first: [Vector3<f64>; 2],
+    /// Of the arcs from `a₁` to `a₂` and from `a₂` to `a₃`.
+    cosines: [f64; 2],
+    sines: [f64; 2],
+}
+
+impl Arcs {
+    fn new(chain: &SphericalChain) -> Self {
+        let [a1, a2, a3] = *chain.axes();
+        Self::of(a1, a2, a3)
+    }
+
+    fn of(a1: Vector3<f64>, a2: Vector3<f64>, a3: Vector3<f64>) -> Self {
+        Self {
+            first: a1,
+            third: a3,
+            second_on_first: [a2 - a1 * a1.dot(&a2), a1.cross(&a2)],
+            cosines: [a1.dot(&a2), a2.dot(&a3)],
+            sines: [a1.cross(&a2).norm(), a2.cross(&a3).norm()],
+        }
+    }
+
+    /// `z - cos a₁₂ cos a₂₃` lies within `sin a₁₂ sin a₂₃`, where arcs that are equal, or half a turn
+    /// together, leave no gap at a pole.
+    fn closes<const N: usize>(&self, r: &Rotation<N>) -> Share<N> {
+        let [c12, c23] = self.cosines;
+        let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
+        let pole = 0.5 * RIM;
+        let far = if (c23 + c12).abs() <= pole { -INFINITE } else { middle - half };
+        let near = if (c23 - c12).abs() <= pole { INFINITE } else { middle + half };
+        // The chain gives way by RIM in the cosine that it solves for, which is worth more here where
+        // the second arc is short.
+        let slack = 4.0 * RIM / self.sines[1];
+        let z = dot(&self.first, &r.apply(&self.third));
+        Share::within(&z, [far, near], slack)
+    }
+
+    /// The cosine of the dihedral angle at `a₂`, over the sines of its arcs, and the sine.
+    fn dihedral<const N: usize>(&self, z: Affine<N>) -> [Affine<N>; 2] {
+        let over = 1.0 / (self.sines[0] * self.sines[1]);
+        let cosine = (z - self.cosines[0] * self.cosines[1]) * over;
+        [cosine, (-cosine.square() + 1.0).sqrt()]
+    }
+
+    /// The first joint's turn, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`.
+    fn first<const N: usize>(&self, w: &[Affine<N>; 3], branch: Branch) -> Plane<N> {
+        let z = dot(&self.first, w);
+        let [x, y] = self.second_on_first;
+        let azimuth = Plane { re: dot(&x, w), im: dot(&y, w) };
+        let d = -z * self.cosines[0] + self.cosines[1];
+        let root = self.dihedral(z)[1] * (self.sines[0] * self.sines[1] * -branch.sign());
+        let square = (-z.square() + 1.0) * (self.sines[0] * self.sines[0]);
+        (azimuth * Plane { re: d, im: root }).divided(square.recip())
+    }
+}
+
+/// The joints of a spherical chain: the first from where `R` takes the third axis, the third from where
+/// it takes the first one back, with the chain seen from its end; the second from the angle between them.
+fn spherical<const N: usize>(
+    chain: &SphericalChain,
+    r: &Rotation<N>,
+    branch: Branch,
+) -> [Enclosed<N>; 3] {
+    let [a1, a2, a3] = *chain.axes();
+    let arcs = Arcs::of(a1, a2, a3);
+    let w = r.apply(&a3);
+    let first = arcs.first(&w, branch);
+    let [cosine, sine] = arcs.dihedral(dot(&a1, &w));
+    let third_off_second = a3 - a2 * a2.dot(&a3);
+    let aim = Complex::new(a1.dot(&third_off_second), a1.dot(&a2.cross(&a3)));
+    let second = Plane { re: cosine, im: sine * -branch.sign() } * aim;
+    let other = match branch {
+        Branch::Plus => Branch::Minus,
+        Branch::Minus => Branch::Plus,
+    };
+    let third = Arcs::of(a3, a2, a1).first(&r.apply_back(&a1), other).conj();
+    [Enclosed::Unit(first), Enclosed::Turn(second), Enclosed::Unit(third)]
+}
+
+/// The rotation vector: its sine, `a` of `R - Rᵀ = 2 [a]`, times `θ / sin θ`.
+fn ball<const N: usize>(ball: &Ball, r: &Rotation<N>) -> [Enclosed<N>; 3] {
+    let m = &r.0;
+    let cosine = (m[0][0] + m[1][1] + m[2][2] - 1.0) * 0.5;
+    let ratio = cosine.angle_over_sine();
+    let sine = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+    [0, 1, 2].map(|i| {
+        let row = ball.axes.row(i).transpose();
+        Enclosed::Value(dot(&row, &sine) * 0.5 * ratio)
+    })
+}

@@ -1,0 +1,270 @@
+//! Displacements over a box of poses, and steps along the intersection motion.
+
+use super::affine::{Affine, Plane};
+use crate::task::Cut;
+use nalgebra::{Matrix3, Vector3};
+
+/// A displacement of the plane over a box: `z ↦ rotation · z + translation`.
+#[derive(Clone, Copy, Debug)]
+pub struct PlanarTarget<const N: usize> {
+    pub rotation: Plane<N>,
+    pub translation: Plane<N>,
+}
+
+impl<const N: usize> PlanarTarget<N> {
+    /// The displacement back.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conj();
+        let back = rotation * self.translation;
+        Self { rotation, translation: Plane { re: -back.re, im: -back.im } }
+    }
+}
+
+/// A rotation over a box, row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotation<const N: usize>(pub [[Affine<N>; 3]; 3]);
+
+impl<const N: usize> Rotation<N> {
+    /// `R v`.
+    pub fn apply(&self, v: &Vector3<f64>) -> [Affine<N>; 3] {
+        self.0.map(|row| row[0] * v.x + row[1] * v.y + row[2] * v.z)
+    }
+
+    /// `Rᵀ v`.
+    pub fn apply_back(&self, v: &Vector3<f64>) -> [Affine<N>; 3] {
+        let rows = &self.0;
+        [0, 1, 2].map(|i| rows[0][i] * v.x + rows[1][i] * v.y + rows[2][i] * v.z)
+    }
+
+    /// `R M`.
+    pub fn after(&self, m: &Matrix3<f64>) -> Self {
+        Self(self.0.map(|row| {
+            [0, 1, 2].map(|j| row[0] * m[(0, j)] + row[1] * m[(1, j)] + row[2] * m[(2, j)])
+        }))
+    }
+}
+
+/// `a · v`.
+pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
+    v[0] * a.x + v[1] * a.y + v[2] * a.z
+}
+
+/// A [`Displacement`](crate::task::Displacement) over a box.
+#[derive(Clone, Copy, Debug)]
+pub enum Target<const N: usize> {
+    Planar(PlanarTarget<N>),
+    Spherical(Rotation<N>),
+    /// Angle and advance.
+    Cylindrical(Affine<N>, Affine<N>),
+    Translational(Plane<N>),
+}
+
+/// A joint's displacement from home over a box: an [`Amount`](crate::chain::Amount).
+#[derive(Clone, Copy, Debug)]
+pub enum Enclosed<const N: usize> {
+    /// A rotation to this unit vector.
+    Unit(Plane<N>),
+    /// A rotation to the direction of this vector.
+    Turn(Plane<N>),
+    /// An angle modulo a turn.
+    Angle(Affine<N>),
+    /// A length, or an angle that counts whole turns.
+    Value(Affine<N>),
+}
+
+impl<const N: usize> Enclosed<N> {
+    /// The opposite displacement.
+    pub fn inverse(self) -> Self {
+        match self {
+            Self::Unit(e) => Self::Unit(e.conj()),
+            Self::Turn(e) => Self::Turn(e.conj()),
+            Self::Angle(angle) => Self::Angle(-angle),
+            Self::Value(value) => Self::Value(-value),
+        }
+    }
+
+    /// The rotation as a unit vector.
+    fn turn(self) -> Plane<N> {
+        match self {
+            Self::Unit(e) => e,
+            Self::Turn(e) => e.direction(),
+            Self::Angle(angle) | Self::Value(angle) => angle.turn(),
+        }
+    }
+
+    /// As a number; a turn to a whole number of turns.
+    pub fn number(self) -> Affine<N> {
+        match self {
+            Self::Unit(e) | Self::Turn(e) => e.argument(),
+            Self::Angle(number) | Self::Value(number) => number,
+        }
+    }
+}
+
+/// `v · exp(I τ)`: see [`Cut::after`].
+pub fn after<const N: usize>(cut: Cut, v: &Target<N>, tau: Enclosed<N>) -> Target<N> {
+    match (cut, v) {
+        (Cut::Turn, Target::Planar(v)) => {
+            Target::Planar(PlanarTarget { rotation: v.rotation * tau.turn(), ..*v })
+        }
+        (Cut::Turn, Target::Spherical(r)) => {
+            let e = tau.turn();
+            Target::Spherical(Rotation(
+                r.0.map(|[x, y, z]| [x * e.re + y * e.im, y * e.re - x * e.im, z]),
+            ))
+        }
+        (Cut::Slide(along), Target::Planar(v)) => {
+            let step = (v.rotation * along).scaled(tau.number());
+            Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
+        }
+        _ => commuting(cut, v, tau),
+    }
+}
+
+/// `exp(I τ) · b`: see [`Cut::before`].
+pub fn before<const N: usize>(cut: Cut, b: &Target<N>, tau: Enclosed<N>) -> Target<N> {
+    match (cut, b) {
+        (Cut::Turn, Target::Planar(b)) => {
+            let e = tau.turn();
+            Target::Planar(PlanarTarget {
+                rotation: e * b.rotation,
+                translation: e * b.translation,
+            })
+        }
+        (Cut::Turn, Target::Spherical(r)) => {
+            let (e, [x, y, z]) = (tau.turn(), r.0);
+            let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
+            Target::Spherical(Rotation([
+                row(&|i| x[i] * e.re - y[i] * e.im),
+                row(&|i| x[i] * e.im + y[i] * e.re),
+                z,
+            ]))
+        }
+        (Cut::Slide(along), Target::Planar(b)) => {
+            let step = Plane::constant(along).scaled(tau.number());
+            Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
+        }
+        _ => commuting(cut, b, tau),
+    }
+}
+
+fn commuting<const N: usize>(cut: Cut, g: &Target<N>, tau: Enclosed<N>) -> Target<N> {
+    match (cut, g) {
+        (Cut::Turn, &Target::Cylindrical(angle, advance)) => {
+            Target::Cylindrical(angle + tau.number(), advance)
+        }
+        (Cut::Advance, &Target::Cylindrical(angle, advance)) => {
+            Target::Cylindrical(angle, advance + tau.number())
+        }
+        (Cut::Slide(along), &Target::Translational(t)) => {
+            Target::Translational(t + Plane::constant(along).scaled(tau.number()))
+        }
+        // A subspace that does not hold the motion: no task pairs them.
+        _ => *g,
+    }
+}
+
+/// One coordinate of a box of poses.
+#[derive(Clone, Copy, Debug)]
+pub enum Coordinate<const N: usize> {
+    /// Linear in the box.
+    Linear(Affine<N>),
+    /// An angle of which the box is even in the cosine, so that its sine and cosine are known instead.
+    Polar(Plane<N>),
+}
+
+impl<const N: usize> Coordinate<N> {
+    fn minus(self, home: f64) -> Affine<N> {
+        match self {
+            Self::Linear(value) => value - home,
+            Self::Polar(e) => e.argument() - home,
+        }
+    }
+
+    /// The unit vector at the angle, less that at home.
+    fn turn(self, home: f64) -> Plane<N> {
+        match self {
+            Self::Linear(value) => (value - home).turn(),
+            Self::Polar(e) if home == 0.0 => e,
+            Self::Polar(e) => e * crate::chain::unit(-home),
+        }
+    }
+}
+
+/// What [`Task`](crate::task::Task) makes of coordinates, over a box of them.
+pub mod task {
+    use super::{Affine, Coordinate, PlanarTarget, Plane, Rotation, Target};
+    use crate::task::{Cut, SubspaceKind, Task};
+    use nalgebra::Complex;
+
+    /// `v` for the first coordinates of a box: see [`Task::lower`].
+    pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
+        let home = |i: usize| task.coordinates[i].home;
+        let q = |i: usize| pose[i].minus(home(i));
+        match (task.lower.kind, task.lower_cut) {
+            (SubspaceKind::Planar, Cut::Turn) => Target::Planar(PlanarTarget {
+                rotation: Plane::constant(Complex::new(1.0, 0.0)),
+                translation: Plane { re: q(0), im: q(1) },
+            }),
+            (SubspaceKind::Planar, _) => Target::Planar(PlanarTarget {
+                rotation: pose[2].turn(home(2)),
+                translation: Plane { re: q(0), im: q(1) },
+            }),
+            (SubspaceKind::Spherical, _) => {
+                Target::Spherical(tilt(pose[0].turn(home(0)), pose[1].turn(home(1))))
+            }
+            (SubspaceKind::Cylindrical, Cut::Turn) => {
+                Target::Cylindrical(Affine::constant(0.0), q(0))
+            }
+            (SubspaceKind::Cylindrical, _) => Target::Cylindrical(q(0), q(1)),
+            (SubspaceKind::TranslationalPlane, _) => {
+                Target::Translational(Plane { re: q(0), im: q(1) })
+            }
+        }
+    }
+
+    /// `b` for the remaining coordinates of a box: see [`Task::upper`].
+    pub fn upper<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
+        let home = |i: usize| task.coordinates[task.lower_count + i].home;
+        let q = |i: usize| pose[i].minus(home(i));
+        let planar = |rotation, re, im| {
+            Target::Planar(PlanarTarget { rotation, translation: Plane { re, im } })
+        };
+        let none = Affine::constant(0.0);
+        match (task.upper.kind, task.upper_cut) {
+            (SubspaceKind::Spherical, _) => {
+                let absolute = euler(pose[0].turn(0.0), pose[1].turn(0.0), pose[2].turn(0.0));
+                Target::Spherical(match task.home_orientation_inverse() {
+                    Some(inverse) => absolute.after(inverse),
+                    None => absolute,
+                })
+            }
+            (SubspaceKind::Planar, Cut::Turn) => planar(pose[2].turn(home(2)), q(0), q(1)),
+            (SubspaceKind::Planar, _) => planar(pose[1].turn(home(1)), none, q(0)),
+            (SubspaceKind::Cylindrical, Cut::Turn) => Target::Cylindrical(q(0), q(1)),
+            (SubspaceKind::Cylindrical, _) => Target::Cylindrical(q(0), none),
+            (SubspaceKind::TranslationalPlane, _) => {
+                Target::Translational(Plane { re: none, im: q(0) })
+            }
+        }
+    }
+
+    /// `Rx(mu) Ry(nu)`.
+    fn tilt<const N: usize>(mu: Plane<N>, nu: Plane<N>) -> Rotation<N> {
+        let (none, cm, sm, cn, sn) = (Affine::constant(0.0), mu.re, mu.im, nu.re, nu.im);
+        Rotation([[cn, none, sn], [sm * sn, cm, -(sm * cn)], [-(cm * sn), sm, cm * cn]])
+    }
+
+    /// `Rz(zeta) Ry(xi) Rz(psi)`.
+    fn euler<const N: usize>(zeta: Plane<N>, xi: Plane<N>, psi: Plane<N>) -> Rotation<N> {
+        let (cx, sx) = (xi.re, xi.im);
+        // Ry(xi) Rz(psi), its first two rows then turned about z.
+        let first = [cx * psi.re, -(cx * psi.im), sx];
+        let second = [psi.im, psi.re, Affine::constant(0.0)];
+        Rotation([
+            [0, 1, 2].map(|j| zeta.re * first[j] - zeta.im * second[j]),
+            [0, 1, 2].map(|j| zeta.im * first[j] + zeta.re * second[j]),
+            [-(sx * psi.re), sx * psi.im, cx],
+        ])
+    }
+}

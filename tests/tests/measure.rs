@@ -1,0 +1,274 @@
+//! Measures with guaranteed bounds: against geometry, against the exact predicate at random poses, and
+//! against Monte-Carlo estimates.
+
+use fastrand::Rng;
+use opm_core::joint::Quantity;
+use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::mechanism::{examples, file};
+use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_workspace::measure::{Domain, Goal, Measured, Over, Stop, measure};
+use opm_workspace::{Modes, Progress, Sections};
+use std::f64::consts::PI;
+
+fn example(name: &str) -> Manipulator {
+    let text = examples::find(name).unwrap().text;
+    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+}
+
+fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measured {
+    measure(m, domain, modes, &goal, &Progress::default())
+}
+
+/// Whether a pose of a domain counts, by the chains themselves.
+fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
+    let mut ways: Vec<Follow> = Vec::new();
+    let lower = m.task().lower_count;
+    if domain.sections() == Sections::Upper {
+        return m.upper_closes(&m.task().upper(pose), mode, &mut ways);
+    }
+    let (v, others) = (m.task().lower(&pose[..lower]), &pose[lower..]);
+    let cuts = m.cuts();
+    (0..m.legs()).all(|leg| {
+        ways.clear();
+        if domain.sections() == Sections::Whole {
+            m.follow(leg, &m.task().upper(others), mode, &mut ways);
+        } else {
+            let cut = cuts.iter().zip(others).find(|(cut, _)| cut.leg == leg);
+            let tau = cut.map_or(0.0, |(cut, value)| cut.displacement(*value));
+            m.follow_lower(leg, tau, mode, &mut ways);
+        }
+        ways.iter().any(|way| m.follows(way, &v))
+    })
+}
+
+/// Of so many poses drawn evenly, those that count.
+fn hits(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>, draws: u32) -> u32 {
+    let mut shares = vec![0.0; domain.dimension()];
+    let mut hit = || {
+        shares.fill_with(|| rng.f64());
+        counts(m, domain, mode, &domain.pose(&shares))
+    };
+    (0..draws).map(|_| u32::from(hit())).sum()
+}
+
+/// A bound on the chance that so few of the draws hit a set of at least this share, or so many one of
+/// at most this share (Chernoff).
+fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
+    let (n, seen) = (f64::from(draws), f64::from(hits) / f64::from(draws));
+    let share = seen.clamp(lower, upper);
+    let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (a / b).ln() };
+    (-n * (term(seen, share) + term(1.0 - seen, 1.0 - share))).exp()
+}
+
+/// The caps that the platform's axes must not be in are 30 degrees wide, disjoint, and three.
+#[test]
+fn all_orientations_of_the_paper() {
+    let m = example("plano-spherical-5dof");
+    let over = [Over::new("zeta", -PI, PI), Over::new("xi", 0.0, PI), Over::new("psi", -PI, PI)];
+    let domain = Domain::new(&m, Sections::Upper, &over).unwrap();
+    let share = 1.0 - 1.5 * (1.0 - (PI / 6.0).cos());
+    for tolerance in [1e-1, 1e-3, 1e-5] {
+        for modes in [Modes::Any, Modes::One(m.home_mode())] {
+            let goal = Goal { tolerance, ..Goal::default() };
+            let found = measured(&m, &domain, modes, goal);
+            let [lower, upper] = [found.lower, found.upper].map(|bound| bound / found.whole);
+            assert!(lower < share && share < upper, "{lower} {upper}");
+            assert_eq!(found.stop, Stop::Tolerance);
+            assert!((upper - lower) / (upper + lower) <= tolerance);
+        }
+    }
+}
+
+/// At a given rotation three strips are left of the plane: their polygon, clipped.
+#[test]
+fn the_polygon_of_the_helical_manipulator() {
+    let m = example("translational-helical-3dof");
+    // As printed, and the sliders' limits that were chosen.
+    let (alpha, beta, k) = ([210.0, 330.0, 90.0], [45.0, 285.0, 165.0], [10.0, 15.0, 25.0]);
+    let (pitch, limit) = (0.020, 0.400);
+    for phi in [-3.0, 0.0, 0.7, 5.0_f64] {
+        let mut polygon = vec![[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0_f64]];
+        for leg in 0..3 {
+            let (sin, cos) = f64::to_radians(alpha[leg]).sin_cos();
+            let along = if leg == 0 { pitch * phi } else { 0.0 };
+            let offset = f64::to_radians(beta[leg]).sin() * (k[leg] * 1e-3 + along);
+            for side in [1.0, -1.0] {
+                // What is left of the slider's range on this side.
+                let left = |p: &[f64; 2]| limit - side * (-sin * p[0] + cos * p[1] + offset);
+                polygon = clip(&polygon, left);
+            }
+        }
+        let area = 0.5
+            * (0..polygon.len())
+                .map(|i| {
+                    let ([x, y], [u, v]) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+                    x * v - y * u
+                })
+                .sum::<f64>();
+        let over =
+            [Over::new("x", -1.0, 1.1), Over::new("y", -1.0, 1.2), Over::new("phi", phi, phi)];
+        let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+        let goal = Goal { tolerance: 1e-9, ..Goal::default() };
+        let found = measured(&m, &domain, Modes::Any, goal);
+        assert_eq!(found.stop, Stop::Tolerance);
+        assert!(found.lower < area && area < found.upper, "{area} {found:?}");
+    }
+}
+
+/// What of a convex polygon is on the side where `left` is not negative.
+fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
+    let mut clipped = Vec::new();
+    for (i, p) in polygon.iter().enumerate() {
+        let q = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (left(p), left(q));
+        if a >= 0.0 {
+            clipped.push(*p);
+        }
+        if (a >= 0.0) != (b >= 0.0) {
+            let at = a / (a - b);
+            clipped.push([p[0] + at * (q[0] - p[0]), p[1] + at * (q[1] - p[1])]);
+        }
+    }
+    clipped
+}
+
+/// A random manipulator with limits on some of its joints, and what counts.
+fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
+    let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
+    let (mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+    let mode = [None, Some(m.home_mode())][rng.usize(..2)];
+    let sections = [Sections::Whole, Sections::Whole, Sections::Upper, Sections::Lower];
+    (m, mode, sections[rng.usize(..4)])
+}
+
+/// A box about some pose near home: a width times `size` along each coordinate, of some none.
+fn domain_of(rng: &mut Rng, m: &Manipulator, sections: Sections, size: f64) -> Domain {
+    let over: Vec<Over> = sections
+        .coordinates(m)
+        .into_iter()
+        .map(|c| {
+            let reach = if c.quantity == Quantity::Angle { PI } else { 1.5 };
+            let middle = c.home + (2.0 * rng.f64() - 1.0) * reach;
+            let half = if rng.u8(..6) == 0 { 0.0 } else { size * rng.f64() };
+            Over::new(c.name, middle - half, middle + half)
+        })
+        .collect();
+    Domain::new(m, sections, &over).unwrap()
+}
+
+/// One box at a time: what is said of it holds of the poses in it.
+#[test]
+fn boxes_are_never_contradicted() {
+    let mut rng = Rng::with_seed(31);
+    let (mut all, mut none, mut partly, mut draws) = (0, 0, 0, 0);
+    let rounds = std::env::var("ROUNDS").map_or(1600, |n| n.parse().unwrap());
+    for round in 0..rounds {
+        let (m, mode, sections) = random(&mut rng, round);
+        let modes = mode.map_or(Modes::Any, Modes::One);
+        for _ in 0..40 {
+            let size = 10.0_f64.powf(-3.0 * rng.f64());
+            let domain = domain_of(&mut rng, &m, sections, size);
+            // The first boxes alone: a tilt may have several.
+            let goal = Goal { tolerance: 0.0, budget: 0 };
+            let found = measured(&m, &domain, modes, goal);
+            let bounds = [found.lower, found.upper].map(|bound| bound / found.whole);
+            let decided = bounds[0] > 1.0 - 1e-9 || bounds[1] == 0.0;
+            let count = if decided { 40 } else { 200 };
+            let hit = hits(&mut rng, &m, &domain, mode, count);
+            draws += count;
+            let pair = PAIRS[round % PAIRS.len()];
+            if bounds[0] > 1.0 - 1e-9 {
+                all += 1;
+                assert_eq!(hit, count, "{round} {pair:?} {mode:?} {domain:?}");
+            } else if bounds[1] == 0.0 {
+                none += 1;
+                assert_eq!(hit, 0, "{round} {pair:?} {mode:?} {domain:?}");
+            } else {
+                partly += 1;
+                let chance = chance(hit, count, bounds);
+                assert!(
+                    chance > 1e-9,
+                    "{round} {pair:?} {mode:?} {hit} of {count}, {bounds:?} {domain:?}"
+                );
+            }
+        }
+    }
+    println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
+}
+
+/// Whole measures of random mechanisms: a Monte-Carlo estimate is outside the bounds by three standard
+/// deviations as seldom as it must be.
+#[test]
+fn estimates_lie_in_the_bounds() {
+    const MECHANISMS: usize = 1000;
+    const DRAWS: u32 = 1000;
+    let mut rng = Rng::with_seed(32);
+    let (mut off, mut judged, mut width) = (0, 0, 0.0);
+    for round in 0..MECHANISMS {
+        let (m, mode, sections) = random(&mut rng, round);
+        let domain = domain_of(&mut rng, &m, sections, 1.5);
+        let goal = Goal { tolerance: 0.02, budget: 1500 };
+        let found = measured(&m, &domain, mode.map_or(Modes::Any, Modes::One), goal);
+        assert!(0.0 <= found.lower && found.lower <= found.upper && found.upper <= found.whole);
+        let [lower, upper] = [found.lower, found.upper].map(|bound| bound / found.whole);
+        let hit = hits(&mut rng, &m, &domain, mode, DRAWS);
+        let estimate = f64::from(hit) / f64::from(DRAWS);
+        let nearest = estimate.clamp(lower, upper);
+        let deviation = (nearest * (1.0 - nearest) / f64::from(DRAWS)).sqrt();
+        off += u32::from((estimate - nearest).abs() > 3.0 * deviation + 1e-12);
+        let chance = chance(hit, DRAWS, [lower, upper]);
+        assert!(chance > 1e-9, "{round}: {estimate} outside {lower} to {upper}, {domain:?}");
+        if upper > 0.0 && lower < 1.0 {
+            judged += 1;
+            width += upper - lower;
+        }
+    }
+    println!("{off} off, {judged} in part, gaps of {:.4} on average", width / f64::from(judged));
+    // Of estimates of the bound itself, 0.27 % are that far off, 2.7 of 1000: more than 12 have a chance of 1e-5.
+    assert!(off <= 12, "{off} of {MECHANISMS}");
+    assert!(judged > 200);
+}
+
+/// With a larger budget the bounds come closer, on whatever number of threads.
+#[test]
+fn bounds_only_come_closer() {
+    let mut rng = Rng::with_seed(33);
+    let mut closer = 0;
+    for round in 0..4 * PAIRS.len() {
+        let (m, mode, sections) = random(&mut rng, round);
+        let domain = domain_of(&mut rng, &m, sections, 1.0);
+        let modes = mode.map_or(Modes::Any, Modes::One);
+        let mut before =
+            Measured { lower: 0.0, upper: f64::INFINITY, whole: 0.0, boxes: 0, stop: Stop::Budget };
+        for budget in [1, 30, 100, 300, 1000, 3000] {
+            let goal = Goal { tolerance: 0.0, budget };
+            let found = measured(&m, &domain, modes, goal);
+            assert!(found.boxes <= budget.max(before.boxes).max(domain_pieces(&found)));
+            assert!(found.lower >= before.lower && found.upper <= before.upper);
+            closer += u32::from(found.upper - found.lower < before.upper - before.lower);
+            before = found;
+            let on_one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            assert_eq!(on_one.install(|| measured(&m, &domain, modes, goal)), found);
+        }
+    }
+    assert!(closer > 100, "{closer}");
+}
+
+/// Boxes before any split: these are looked at whatever the budget.
+fn domain_pieces(found: &Measured) -> u64 {
+    if found.boxes <= 4 { found.boxes } else { 0 }
+}
+
+/// A search that is told to stop keeps what it has found.
+#[test]
+fn what_was_found_before_a_stop_is_kept() {
+    let m = example("plano-spherical-5dof");
+    let over = [Over::new("x", -0.1, 0.1), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
+    let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+    let progress = Progress::default();
+    progress.cancel();
+    let found = measure(&m, &domain, Modes::Any, &Goal::default(), &progress);
+    assert_eq!((found.stop, found.boxes), (Stop::Cancelled, 1));
+    assert!(found.lower <= found.upper && found.upper <= found.whole);
+}
