@@ -6,6 +6,7 @@ use crate::plot::{PanelName, PictureSize};
 use crate::pose::{GridAxis, Number, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+use opm_workspace::Shard;
 use std::path::PathBuf;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
@@ -37,6 +38,7 @@ Examples:
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm merge part-*.mcap -o cloud.mcap                  a sweep that was shared among machines
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
@@ -73,6 +75,7 @@ pub enum Command {
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
+    Merge(MergeArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
     Examples(ExamplesArgs),
@@ -327,6 +330,9 @@ pub struct TrajectoryArgs {
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
+/// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
+/// is nothing to do. `opm merge` joins the parts, and takes --axes, --color and --scalars.
+///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
 /// more than one value. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
@@ -341,6 +347,7 @@ Examples:
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
   opm workspace plano-spherical-5dof --kind lower --grid x=-0.3:0.3:201 --grid y=-0.3:0.3:201 \
       --grid theta11=-0.7:0.9:17
+  opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
@@ -367,6 +374,28 @@ pub struct WorkspaceArgs {
     /// Also find the boundary and the connected components, as all kinds but `grid` do
     #[arg(long)]
     pub shape: bool,
+    /// Sweep only part number I of N, from 1 on, and write it to -o, for `opm merge`
+    #[arg(
+        long,
+        value_name = "I/N",
+        requires = "output",
+        conflicts_with_all = ["axes", "color", "scalars"]
+    )]
+    pub shard: Option<Shard>,
+    /// Sweep a shard again, and replace whatever file there is
+    #[arg(long, requires = "shard")]
+    pub force: bool,
+    /// Where the points go, and what of them
+    #[command(flatten)]
+    pub cloud: CloudArgs,
+    /// Threads to use, instead of one a processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// How points are recorded.
+#[derive(Debug, clap::Args)]
+pub struct CloudArgs {
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -381,16 +410,30 @@ pub struct WorkspaceArgs {
     /// Values stored with every point, named like those of --color
     #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
     pub scalars: Option<Vec<String>>,
+}
+
+/// Join the shards of a sweep into what one run would have found, and recorded
+///
+/// Takes all files of `opm workspace --shard`, in any order; what is printed is what one run prints,
+/// but for the time, which nobody measured (`seconds` and `poses_per_second` are null). With -o, the
+/// recording is the one run's, byte for byte. Shards of different runs are refused, and so are two of
+/// one part; of parts that are missing the commands are told that make them.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  seq 8 | xargs -P 4 -I {} opm workspace plano-spherical-5dof --shard {}/8 -o part-{}.mcap
+  opm merge part-*.mcap
+  opm merge part-*.mcap -o cloud.mcap --color theta11")]
+pub struct MergeArgs {
+    /// The files of all shards
+    #[arg(value_name = "PART.mcap", required = true, value_hint = ValueHint::FilePath)]
+    pub parts: Vec<PathBuf>,
+    /// Where the points go, and what of them
+    #[command(flatten)]
+    pub cloud: CloudArgs,
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-}
-
-impl WorkspaceArgs {
-    /// Whether a flag asks for condition numbers; values of the points may, too.
-    pub fn asks_condition(&self) -> bool {
-        self.conditioning || self.max_condition.is_some()
-    }
 }
 
 /// A condition number to compare with.

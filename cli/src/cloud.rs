@@ -1,13 +1,14 @@
 //! What each point of a recorded cloud is made of.
 
-use crate::args::WorkspaceArgs;
+use crate::args::CloudArgs;
 use crate::failure::Failure;
 use crate::pose::find;
+use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::CloudLayout;
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress, Sweep};
+use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
@@ -43,11 +44,7 @@ pub struct Wishes {
 
 impl Wishes {
     /// From the flags, each of which is checked; condition numbers have this characteristic length.
-    pub fn new(
-        args: &WorkspaceArgs,
-        length: f64,
-        manipulator: &Manipulator,
-    ) -> Result<Self, Failure> {
+    pub fn new(args: &CloudArgs, length: f64, manipulator: &Manipulator) -> Result<Self, Failure> {
         let named = |name: &String, flag| column(manipulator, name, flag);
         let color = args.color.as_ref().map(|name| named(name, "--color")).transpose()?;
         let scalars: Option<Vec<Named>> = (args.scalars.as_ref())
@@ -62,14 +59,15 @@ impl Wishes {
                 return wrong(format!("{name} is given twice"));
             }
         }
-        let conditioned = scalars.iter().flatten().chain(&color);
-        let conditioned = conditioned.into_iter().any(|(_, c)| *c == Column::InverseCondition);
-        if args.length.is_some() && !conditioned && !args.asks_condition() {
-            let problem = "there is no condition number that it would be of; --max-condition, \
-                           --conditioning or --scalars inverse_condition ask for one";
-            return Err(Failure::flag("--length", problem));
-        }
         Ok(Self { axes: axes(&args.axes, manipulator)?, scalars, color, length })
+    }
+}
+
+impl Wishes {
+    /// Whether a value of the points is a condition number.
+    pub fn asks_condition(&self) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|(_, column)| *column == Column::InverseCondition)
     }
 }
 
@@ -169,7 +167,7 @@ impl<'a> Cloud<'a> {
     /// limits or what there is.
     pub fn color_range(
         &self,
-        sweep: &Sweep<'_>,
+        source: &Source<'_>,
         found: &Count,
         grid: &Grid,
         progress: &Progress,
@@ -186,7 +184,7 @@ impl<'a> Cloud<'a> {
         }
         let columns = [self.color.1];
         let mut range: Option<[f64; 2]> = None;
-        sweep.points::<_, Failure>(
+        source.points(
             progress,
             |hits, points: &mut Points<'_>| points.add(hits),
             || Points::new(self, &columns),

@@ -160,8 +160,10 @@ impl Kind {
         if self.sections() != Sections::Whole && args.max_condition.is_some() {
             return wrong("--max-condition", "a section alone has no condition number");
         }
-        if args.length.is_some() && !self.is_of_poses() && args.max_condition.is_none() {
-            return wrong("--length", "there is no condition number that it would be of");
+        let whole = self == Self::Grid && !args.shape && !args.conditioning;
+        if args.shard.is_some() && !whole {
+            let problem = "shards are of --kind grid, without --shape and --conditioning";
+            return Err(Failure::flag("--shard", problem));
         }
         if args.conditioning && !self.is_of_poses() {
             let problem = "only poses have a condition number; ask for it of grid, \
@@ -294,7 +296,6 @@ impl Study {
 
     /// Adds what is known to the JSON of a workspace.
     pub fn json(&self, json: &mut Value) {
-        json["kind"] = self.kind.name().into();
         if let Some(visits) = &self.visits {
             json["orientations"] = visits.slices().into();
         }

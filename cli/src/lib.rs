@@ -16,6 +16,7 @@ mod kind;
 mod lines;
 mod linkage;
 mod load;
+mod merge;
 mod motion;
 mod output;
 mod plot;
@@ -23,6 +24,8 @@ mod pose;
 mod progress;
 mod record;
 mod scene;
+mod shard;
+mod source;
 mod text;
 mod trajectory;
 mod transform;
@@ -62,6 +65,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Merge(command) => merge::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),

@@ -52,6 +52,13 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { label, file_name, path, text, file })
 }
 
+/// Reads a mechanism file that is attached to a recording; `label` is what it was named to the run.
+pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Failure> {
+    let file = file::read(text).map_err(|errors| Failure::Work(errors.in_file(label)))?;
+    let (label, file_name) = (label.to_owned(), file_name.to_owned());
+    Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file })
+}
+
 /// The text of a file of at most so many bytes; `None` where there is no such file.
 pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
     let label = given.display();

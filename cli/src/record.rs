@@ -3,25 +3,34 @@
 use crate::cloud::{Cloud, Points, Poses};
 use crate::failure::Failure;
 use crate::kind::{SetRecording, Study, pose_boundary};
+use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::{MAX_SLICES, Metadata, PartialFile, RecordError, Workspace, WorkspaceRecorder};
-use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress, Sweep};
-use std::fs;
+use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress};
 use std::path::{Path, PathBuf};
+
+/// What writes the files.
+pub const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
 
 /// More slices than this play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
 
 /// Points between two looks at whether somebody pressed Ctrl-C.
 const PORTION: u64 = 1 << 12;
+/// Opens a file for a recording before the work starts, so that a wrong path costs no time.
+pub fn create(path: &Path) -> Result<PartialFile, Failure> {
+    if path == Path::new("-") {
+        return Err(Failure::flag("--output", "a recording needs a file, not standard output"));
+    }
+    PartialFile::create(path).map_err(|e| Failure::at(path.display(), &e))
+}
 
 /// A file that is open for a recording.
 pub struct Recorder {
     path: PathBuf,
-    /// `None` once there is something in it.
-    file: Option<PartialFile>,
+    file: PartialFile,
 }
 
 impl Recorder {
@@ -37,54 +46,52 @@ impl Recorder {
         Err(Failure::flag("--grid", problem))
     }
 
-    /// Opens the file before the work starts, so that a wrong path costs no time.
+    /// Opens the file.
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        if path == Path::new("-") {
-            return Err(Failure::flag("--output", "a recording needs a file, not standard output"));
-        }
-        let file = PartialFile::create(path).map_err(|e| Failure::at(path.display(), &e))?;
-        Ok(Self { path: path.to_owned(), file: Some(file) })
+        Ok(Self { path: path.to_owned(), file: create(path)? })
     }
 
     /// Records every point that was counted: an overview, then all of them. Returns the path.
     pub fn record(
-        mut self,
+        self,
         run: &Run<'_>,
         cloud: &Cloud<'_>,
-        sweep: &Sweep<'_>,
+        source: &Source<'_>,
         found: &Count,
-        study: &Study,
+        study: Option<&Study>,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
-        let color_range = cloud.color_range(sweep, found, run.grid, progress)?;
-        let failed = |error: RecordError| Failure::at(self.path.display(), &error);
+        let Self { path, file } = self;
+        let color_range = cloud.color_range(source, found, run.grid, progress)?;
+        let failed = |error: RecordError| Failure::at(path.display(), &error);
         let columns = cloud.columns();
         let workspace = Workspace {
             layout: cloud.layout(color_range),
             mechanism_name: &run.loaded.file_name,
             mechanism: run.loaded.text.as_bytes(),
-            run: describe(run, found),
+            run: describe(run),
             points: found.reachable,
             slices: run.grid.slices() / together(run.grid),
         };
-        let Some(file) = self.file.take() else { return Ok(self.path.clone()) };
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
         let interrupted = |failure| match failure {
             Failure::Interrupted(message) => Failure::Interrupted(format!(
                 "{message}; what was recorded is in {}",
-                partial(&self.path).display()
+                partial(&path).display()
             )),
             other => other,
         };
 
         let together = together(run.grid);
-        if let Some(lines) = pose_boundary(run.grid, study, together, |pose| cloud.place(pose)) {
+        let lines = study
+            .and_then(|study| pose_boundary(run.grid, study, together, |pose| cloud.place(pose)));
+        if let Some(lines) = lines {
             recorder.boundary(lines).map_err(failed)?;
         }
         let every = recorder.overview_every();
         let mut number = 0;
         let mut overview = Points::new(cloud, &columns);
-        sweep
+        source
             .points(
                 progress,
                 |hits, poses: &mut Poses| poses.add(hits),
@@ -101,7 +108,7 @@ impl Recorder {
                 },
             )
             .map_err(interrupted)?;
-        sweep
+        source
             .points(
                 progress,
                 |hits, points: &mut Points<'_>| points.add(hits),
@@ -114,21 +121,21 @@ impl Recorder {
             )
             .map_err(interrupted)?;
         recorder.finish(&result(run, found)).map_err(failed)?;
-        Ok(self.path.clone())
+        Ok(path)
     }
-}
 
-impl Recorder {
     /// Records a set that is no set of poses: an overview, then every point. Returns the path.
     pub fn record_set(
-        mut self,
+        self,
         run: &Run<'_>,
         set: &SetRecording<'_>,
         found: &Count,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
-        let failed = |error: RecordError| Failure::at(self.path.display(), &error);
-        let mut about = describe(run, found);
+        let Self { path, file } = self;
+        let failed = |error: RecordError| Failure::at(path.display(), &error);
+        let mut about = describe(run);
+        about.insert("poses".to_owned(), found.poses.to_string());
         about.insert("set".to_owned(), set.set_axes());
         let workspace = Workspace {
             layout: set.layout(found),
@@ -138,7 +145,6 @@ impl Recorder {
             points: found.reachable,
             slices: set.slices,
         };
-        let Some(file) = self.file.take() else { return Ok(self.path.clone()) };
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
         if let Some(lines) = set.boundary() {
             recorder.boundary(lines).map_err(failed)?;
@@ -148,7 +154,7 @@ impl Recorder {
             false => Ok(()),
             true => Err(Failure::Interrupted(format!(
                 "interrupted; what was recorded is in {}",
-                partial(&self.path).display()
+                partial(&path).display()
             ))),
         };
         let mut number = 0;
@@ -164,16 +170,7 @@ impl Recorder {
             recorder.push(slice, row).map_err(failed)
         })?;
         recorder.finish(&result(run, found)).map_err(failed)?;
-        Ok(self.path.clone())
-    }
-}
-
-impl Drop for Recorder {
-    /// A file in which nothing was recorded is not worth keeping.
-    fn drop(&mut self) {
-        if self.file.take().is_some() {
-            let _ = fs::remove_file(partial(&self.path));
-        }
+        Ok(path)
     }
 }
 
@@ -198,14 +195,14 @@ pub fn partial(path: &Path) -> PathBuf {
 }
 
 /// What is known of a run before it.
-fn describe(run: &Run<'_>, found: &Count) -> Metadata {
+pub fn describe(run: &Run<'_>) -> Metadata {
     let mut record: Metadata = [
-        ("program", format!("opm {}", env!("CARGO_PKG_VERSION"))),
+        ("program", PROGRAM.to_owned()),
         ("mechanism", run.manipulator.mechanism().name.clone()),
         ("mechanism_file", run.loaded.file_name.clone()),
         ("kind", run.kind.name()),
         ("mode", run.mode()),
-        ("poses", found.poses.to_string()),
+        ("poses", run.grid.poses().to_string()),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into();
@@ -230,12 +227,24 @@ fn result(run: &Run<'_>, found: &Count) -> Metadata {
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into();
-    for (joint, range) in run.manipulator.imaginary().iter().zip(&found.imaginary) {
-        if let Some([low, high]) = range {
-            record.insert(format!("range.{}", joint.name), format!("{low}:{high}"));
-        }
-    }
+    record.extend(ranges(run, found));
     record
+}
+
+/// The ranges of the imaginary joints, to the last digit.
+pub fn ranges(run: &Run<'_>, found: &Count) -> Metadata {
+    let ranges = run.manipulator.imaginary().iter().zip(&found.imaginary);
+    ranges
+        .filter_map(|(joint, range)| {
+            let [low, high] = (*range)?;
+            Some((range_key(&joint.name), format!("{low}:{high}")))
+        })
+        .collect()
+}
+
+/// The key of an imaginary joint's range.
+pub fn range_key(joint: &str) -> String {
+    format!("range.{joint}")
 }
 
 impl From<Cancelled> for Failure {

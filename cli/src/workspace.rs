@@ -8,18 +8,21 @@ use crate::load::{self, Loaded};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
 use crate::record::Recorder;
+use crate::shard;
+use crate::source::Source;
 use crate::text::{self, Table, count, short};
 use crate::velocity::characteristic_length;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sections, SetError, Sweep,
-    default_grid,
+    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sections, SetError, Shard,
+    Sweep, default_grid,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
@@ -35,16 +38,17 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let limit = args.max_condition.map(|most| ConditionLimit { most, length });
     let given = given_grid(&args.grid, kind, &manipulator)?;
     let wishes = match kind.is_of_poses() {
-        true => AnyWishes::Poses(Wishes::new(args, length, &manipulator)?),
-        false => AnyWishes::Set(SetWishes::new(kind, args, &manipulator)?),
+        true => AnyWishes::Poses(Wishes::new(&args.cloud, length, &manipulator)?),
+        false => AnyWishes::Set(SetWishes::new(kind, &args.cloud, &manipulator)?),
     };
-    let recorder = match &args.output {
-        Some(path) => {
-            loaded.refuse_as_output(path, &[])?;
-            given.as_ref().filter(|_| kind.is_of_poses()).map_or(Ok(()), Recorder::check)?;
-            Some(Recorder::create(path)?)
-        }
-        None => None,
+    wishes.check_length(args)?;
+    if let Some(path) = &args.cloud.output {
+        loaded.refuse_as_output(path, &[])?;
+        given.as_ref().filter(|_| kind.is_of_poses()).map_or(Ok(()), Recorder::check)?;
+    }
+    let recorder = match (&args.cloud.output, args.shard) {
+        (Some(path), None) => Some(Recorder::create(path)?),
+        _ => None,
     };
     let progress = interruptible()?;
     let pool = threads(args.threads)?;
@@ -60,64 +64,137 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         );
     }
     let run = Run { loaded: &loaded, manipulator: &manipulator, kind, grid: &grid, modes, limit };
-    let sweep = Sweep::new(&manipulator, &grid, modes).limited(limit);
-    let before = progress.done();
-    let done = || progress.done() - before;
-    let start = Instant::now();
-    let job = || pool.install(|| sweep.count(&progress));
-    let mut found =
-        watch(output, "counting", Some(grid.poses()), done, job).map_err(|Cancelled| {
-            let (done, poses) = (count(done()), count(grid.poses()));
-            Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
-        })?;
-    let seconds = start.elapsed().as_secs_f64().max(1e-9);
+    let work = Work { output, pool: &pool, progress: &progress };
+    if let (Some(shard), Some(path)) = (args.shard, &args.cloud.output) {
+        return shard::run(&run, shard, path, args.force, &work);
+    }
 
+    let sweep = run.sweep();
+    let (mut found, effort) = work.count(&sweep)?;
     let conditioning = args.conditioning.then_some(length);
     let questions = Questions { kind, shape: args.shape || kind != Kind::Grid, conditioning };
-    let before = progress.done();
-    let done = || progress.done() - before;
-    let job = || pool.install(|| Study::new(&questions, &sweep, &progress));
-    let total = questions.passes() * grid.poses();
-    let study = watch(output, "studying", Some(total), done, job);
-    let study = study.map_err(|error| match error {
-        SetError::Cancelled(cancelled) => cancelled.into(),
-        SetError::Size { .. } => Failure::Work(format!("--kind {}: {error}", kind.name())),
-    })?;
-    if let Some(set) = &study.set {
-        (found.poses, found.reachable) = (set.points(), set.count());
-    }
-    if found.reachable == 0 {
-        output.warn(kind.nothing(limit.is_some()));
-    }
-
+    let study = work.study(&questions, &sweep, &mut found)?;
+    work.warn_of_nothing(&run, &found);
     if let Some(recorder) = recorder {
-        let recorded = match wishes {
+        match wishes {
             AnyWishes::Poses(wishes) => {
-                let cloud = Cloud::new(wishes, &run);
-                let total = cloud.passes() * grid.poses();
-                let before = progress.done();
-                let done = || progress.done() - before;
-                let job = || recorder.record(&run, &cloud, &sweep, &found, &study, &progress);
-                watch(output, "recording", Some(total), done, || pool.install(job))
+                work.record(recorder, wishes, &run, &found, &Source::Sweep(sweep), Some(&study))?;
             }
             AnyWishes::Set(wishes) => {
                 let set = SetRecording::new(wishes, &run, &study)?;
-                recorder.record_set(&run, &set, &found, &progress)
+                let path = recorder.record_set(&run, &set, &found, &progress)?;
+                work.tell_recorded(&path, &found);
             }
-        };
-        output.note(format_args!("{}: {} points", recorded?.display(), count(found.reachable)));
+        }
     }
-    let (mut json, mut text) = (run.json(&found, seconds), run.text(&found, &study));
-    study.json(&mut json);
-    let rate = short(grid.poses() as f64 / seconds / 1e6);
-    let _ = writeln!(text, "\ncounted in {} s, {rate} million poses/s", short(seconds));
-    output.print(&json, text)
+    let study = Some(&study);
+    let result = Outcome { run: &run, found: &found, study, effort, shard: None };
+    output.print(&result.json(), result.text())
+}
+
+/// Where the work is done, and who is told of it.
+pub struct Work<'a> {
+    pub output: &'a Output,
+    pub pool: &'a ThreadPool,
+    pub progress: &'a Progress,
+}
+
+impl Work<'_> {
+    /// Counts the poses of a sweep.
+    pub fn count(&self, sweep: &Sweep<'_>) -> Result<(Count, Effort), Failure> {
+        let start = Instant::now();
+        let poses = sweep.poses();
+        let before = self.progress.done();
+        let job = || sweep.count(self.progress);
+        let found = self.watch("counting", poses, job).map_err(|Cancelled| {
+            let (done, poses) = (count(self.progress.done() - before), count(poses));
+            Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
+        })?;
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        Ok((found, Effort::Counted { poses: sweep.poses(), seconds }))
+    }
+
+    /// Finds out what else is asked of the poses; of a set that is not theirs, its points are what
+    /// is found.
+    fn study(
+        &self,
+        questions: &Questions,
+        sweep: &Sweep<'_>,
+        found: &mut Count,
+    ) -> Result<Study, Failure> {
+        let total = questions.passes() * sweep.poses();
+        let job = || Study::new(questions, sweep, self.progress);
+        let study = self.watch("studying", total, job).map_err(|error| match error {
+            SetError::Cancelled(cancelled) => cancelled.into(),
+            SetError::Size { .. } => {
+                Failure::Work(format!("--kind {}: {error}", questions.kind.name()))
+            }
+        })?;
+        if let Some(set) = &study.set {
+            (found.poses, found.reachable) = (set.points(), set.count());
+        }
+        Ok(study)
+    }
+
+    /// Records every point that was counted.
+    pub fn record(
+        &self,
+        recorder: Recorder,
+        wishes: Wishes,
+        run: &Run<'_>,
+        found: &Count,
+        source: &Source<'_>,
+        study: Option<&Study>,
+    ) -> Result<(), Failure> {
+        let cloud = Cloud::new(wishes, run);
+        let total = cloud.passes() * run.grid.poses();
+        let job = || recorder.record(run, &cloud, source, found, study, self.progress);
+        let path = self.watch("recording", total, job)?;
+        self.tell_recorded(&path, found);
+        Ok(())
+    }
+
+    fn tell_recorded(&self, path: &Path, found: &Count) {
+        self.output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
+    }
+
+    /// Says so where there is nothing in reach.
+    pub fn warn_of_nothing(&self, run: &Run<'_>, found: &Count) {
+        if found.reachable == 0 {
+            self.output.warn(run.kind.nothing(run.limit.is_some()));
+        }
+    }
+
+    /// Does a job on the threads while a bar shows how far it has come.
+    pub fn watch<T: Send>(
+        &self,
+        label: &'static str,
+        poses: u64,
+        job: impl FnOnce() -> T + Send,
+    ) -> T {
+        let before = self.progress.done();
+        let done = || self.progress.done() - before;
+        watch(self.output, label, Some(poses), done, || self.pool.install(job))
+    }
 }
 
 /// What the points of a recording are asked to be made of.
 enum AnyWishes {
     Poses(Wishes),
     Set(SetWishes),
+}
+
+impl AnyWishes {
+    /// Refuses a characteristic length of nothing.
+    fn check_length(&self, args: &WorkspaceArgs) -> Result<(), Failure> {
+        let valued = matches!(self, Self::Poses(wishes) if wishes.asks_condition());
+        if args.length.is_none() || valued || args.conditioning || args.max_condition.is_some() {
+            return Ok(());
+        }
+        let problem = "there is no condition number that it would be of; --max-condition, \
+                       --conditioning or --scalars inverse_condition ask for one";
+        Err(Failure::flag("--length", problem))
+    }
 }
 
 /// The grid that the flags give; `None` without flags.
@@ -152,16 +229,7 @@ fn fitted_grid(
     let (grid, extents) = watch(output, "fitting a grid", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting a grid".into()))?;
     let grid = kind.fit(manipulator, grid);
-    // As flags in SI, so that the same run can be asked for again.
-    let flags: Vec<String> = grid
-        .axes()
-        .iter()
-        .map(|Axis { name, min, max, count }| match count {
-            1 => format!("--grid {name}={min}"),
-            _ => format!("--grid {name}={min}:{max}:{count}"),
-        })
-        .collect();
-    output.note(format_args!("grid fitted to the workspace: {}", flags.join(" ")));
+    output.note(format_args!("grid fitted to the workspace: {}", grid_flags(&grid)));
     for extent in extents.iter().filter(|extent| extent.unbounded && kind.asks(extent, &grid)) {
         output.warn(format_args!(
             "the workspace goes on beyond this grid along {}; limit a joint, or give --grid",
@@ -171,7 +239,18 @@ fn fitted_grid(
     Ok(grid)
 }
 
-fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
+/// The flags that ask for a grid, in SI.
+pub fn grid_flags(grid: &Grid) -> String {
+    let flags: Vec<String> = (grid.axes().iter())
+        .map(|Axis { name, min, max, count }| match count {
+            1 => format!("--grid {name}={min}"),
+            _ => format!("--grid {name}={min}:{max}:{count}"),
+        })
+        .collect();
+    flags.join(" ")
+}
+
+pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
     builder.build().map_err(|error| Failure::at("threads", &error))
 }
@@ -186,7 +265,12 @@ pub struct Run<'a> {
     pub limit: Option<ConditionLimit>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    /// The sweep of it.
+    pub fn sweep(&self) -> Sweep<'a> {
+        Sweep::new(self.manipulator, self.grid, self.modes).limited(self.limit)
+    }
+
     /// `any`, or the signs of the mode.
     pub fn mode(&self) -> String {
         match self.modes {
@@ -195,84 +279,153 @@ impl Run<'_> {
         }
     }
 
-    /// The counted share of the box of the set's axes, those with more than one value.
+    /// The counted share of the box of the set's axes, those with more than one value. (Those of
+    /// shards add up.)
     pub fn measure(&self, found: &Count, units: FileUnits) -> (f64, String) {
         let Self { kind, grid, .. } = self;
-        let fraction = found.reachable as f64 / found.poses as f64;
+        let points: u64 = grid.axes()[kind.axes(grid)].iter().map(|axis| axis.count).product();
         let axes = kind.axes(grid).map(|i| (&grid.axes()[i], grid.coordinates()[i].quantity));
-        kind::measure(fraction, axes, units)
+        kind::measure(found.reachable as f64 / points as f64, axes, units)
     }
+}
 
-    fn json(&self, found: &Count, seconds: f64) -> Value {
+/// What it took to count.
+#[derive(Clone, Copy, Debug)]
+pub enum Effort {
+    /// A sweep of so many poses and so long.
+    Counted { poses: u64, seconds: f64 },
+    /// Sweeps of others, whose times nobody added up.
+    Merged { shards: u64 },
+    /// A sweep some time ago.
+    Earlier,
+}
+
+/// What came of a run, to be printed.
+pub struct Outcome<'a> {
+    pub run: &'a Run<'a>,
+    pub found: &'a Count,
+    /// What else is known of it.
+    pub study: Option<&'a Study>,
+    pub effort: Effort,
+    /// The part of the run that this is of, if it is not the whole.
+    pub shard: Option<Shard>,
+}
+
+impl Outcome<'_> {
+    pub fn json(&self) -> Value {
+        let Self { run, found, .. } = self;
         let axis = |a: &Axis| json!({ "min": a.min, "max": a.max, "count": a.count });
         let grid: Map<String, Value> =
-            self.grid.axes().iter().map(|a| (a.name.clone(), axis(a))).collect();
-        let ranges: Map<String, Value> = (self.manipulator.imaginary().iter())
+            run.grid.axes().iter().map(|a| (a.name.clone(), axis(a))).collect();
+        let ranges: Map<String, Value> = (run.manipulator.imaginary().iter())
             .zip(&found.imaginary)
             .map(|(joint, range)| (joint.name.clone(), json!(range)))
             .collect();
-        let (value, units) = self.measure(found, FileUnits::SI);
+        let (value, units) = run.measure(found, FileUnits::SI);
         let mut json = json!({
             "poses": found.poses,
             "reachable": found.reachable,
             "fraction": found.reachable as f64 / found.poses as f64,
             "grid": grid,
-            "mode": self.mode(),
+            "mode": run.mode(),
             "measure": { "value": value, "units": units, "method": "grid" },
             "imaginary_range": ranges,
-            "seconds": seconds,
-            "poses_per_second": self.grid.poses() as f64 / seconds,
+            "seconds": self.seconds(),
+            "poses_per_second": self.rate(),
         });
-        if let Some(ConditionLimit { most, length }) = self.limit {
+        json["kind"] = run.kind.name().into();
+        if let Some(study) = self.study {
+            study.json(&mut json);
+        }
+        if let Some(shard) = self.shard {
+            json["shard"] = shard.to_string().into();
+        }
+        if let Some(ConditionLimit { most, length }) = run.limit {
             json["max_condition"] = most.into();
             json["characteristic_length"] = length.into();
         }
         json
     }
 
-    fn text(&self, found: &Count, study: &Study) -> String {
-        let units = self.loaded.file.units;
-        let mut text = self.manipulator.mechanism().name.clone();
-        if self.kind != Kind::Grid {
-            let _ = write!(text, ", {}", self.kind.title());
+    pub fn text(&self) -> String {
+        let Self { run, found, .. } = self;
+        let units = run.loaded.file.units;
+        let mut text = run.manipulator.mechanism().name.clone();
+        if run.kind != Kind::Grid {
+            let _ = write!(text, ", {}", run.kind.title());
         }
-        let mode = self.mode();
+        let mode = run.mode();
         if !mode.is_empty() {
             let _ = write!(text, ", mode {mode}");
         }
+        if let Some(shard) = self.shard {
+            let _ = write!(text, ", shard {shard}");
+        }
         let mut axes = Table::new(["grid", ">from", ">to", "unit", ">values"]);
-        for (axis, c) in self.grid.axes().iter().zip(self.grid.coordinates()) {
+        for (axis, c) in run.grid.axes().iter().zip(run.grid.coordinates()) {
             let end = |value| text::number(value, c.quantity, units);
             let symbol = units.symbol(c.quantity);
             axes.row([&*axis.name, &end(axis.min), &end(axis.max), symbol, &count(axis.count)]);
         }
         let _ = writeln!(text, "\n\n{axes}");
-        if let Some(ConditionLimit { most, length }) = self.limit {
+        if let Some(ConditionLimit { most, length }) = run.limit {
             let length = units.show(length, Quantity::Length);
             let _ = writeln!(text, "condition number at most {most} (lengths over {length})\n");
         }
 
         let share = 100.0 * found.reachable as f64 / found.poses as f64;
-        let (value, measured) = self.measure(found, units);
-        let points = [self.kind.points(), &format!(">{}", count(found.poses)), ">"];
+        let (value, measured) = run.measure(found, units);
+        let points = [run.kind.points(), &format!(">{}", count(found.poses)), ">"];
         let mut results = Table::new(points);
-        let reached = self.kind.reached().to_owned();
+        let reached = run.kind.reached().to_owned();
         results.row([reached, count(found.reachable), format!("{} %", short(share))]);
         let _ = write!(text, "{results}");
-        if self.grid.poses() > 1 {
+        if run.grid.poses() > 1 {
             let _ = writeln!(text, "measure {} {measured}", short(value));
         }
-        text += &study.text(units);
+        if let Some(study) = self.study {
+            text += &study.text(units);
+        }
 
         if found.imaginary.iter().any(Option::is_some) {
             let mut ranges = Table::new(["imaginary joint", ">min", ">max", "unit"]);
-            for (joint, range) in self.manipulator.imaginary().iter().zip(&found.imaginary) {
+            for (joint, range) in run.manipulator.imaginary().iter().zip(&found.imaginary) {
                 let Some(range) = range else { continue };
                 let [low, high] = range.map(|value| text::number(value, joint.quantity, units));
                 ranges.row([&*joint.name, &low, &high, units.symbol(joint.quantity)]);
             }
             let _ = write!(text, "\n{ranges}");
         }
+        let _ = match self.effort {
+            Effort::Counted { poses, seconds } => {
+                let rate = short(poses as f64 / seconds / 1e6);
+                writeln!(text, "\ncounted in {} s, {rate} million poses/s", short(seconds))
+            }
+            Effort::Merged { shards } => {
+                writeln!(text, "\nmerged from {}", plural(shards, "shard"))
+            }
+            Effort::Earlier => Ok(()),
+        };
         text
     }
+
+    /// The time of the count; `None` where it was counted elsewhere.
+    fn seconds(&self) -> Option<f64> {
+        match self.effort {
+            Effort::Counted { seconds, .. } => Some(seconds),
+            Effort::Merged { .. } | Effort::Earlier => None,
+        }
+    }
+
+    /// Poses a second.
+    fn rate(&self) -> Option<f64> {
+        match self.effort {
+            Effort::Counted { poses, seconds } => Some(poses as f64 / seconds),
+            Effort::Merged { .. } | Effort::Earlier => None,
+        }
+    }
+}
+
+fn plural(number: u64, what: &str) -> String {
+    format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })
 }

@@ -3,7 +3,9 @@
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Run, Shard, Sweep};
+use opm_workspace::{
+    Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Shard, Sweep, replay,
+};
 
 /// The runs of a sweep with their rows, in the order in which they come.
 fn runs(sweep: &Sweep<'_>) -> Vec<(u64, Run)> {
@@ -24,7 +26,10 @@ fn runs(sweep: &Sweep<'_>) -> Vec<(u64, Run)> {
 
 fn grid(manipulator: &Manipulator, counts: [u64; 6]) -> Grid {
     let coordinates = manipulator.task_coordinates().iter().zip(counts);
-    let axes = coordinates.map(|(c, count)| Axis::new(c.name, c.home - 1.0, c.home + 1.3, count));
+    let axes = coordinates.map(|(c, count)| match count {
+        1 => Axis::fixed(c.name, c.home),
+        _ => Axis::new(c.name, c.home - 1.0, c.home + 1.3, count),
+    });
     Grid::new(manipulator, axes.collect()).unwrap()
 }
 
@@ -61,6 +66,49 @@ fn shards_are_the_whole_one_after_the_other() {
         }
     }
     assert!(shared > 60, "{shared} sweeps had points in several shards");
+}
+
+/// What a sweep gives, from the numbers of its poses alone; also where a run goes over many rows.
+#[test]
+fn a_replay_gives_what_the_sweep_gave() {
+    let mut rng = Rng::with_seed(41);
+    for pair in PAIRS {
+        let options = Options { limited: 0.1, balls: true };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        for counts in [[5_000, 3, 3, 2, 2, 2], [40, 30, 4, 5, 5, 5], [1, 30, 30, 1, 1, 1]] {
+            let grid = grid(&manipulator, counts);
+            let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
+            let make = |hits: &Hits<'_>, made: &mut Vec<_>| {
+                let row = (hits.slice, hits.row, hits.others.to_vec());
+                made.extend(hits.first.iter().map(|&first| (first, row.clone())));
+            };
+            let progress = Progress::default();
+            let take = |all: &mut Vec<(f64, (u64, u64, Vec<f64>))>, made| {
+                all.extend::<Vec<_>>(made);
+                Ok::<(), Cancelled>(())
+            };
+            let mut all = Vec::new();
+            sweep.points(&progress, make, Vec::new, |made| take(&mut all, made)).unwrap();
+            let row = grid.axes()[0].count;
+            let numbers = runs(&sweep).into_iter().map(|(number, run)| Run {
+                from: number * row + run.from,
+                to: number * row + run.to,
+            });
+            // Whatever touches is one run.
+            let mut joined: Vec<Run> = Vec::new();
+            for run in numbers {
+                match joined.last_mut() {
+                    Some(last) if last.to == run.from => last.to = run.to,
+                    _ => joined.push(run),
+                }
+            }
+            let mut again = Vec::new();
+            let runs = joined.into_iter().map(Ok);
+            replay(&grid, runs, &progress, make, Vec::new, |made| take(&mut again, made)).unwrap();
+            assert!(again == all, "{pair:?}");
+        }
+    }
 }
 
 /// Of zeros, too: which sign a range has must not depend on what came first.

@@ -1,7 +1,7 @@
 //! Recordings of sets whose points are no poses of the platform, and of boundaries.
 
 use super::{Kind, Study};
-use crate::args::WorkspaceArgs;
+use crate::args::CloudArgs;
 use crate::failure::Failure;
 use crate::workspace::Run;
 use opm_core::manipulator::{Follow, Manipulator};
@@ -38,11 +38,7 @@ pub struct SetWishes {
 
 impl SetWishes {
     /// From the flags, each of which is checked.
-    pub fn new(
-        kind: Kind,
-        args: &WorkspaceArgs,
-        manipulator: &Manipulator,
-    ) -> Result<Self, Failure> {
+    pub fn new(kind: Kind, args: &CloudArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
         let known = known(kind, manipulator);
         let find = |name: &String, flag: &str| {
             let found = known.iter().find(|(known, _)| known == name).cloned();

@@ -10,6 +10,7 @@ mod kind;
 mod linkage;
 mod plot;
 mod run;
+mod shard;
 mod small;
 mod trajectory;
 mod velocity;

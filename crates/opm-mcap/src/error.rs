@@ -100,6 +100,16 @@ pub enum RecordError {
         /// Points that the announced total asks for.
         expected: u64,
     },
+    /// Runs of poses came out of order, or empty.
+    #[error("poses {from}..{to}, expected some from {end} on")]
+    Run {
+        /// The first pose.
+        from: u64,
+        /// One more than the last.
+        to: u64,
+        /// The earliest that may still be pushed.
+        end: u64,
+    },
     /// Overview points came after the first slice.
     #[error("overview points after the first slice")]
     OverviewClosed,

@@ -31,6 +31,8 @@ pub struct PartialFile {
     file: BufWriter<File>,
     partial: PathBuf,
     target: PathBuf,
+    /// Something was written.
+    begun: bool,
 }
 
 impl PartialFile {
@@ -68,12 +70,14 @@ impl PartialFile {
             }
         };
         file.set_len(0).map_err(failed)?;
-        Ok(Self { file: BufWriter::with_capacity(1 << 17, file), partial, target: target.into() })
+        let file = BufWriter::with_capacity(1 << 17, file);
+        Ok(Self { file, partial, target: target.into(), begun: false })
     }
 }
 
 impl Write for PartialFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.begun = true;
         self.file.write(bytes)
     }
 
@@ -95,8 +99,18 @@ impl Seek for PartialFile {
 
 impl Sink for PartialFile {
     fn commit(mut self) -> io::Result<()> {
+        self.begun = true;
         self.file.flush()?;
         self.file.get_ref().sync_all()?;
         fs::rename(&self.partial, &self.target)
+    }
+}
+
+impl Drop for PartialFile {
+    fn drop(&mut self) {
+        if !self.begun {
+            // It is empty; if it stays, so be it.
+            let _ = fs::remove_file(&self.partial);
+        }
     }
 }

@@ -34,6 +34,7 @@ impl JointsTopic {
         joints: &[String],
     ) -> Result<Self, RecordError> {
         let fields = fields(joints)?;
+        let fields: Vec<_> = fields.iter().map(|name| Field::double(name)).collect();
         let schema = descriptor(message, &fields);
         let topic = log.topic_of(name, &format!("{PACKAGE}.{message}"), &schema)?;
         Ok(Self { topic, joints: joints.len(), message: Vec::new() })
@@ -86,19 +87,44 @@ pub(crate) fn fields(joints: &[String]) -> Result<Vec<String>, RecordError> {
     Ok(fields)
 }
 
-/// A `google.protobuf.FileDescriptorSet` of one file with one message type, all fields doubles.
-fn descriptor(message: &str, fields: &[String]) -> Vec<u8> {
+/// A field of a message type: its number is its place, from 1 on.
+pub(crate) struct Field<'a> {
+    name: &'a str,
+    /// `FieldDescriptorProto.Label` and `FieldDescriptorProto.Type`.
+    label: u64,
+    kind: u64,
+}
+
+impl<'a> Field<'a> {
+    /// A double.
+    pub fn double(name: &'a str) -> Self {
+        Self { name, label: 1, kind: 1 }
+    }
+
+    /// A `uint64`.
+    pub fn number(name: &'a str) -> Self {
+        Self { name, label: 1, kind: 4 }
+    }
+
+    /// Any number of `uint64`.
+    pub fn numbers(name: &'a str) -> Self {
+        Self { name, label: 3, kind: 4 }
+    }
+}
+
+/// A `google.protobuf.FileDescriptorSet` of one file with one message type.
+pub(crate) fn descriptor(message: &str, fields: &[Field<'_>]) -> Vec<u8> {
     // Field numbers of descriptor.proto.
     let mut kind = Vec::new();
     bytes(&mut kind, 1, message.as_bytes());
-    for (number, name) in (1..).zip(fields) {
-        let mut field = Vec::new();
-        bytes(&mut field, 1, name.as_bytes());
-        integer(&mut field, 3, number);
-        integer(&mut field, 4, 1); // LABEL_OPTIONAL
-        integer(&mut field, 5, 1); // TYPE_DOUBLE
-        bytes(&mut field, 10, name.as_bytes()); // as it is in JSON, not in camel case
-        bytes(&mut kind, 2, &field);
+    for (number, field) in (1..).zip(fields) {
+        let mut encoded = Vec::new();
+        bytes(&mut encoded, 1, field.name.as_bytes());
+        integer(&mut encoded, 3, number);
+        integer(&mut encoded, 4, field.label);
+        integer(&mut encoded, 5, field.kind);
+        bytes(&mut encoded, 10, field.name.as_bytes()); // as it is in JSON, not in camel case
+        bytes(&mut kind, 2, &encoded);
     }
     let mut file = Vec::new();
     bytes(&mut file, 1, format!("{PACKAGE}/{message}.proto").as_bytes());
@@ -122,7 +148,7 @@ fn integer(out: &mut Vec<u8>, field: u64, value: u64) {
 }
 
 /// A number in base 128, the least significant digit first.
-fn varint(out: &mut Vec<u8>, mut value: u64) {
+pub(crate) fn varint(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
         value >>= 7;
@@ -153,6 +179,6 @@ mod tests {
     fn the_descriptor_is_that_of_a_proto_file() {
         let expected = b"\n-\n\x0bopm/M.proto\x12\x03opm\"\x11\n\x01M\x12\x0c\
             \n\x01a\x18\x01 \x01(\x01R\x01ab\x06proto3";
-        assert_eq!(descriptor("M", &["a".into()]), expected);
+        assert_eq!(descriptor("M", &[Field::double("a")]), expected);
     }
 }

@@ -3,7 +3,7 @@
 //! A recording opens in Foxglove, Lichtblick and Rerun. Its messages are of well-known schemas
 //! (`foxglove.PointCloud`), or flat ones that carry their own ([`joints`]), in chunks of about 1 MiB
 //! compressed with zstd on one thread. What is in a recording is said in [`workspace`] and
-//! [`trajectory`].
+//! [`trajectory`], what in a part of a sweep in [`shard`].
 //!
 //! * Numbers are SI and radians.
 //! * No clock is read: the same calls write the same bytes.
@@ -20,6 +20,7 @@ pub mod joints;
 mod log;
 mod reader;
 pub mod scene;
+pub mod shard;
 pub mod trajectory;
 pub mod workspace;
 
@@ -31,5 +32,6 @@ pub use flat::Flat;
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
 pub use scene::ClosedLine;
+pub use shard::{Shard, ShardRecorder};
 pub use trajectory::{Trajectory, TrajectoryRecorder};
 pub use workspace::{MAX_SLICES, Workspace, WorkspaceRecorder};

@@ -13,6 +13,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use crate::cloud::COLOR_FIELDS;
 use crate::decode::Cloud;
 use crate::flat::Flat;
+use crate::shard::{self, RUNS_SCHEMA};
 use crate::{Metadata, ReadError};
 
 /// Longest record or chunk that is taken for real. Ours are a quarter of it; a length beyond it
@@ -125,6 +126,18 @@ impl<'a> Message<'a> {
         let Some(flat) = self.flat else { return Ok(false) };
         flat.decode(self.data, values).map_err(|reason| self.malformed(reason))?;
         Ok(true)
+    }
+
+    /// The runs of poses, `[from, to)`, in a message of [`crate::shard`]; None when it is of another
+    /// schema.
+    ///
+    /// # Errors
+    /// A message that claims the schema and does not decode.
+    pub fn runs(&self) -> Result<Option<Vec<[u64; 2]>>, ReadError> {
+        if self.schema != RUNS_SCHEMA {
+            return Ok(None);
+        }
+        shard::decode(self.data).map(Some).map_err(|reason| self.malformed(reason.into()))
     }
 
     fn malformed(&self, reason: String) -> ReadError {

@@ -15,6 +15,7 @@ pub use shard::{Shard, ShardError};
 
 use crate::condition::ConditionLimit;
 use crate::grid::{Grid, Sections};
+use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
@@ -28,10 +29,6 @@ const SEGMENT: u64 = 1024;
 /// Poses of a block, the unit of work: some 0.1 ms, so that threads share evenly and a request to
 /// stop is heard at once.
 const BLOCK: u64 = 1 << 15;
-
-/// Blocks that are decided together between two visits of points (more only where there are more
-/// threads): bounds the memory that points wait in.
-const BATCH: u64 = 16;
 
 /// Which working modes count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,8 +194,14 @@ impl<'a> Sweep<'a> {
 
     /// Number of poses of the grid, or of the shard of it.
     pub fn poses(&self) -> u64 {
+        let Range { start, end } = self.range();
+        end - start
+    }
+
+    /// The numbers of these poses.
+    pub fn range(&self) -> Range<u64> {
         let Range { start, end } = self.blocks();
-        self.poses_before(end) - self.poses_before(start)
+        self.poses_before(start)..self.poses_before(end)
     }
 
     /// Counts the reachable poses, and finds the ranges of the imaginary joints. Memory does not
@@ -233,36 +236,21 @@ impl<'a> Sweep<'a> {
         progress: &Progress,
         make: impl Fn(&Hits<'_>, &mut T) + Sync,
         empty: impl Fn() -> T + Sync,
-        mut visit: impl FnMut(T) -> Result<(), E> + Send,
+        visit: impl FnMut(T) -> Result<(), E> + Send,
     ) -> Result<(), E> {
-        let ahead = BATCH.max(rayon::current_num_threads() as u64);
-        let Range { mut start, end } = self.blocks();
-        let batch = |start: u64| -> Result<Vec<T>, Cancelled> {
-            (start..(start + ahead).min(end))
-                .collect::<Vec<_>>()
-                .into_par_iter()
-                .map_init(
-                    || Scratch::new(self),
-                    |scratch, block| {
-                        let mut made = empty();
-                        let mut count = Count::nothing(self.manipulator);
-                        let mut make = |hits: &Hits<'_>| make(hits, &mut made);
-                        self.block(block, scratch, &mut count, Some(&mut make));
-                        progress.advance(count.poses)?;
-                        Ok(made)
-                    },
-                )
-                .collect()
-        };
-        let mut next = batch(start)?;
-        while !next.is_empty() {
-            start = (start + ahead).min(end);
-            let (visited, following) =
-                rayon::join(|| next.into_iter().try_for_each(&mut visit), || batch(start));
-            visited?;
-            next = following?;
-        }
-        Ok(())
+        in_order(
+            self.blocks().map(Ok),
+            || Scratch::new(self),
+            |scratch, block| {
+                let mut made = empty();
+                let mut count = Count::nothing(self.manipulator);
+                let mut make = |hits: &Hits<'_>| make(hits, &mut made);
+                self.block(block, scratch, &mut count, Some(&mut make));
+                progress.advance(count.poses)?;
+                Ok(made)
+            },
+            visit,
+        )
     }
 
     /// The blocks of the shard.

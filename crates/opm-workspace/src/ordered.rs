@@ -1,0 +1,37 @@
+//! Work on many items in parallel, whose results come in order and in bounded memory.
+
+use crate::progress::Cancelled;
+use rayon::prelude::*;
+
+/// Items that are worked on together between two visits (more only where there are more threads):
+/// bounds the memory that results wait in.
+const BATCH: usize = 16;
+
+/// Makes something of every item, on any thread with a `scratch` of its own, and gives it to `visit`
+/// in the order of the items, while the next ones are worked on.
+///
+/// # Errors
+/// The first one among the items, or that `visit` gives, or when `make` was told to stop.
+pub fn in_order<I: Send, S, T: Send, E: From<Cancelled> + Send>(
+    items: impl Iterator<Item = Result<I, E>> + Send,
+    scratch: impl Fn() -> S + Sync + Send,
+    make: impl Fn(&mut S, I) -> Result<T, Cancelled> + Sync + Send,
+    mut visit: impl FnMut(T) -> Result<(), E> + Send,
+) -> Result<(), E> {
+    let ahead = BATCH.max(rayon::current_num_threads());
+    let mut items = items;
+    let mut batch = || -> Result<Vec<T>, E> {
+        let items: Vec<I> = items.by_ref().take(ahead).collect::<Result<_, E>>()?;
+        let made: Result<Vec<T>, Cancelled> =
+            items.into_par_iter().map_init(&scratch, &make).collect();
+        Ok(made?)
+    };
+    let mut next = batch()?;
+    while !next.is_empty() {
+        let (visited, following) =
+            rayon::join(|| next.into_iter().try_for_each(&mut visit), &mut batch);
+        visited?;
+        next = following?;
+    }
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! The reachable poses of a grid once more, from where a sweep stored their numbers.
+
+use crate::grid::{Grid, fill};
+use crate::ordered::in_order;
+use crate::progress::{Cancelled, Progress};
+use crate::sweep::{Hits, Run};
+
+/// Poses that are made into points together.
+const BLOCK: u64 = 1 << 15;
+
+/// Gives poses of a grid as [`Sweep::points`](crate::Sweep::points) does, from `runs` of their
+/// numbers, which ascend and lie apart: what `make` and `visit` get differs in nothing but in how
+/// rows are divided.
+///
+/// # Errors
+/// The first one among the runs or that `visit` gives, or when told to stop.
+pub fn replay<T: Send, E: From<Cancelled> + Send>(
+    grid: &Grid,
+    runs: impl Iterator<Item = Result<Run, E>> + Send,
+    progress: &Progress,
+    make: impl Fn(&Hits<'_>, &mut T) + Sync,
+    empty: impl Fn() -> T + Sync,
+    visit: impl FnMut(T) -> Result<(), E> + Send,
+) -> Result<(), E> {
+    let row = grid.row();
+    // One more than the last pose that was given, as far as the blocks have come.
+    let mut reached = 0;
+    let blocks = Blocks { runs, rest: None }.map(|block| {
+        block.map(|block| {
+            let end = block.last().map_or(reached, |run| run.to);
+            (block, end - std::mem::replace(&mut reached, end))
+        })
+    });
+    in_order(
+        blocks,
+        || Row::new(grid),
+        |scratch, (block, poses): (Vec<Run>, u64)| {
+            let mut made = empty();
+            for run in block {
+                let mut from = run.from;
+                while from < run.to {
+                    let to = run.to.min((from / row + 1) * row);
+                    scratch.hit(Run { from, to }, |hits| make(hits, &mut made));
+                    from = to;
+                }
+            }
+            progress.advance(poses)?;
+            Ok(made)
+        },
+        visit,
+    )
+}
+
+/// Runs, cut into blocks of so many poses that many blocks fit into memory.
+struct Blocks<I> {
+    runs: I,
+    /// What did not fit into the block before.
+    rest: Option<Run>,
+}
+
+impl<E, I: Iterator<Item = Result<Run, E>>> Iterator for Blocks<I> {
+    type Item = Result<Vec<Run>, E>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let mut block = Vec::new();
+        let mut room = BLOCK;
+        while room > 0 {
+            let run = match self.rest.take().map(Ok).or_else(|| self.runs.next()) {
+                Some(Ok(run)) => run,
+                Some(Err(error)) => return Some(Err(error)),
+                None => break,
+            };
+            let to = run.to.min(run.from + room);
+            if to < run.to {
+                self.rest = Some(Run { from: to, to: run.to });
+            }
+            room -= to - run.from;
+            block.push(Run { from: run.from, to });
+        }
+        (!block.is_empty()).then_some(Ok(block))
+    }
+}
+
+/// The row that poses are in.
+struct Row<'a> {
+    grid: &'a Grid,
+    number: Option<u64>,
+    /// Rows of a slice.
+    slice: u64,
+    first: Vec<f64>,
+    others: Vec<f64>,
+}
+
+impl<'a> Row<'a> {
+    fn new(grid: &'a Grid) -> Self {
+        let others = vec![0.0; grid.axes().len() - 1];
+        let slice = grid.poses() / grid.row() / grid.slices();
+        Self { grid, number: None, slice, first: Vec::new(), others }
+    }
+
+    /// Gives the poses of a run of numbers in one row.
+    fn hit(&mut self, run: Run, hit: impl FnOnce(&Hits<'_>)) {
+        let (axes, length) = (self.grid.axes(), self.grid.row());
+        let row = run.from / length;
+        if self.number != Some(row) {
+            self.number = Some(row);
+            fill(&axes[1..], run.from / axes[0].count, &mut self.others);
+        }
+        let along = axes[0].count;
+        self.first.clear();
+        self.first.extend((run.from..run.to).map(|number| axes[0].value(number % along)));
+        let start = row * length;
+        let runs = &[Run { from: run.from - start, to: run.to - start }][..];
+        let (slice, first, others) = (row / self.slice, &self.first[..], &self.others[..]);
+        hit(&Hits { slice, row, runs, first, others });
+    }
+}
