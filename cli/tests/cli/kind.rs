@@ -125,7 +125,9 @@ fn boundaries_are_recorded_with_their_slices() {
             let at = slice["at"]["phi"].as_f64().unwrap();
             let expected: Vec<[f64; 3]> = ring.iter().map(|&[x, y]| [at, y, x]).collect();
             let found: Vec<[f64; 3]> = line.points.iter().map(|p| [p.x, p.y, p.z]).collect();
-            assert_eq!(found, expected);
+            // Reading JSON may round.
+            let near = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-12);
+            assert!(found.len() == expected.len() && found.iter().zip(&expected).all(near));
         }
     }
     let picture = folder.arg("cloud.svg");
@@ -219,7 +221,7 @@ fn the_global_index_is_the_mean_of_the_recorded_ones() {
         let index = &found["conditioning"];
         let mean = all.iter().sum::<f64>() / all.len() as f64;
         assert!((number(&index["global"]) - mean).abs() < 1e-6, "{index} {mean}");
-        assert_eq!(number(&index["characteristic_length"]), 0.08);
+        assert!((number(&index["characteristic_length"]) - 0.08).abs() < 1e-15);
         let least = all.iter().copied().fold(f64::MAX, f64::min);
         assert!((number(&index["local_min"]) - least).abs() < 1e-6);
     }
