@@ -6,13 +6,18 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod command;
+mod decomposition;
 mod error;
 mod forward;
+mod html;
 mod interrupt;
 mod manipulator;
 mod rows;
+mod screws;
+mod solids;
 mod solutions;
 mod sweep;
+mod trajectory;
 mod velocity;
 
 use pyo3::prelude::*;
@@ -22,15 +27,21 @@ mod _native {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
+    use crate::decomposition::{Decomposition, Intersection, LegSplit};
+    #[pymodule_export]
     use crate::error::OpmError;
     #[pymodule_export]
     use crate::forward::Assembly;
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
+    use crate::solids::Solid;
+    #[pymodule_export]
     use crate::solutions::Solutions;
     #[pymodule_export]
     use crate::sweep::{Sweep, sweep};
+    #[pymodule_export]
+    use crate::trajectory::{Trajectory, Violation, trajectory};
     #[pymodule_export]
     use crate::velocity::{Motion, Singularity};
     use pyo3::prelude::*;

@@ -1,16 +1,18 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
+use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
-use crate::rows::{Rows, Tables};
+use crate::html;
+use crate::rows::{Rows, Tables, no_memory};
 use crate::solutions::Solutions;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{self as core, Mode};
+use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
-use opm_core::mechanism::{examples as shipped, file};
-use opm_core::subspace::SubspaceClass;
+use opm_core::mechanism::file::{self, MechanismFile};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyList, PyMapping};
+use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -72,8 +74,7 @@ impl Manipulator {
     fn parse(text: String, label: Option<String>) -> PyResult<Self> {
         let label = label.unwrap_or_else(|| "mechanism".to_owned());
         let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
-        let inner = core::Manipulator::new(read.mechanism).map_err(|e| failed(&e))?;
-        Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: read.family })
+        Self::compile(read, text, label)
     }
 
     /// The parameters of its family by name: numbers, pairs, `None` for limits that there are not.
@@ -190,41 +191,19 @@ impl Manipulator {
         self.inner.choices()
     }
 
-    /// How the mechanism was decomposed, as `opm decompose --format json` has it.
+    /// Every working mode, all-plus first: the order of the mode axis of `inverse(mode="all")`.
     #[getter]
-    fn decomposition<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (decomposition, mechanism) = (self.inner.decomposition(), self.inner.mechanism());
-        let subspace = |class: &SubspaceClass| {
-            let dict = PyDict::new(py);
-            dict.set_item("subspace", class.name()).map(|()| dict)
-        };
-        let legs = PyList::empty(py);
-        for (leg, split) in mechanism.legs.iter().zip(&decomposition.legs) {
-            let names = |freedoms: &[opm_core::decomposition::Freedom]| {
-                let mut names: Vec<_> =
-                    freedoms.iter().map(|f| leg.joints[f.joint].name.clone()).collect();
-                names.dedup();
-                names
-            };
-            let dict = PyDict::new(py);
-            dict.set_item("name", &leg.name)?;
-            dict.set_item("lower", names(&split.lower))?;
-            dict.set_item("upper", names(&split.upper))?;
-            dict.set_item("imaginary", split.imaginary.then(|| leg.imaginary_name()))?;
-            legs.append(dict)?;
-        }
-        let dict = PyDict::new(py);
-        dict.set_item("lambda", decomposition.lambda)?;
-        dict.set_item("mobility", decomposition.mobility)?;
-        dict.set_item("imaginary_joints", decomposition.imaginary_joints)?;
-        dict.set_item("first_section_motions", decomposition.first_section_motions)?;
-        dict.set_item("lower", subspace(&decomposition.lower)?)?;
-        dict.set_item("upper", subspace(&decomposition.upper)?)?;
-        dict.set_item("legs", legs)?;
-        Ok(dict)
+    fn modes(&self) -> Vec<String> {
+        self.inner.modes().map(|mode| self.inner.format_mode(mode)).collect()
     }
 
-    /// Inverse kinematics of many poses in one working mode.
+    /// How the legs were cut in two.
+    #[getter]
+    fn decomposition(&self) -> Decomposition {
+        Decomposition::of(&self.inner)
+    }
+
+    /// Inverse kinematics of many poses, in one working mode or in all of them.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
     fn inverse<'py>(
         &self,
@@ -233,8 +212,11 @@ impl Manipulator {
         mode: &str,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
-        let mode = self.mode(mode)?;
         let poses = self.poses(&poses)?;
+        if mode == "all" {
+            return self.inverse_all(py, &poses, threads);
+        }
+        let mode = self.mode(mode)?;
         let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
         let mut tables = Tables::fill(
             py,
@@ -252,7 +234,11 @@ impl Manipulator {
                 Ok([true, solution.within_limits])
             },
         )?;
-        Solutions::new(py, &self.inner, mode, &mut tables)
+        Solutions::new(py, &self.inner, Some(mode), &mut tables)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "manipulator")
     }
 
     fn __repr__(&self) -> String {
@@ -292,6 +278,53 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
 }
 
 impl Manipulator {
+    /// What a file says, decomposed; `text` is the file.
+    pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
+        let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
+        Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
+    }
+
+    /// Every working mode of every pose: a row a mode, all of a pose together.
+    fn inverse_all(
+        &self,
+        py: Python<'_>,
+        poses: &Rows,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Solutions> {
+        let many = || {
+            let (choices, poses) = (self.inner.choices(), poses.count);
+            no_memory(format_args!("2^{choices} working modes of {poses} poses"))
+        };
+        let count = usize::try_from(1u64 << self.inner.choices()).map_err(|_| many())?;
+        let rows = count.checked_mul(poses.count).ok_or_else(many)?;
+        let mut modes = Vec::new();
+        modes.try_reserve_exact(count).map_err(|_| many())?;
+        modes.extend(self.inner.modes());
+        let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
+        let mut tables = Tables::fill(
+            py,
+            rows,
+            widths,
+            threads,
+            || (None, self.inner.all_modes(), self.inner.solution()),
+            |(at, all, solution), row, [joints, imaginary]| {
+                let (pose, mode) = (row / modes.len(), modes[row % modes.len()]);
+                if *at != Some(pose) {
+                    let solved = self.inner.inverse_all(poses.row(pose), all);
+                    solved.map_err(|error| error.to_string())?;
+                    *at = Some(pose);
+                }
+                if !self.inner.pick(all, mode, solution) {
+                    return Ok([false; 2]);
+                }
+                joints.copy_from_slice(&solution.joints);
+                imaginary.copy_from_slice(&solution.imaginary);
+                Ok([true, solution.within_limits])
+            },
+        )?;
+        Solutions::new(py, &self.inner, None, &mut tables)
+    }
+
     /// An array of poses, checked.
     pub fn poses(&self, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Rows> {
         let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();

@@ -5,6 +5,7 @@ use crate::interrupt;
 use numpy::{
     AllowTypeChange, IntoPyArray, PyArray2, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
@@ -50,6 +51,20 @@ pub struct Tables<const N: usize> {
     pub answers: [Vec<bool>; 2],
 }
 
+/// Memory for a table, or Python's exception that there is none.
+fn table<T: Clone>(count: usize, width: usize, value: T) -> PyResult<Vec<T>> {
+    let mut table = Vec::new();
+    let size = count.checked_mul(width).filter(|&size| table.try_reserve_exact(size).is_ok());
+    let size = size.ok_or_else(|| no_memory(format_args!("{count} rows of {width}")))?;
+    table.resize(size, value);
+    Ok(table)
+}
+
+/// There is no memory for this.
+pub fn no_memory(what: impl std::fmt::Display) -> PyErr {
+    PyMemoryError::new_err(format!("no memory for {what}"))
+}
+
 /// A part of them.
 struct Block<'a, const N: usize> {
     first: usize,
@@ -68,12 +83,12 @@ impl<const N: usize> Tables<N> {
         scratch: impl Fn() -> S + Sync,
         fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
     ) -> PyResult<Self> {
-        let mut tables = Self {
-            numbers: widths.map(|width| vec![f64::NAN; count * width]),
-            widths,
-            count,
-            answers: [vec![false; count], vec![false; count]],
-        };
+        let mut numbers = widths.map(|_| Vec::new());
+        for (numbers, width) in numbers.iter_mut().zip(widths) {
+            *numbers = table(count, width, f64::NAN)?;
+        }
+        let answers = [table(count, 1, false)?, table(count, 1, false)?];
+        let mut tables = Self { numbers, widths, count, answers };
         let stop = AtomicBool::new(false);
         let work = |block: Block<'_, N>| -> Result<(), String> {
             if stop.load(Ordering::Relaxed) {

@@ -1,13 +1,14 @@
 //! Sweeps of a grid of poses.
 
 use crate::error::{failed, wrong};
+use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
+use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use opm_core::manipulator as core;
 use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress};
-use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -107,11 +108,18 @@ impl Sweep {
         Ok(dict)
     }
 
+    /// `m` or `rad` of every coordinate, by name.
+    #[getter]
+    fn units(&self) -> BTreeMap<&'static str, &'static str> {
+        let coordinates = self.manipulator.task_coordinates().iter();
+        coordinates.map(|c| (c.name, c.quantity.unit())).collect()
+    }
+
     /// Which poses are reachable: an array of bools with an axis a task coordinate.
     fn mask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let poses = usize::try_from(self.grid.poses()).map_err(|error| failed(&error))?;
         let mut mask = Vec::new();
-        let short = |_| PyMemoryError::new_err(format!("no memory for a mask of {poses} poses"));
+        let short = |_| no_memory(format_args!("a mask of {poses} poses"));
         mask.try_reserve_exact(poses).map_err(short)?;
         mask.resize(poses, false);
         let row = self.grid.axes()[0].count;
@@ -136,7 +144,7 @@ impl Sweep {
         let width = self.grid.axes().len();
         let count = usize::try_from(self.count.reachable).map_err(|error| failed(&error))?;
         let mut all = Vec::new();
-        let short = |_| PyMemoryError::new_err(format!("no memory for {count} points"));
+        let short = |_| no_memory(format_args!("{count} points"));
         all.try_reserve_exact(count.saturating_mul(width)).map_err(short)?;
         self.visit(
             py,
@@ -149,6 +157,16 @@ impl Sweep {
             |made| all.extend(made),
         )?;
         all.into_pyarray(py).reshape([count, width])
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "sweep")
+    }
+
+    /// The working mode, `"any"` or `"home"`, as it was asked for.
+    #[getter]
+    fn mode(&self) -> &str {
+        &self.mode
     }
 
     fn __repr__(&self) -> String {

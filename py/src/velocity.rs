@@ -39,6 +39,34 @@ pub struct Singularity {
 }
 
 #[pymethods]
+impl Motion {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (poses, [reachable, regular]) = counted(py, [&self.reachable, &self.regular])?;
+        Ok(format!("<Motion at {poses} poses: {reachable} reachable, {regular} regular>"))
+    }
+}
+
+#[pymethods]
+impl Singularity {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (poses, [reachable]) = counted(py, [&self.reachable])?;
+        Ok(format!("<Singularity of {poses} poses: {reachable} reachable>"))
+    }
+}
+
+/// How many poses there are, and of how many each answer is yes.
+fn counted<const N: usize>(
+    py: Python<'_>,
+    answers: [&Py<PyArray1<bool>>; N],
+) -> PyResult<(usize, [usize; N])> {
+    let mut counts = [0; N];
+    for (count, answers) in counts.iter_mut().zip(answers) {
+        *count = answers.bind(py).call_method0("sum")?.extract()?;
+    }
+    Ok((answers[0].bind(py).len()?, counts))
+}
+
+#[pymethods]
 impl Manipulator {
     /// Rates of the actuated joints for unit rates of the task coordinates.
     #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]

@@ -68,9 +68,10 @@ def test_what_it_is(manipulator):
     assert [manipulator.joints[i] for i in manipulator.actuated] == ["S1", "S2", "S3", "phi14", "phi24"]
     assert manipulator.imaginary == ["theta11", "theta12", "theta13"]
     found = manipulator.decomposition
-    assert (found["lambda"], found["mobility"], found["imaginary_joints"]) == (5, 5, 3)
-    assert found["lower"] == {"subspace": "planar"} and found["upper"] == {"subspace": "spherical"}
-    assert [leg["imaginary"] for leg in found["legs"]] == ["theta11", "theta12", "theta13", None]
+    assert (found.rank, found.mobility, found.imaginary_joints, found.first_section_motions) == (5, 5, 3, 2)
+    assert (found.lower, found.upper, found.intersection.kind) == ("planar", "spherical", "rotation")
+    assert [leg.imaginary for leg in found.legs] == ["theta11", "theta12", "theta13", None]
+    assert found.legs[3].lower == ["phi14", "phi24"] and found.legs[3].upper == ["s4"]
     assert manipulator.home_mode == "++ ++ ++ +" and manipulator.choices == 7
     assert "planar + spherical" in repr(manipulator)
 

@@ -18,6 +18,19 @@ def test_every_export_is_in_the_stubs():
     assert set(opm_kinematics.__all__) <= set(dir(opm_kinematics))
 
 
+def test_every_export_of_the_package_is_documented():
+    for name in opm_kinematics.__all__:
+        exported = getattr(opm_kinematics, name)
+        assert name == "__version__" or exported.__doc__, name
+
+
+def test_the_examples_are_typed():
+    examples = sorted(map(str, (Path(__file__).parents[2] / "examples").glob("*.py")))
+    command = [sys.executable, "-m", "mypy", "--strict", "--disable-error-code=import-untyped", *examples]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert examples and found.returncode == 0, found.stdout + found.stderr
+
+
 def test_the_stubs_are_those_of_the_module():
     command = [sys.executable, "-m", "mypy.stubtest", "opm_kinematics"]
     found = subprocess.run(command, capture_output=True, text=True, check=False)

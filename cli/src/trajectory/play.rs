@@ -1,12 +1,12 @@
 //! The recording of a motion.
 
 use super::Run;
-use super::summary::{MOST_LISTED, Summary, Told};
+use super::summary::{MOST_LISTED, Summary, fields};
 use crate::failure::Failure;
 use crate::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use opm_core::manipulator::Manipulator;
 use opm_core::skeleton;
-use opm_core::trajectory::{Change, Sample};
+use opm_core::trajectory::{Change, Sample, Told};
 use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded, Trajectory};
 use opm_mcap::{Metadata, PartialFile, RecordError, Sink, TrajectoryRecorder};
 use std::path::Path;
@@ -120,7 +120,7 @@ impl<W: Sink> Player<W> {
     pub fn finish(mut self, run: &Run<'_>, summary: &Summary) -> Result<(), Failure> {
         let mut complete = || {
             for (number, violation) in summary.violations.iter().enumerate() {
-                let fields = Told::new(violation, run.manipulator).fields().into_iter();
+                let fields = fields(&Told::new(violation, run.manipulator)).into_iter();
                 let record: Metadata = fields
                     .map(|(key, value)| {
                         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);

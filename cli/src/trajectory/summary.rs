@@ -3,8 +3,8 @@
 use super::Run;
 use crate::text::{self, Table, count, short};
 use opm_core::joint::Quantity;
-use opm_core::manipulator::{Manipulator, Section};
-use opm_core::trajectory::{Bound, Gauge, Part, Sample, Violation};
+use opm_core::manipulator::Manipulator;
+use opm_core::trajectory::{Sample, Told, Violation};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -121,7 +121,7 @@ impl Summary {
             .map(|(joint, r)| (joint.name.clone(), ranges(r)))
             .collect();
         let violations: Vec<Value> =
-            self.violations.iter().map(|v| Told::new(v, manipulator).json()).collect();
+            self.violations.iter().map(|v| json(&Told::new(v, manipulator))).collect();
         json!({
             "name": manipulator.mechanism().name,
             "motion": run.motion.motion.name,
@@ -190,7 +190,7 @@ impl Summary {
             let _ = writeln!(text, "\ncondition number at most {worst}, at t = {} s", short(time));
         }
         for violation in self.violations.iter().take(MOST_SHOWN) {
-            let _ = writeln!(text, "{}", Told::new(violation, manipulator).text(run));
+            let _ = writeln!(text, "{}", line(violation, run));
         }
         let more = self.violation_count.saturating_sub(MOST_SHOWN as u64);
         if more > 0 {
@@ -202,123 +202,46 @@ impl Summary {
     /// The first violation in words.
     pub fn first(&self, run: &Run<'_>) -> String {
         let first = self.violations.first();
-        first.map_or_else(String::new, |v| Told::new(v, run.manipulator).text(run))
+        first.map_or_else(String::new, |violation| line(violation, run))
     }
 }
 
-/// A violation in names.
-pub struct Told<'a> {
-    violation: &'a Violation,
-    /// `reach`, `limit` or `singularity`.
-    pub kind: &'static str,
-    leg: Option<&'a str>,
-    joint: Option<&'a str>,
-    section: Option<Section>,
-    bound: Option<Bound>,
+/// Keys and values of a violation, the same in JSON and in the recording.
+pub fn fields(told: &Told<'_>) -> Vec<(&'static str, Value)> {
+    let Violation { start, end, worst, amount, .. } = *told.violation;
+    let mut fields = vec![
+        ("kind", json!(told.kind)),
+        ("start", json!(start)),
+        ("end", json!(end)),
+        ("worst", json!(worst)),
+        ("amount", json!(amount)),
+        ("unit", json!(told.unit())),
+    ];
+    let words = [
+        ("leg", told.leg.map(String::from)),
+        ("joint", told.joint.map(String::from)),
+        ("section", told.section.map(|section| section.to_string())),
+        ("bound", told.bound.map(|bound| bound.name().to_owned())),
+        ("singularity", told.singularity().map(String::from)),
+    ];
+    fields.extend(words.into_iter().filter_map(|(key, word)| Some((key, json!(word?)))));
+    fields
 }
 
-impl<'a> Told<'a> {
-    pub fn new(violation: &'a Violation, manipulator: &'a Manipulator) -> Self {
-        let legs = &manipulator.mechanism().legs;
-        let leg_of = |coordinate: usize| {
-            let mut last = 0;
-            legs.iter().find(|leg| {
-                last += leg.coordinates().count();
-                coordinate < last
-            })
-        };
-        let (kind, leg, joint, bound) = match violation.gauge {
-            Gauge::Reach { leg } => {
-                let kind = if violation.is_singularity() { "singularity" } else { "reach" };
-                (kind, Some(&*legs[leg].name), None, None)
-            }
-            Gauge::Limit { coordinate, bound } => {
-                let joint = &*manipulator.coordinates()[coordinate].name;
-                ("limit", leg_of(coordinate).map(|leg| &*leg.name), Some(joint), Some(bound))
-            }
-            Gauge::Parallel { .. } => ("singularity", None, None, None),
-        };
-        Self { violation, kind, leg, joint, section: violation.section, bound }
-    }
+fn json(told: &Told<'_>) -> Value {
+    fields(told).into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
 
-    fn unit(&self) -> &'static str {
-        self.violation.quantity.map_or("1", Quantity::unit)
-    }
-
-    /// `serial` or `parallel`, of a singularity.
-    fn singularity(&self) -> Option<&'static str> {
-        let serial = matches!(self.violation.gauge, Gauge::Reach { .. });
-        (self.kind == "singularity").then_some(if serial { "serial" } else { "parallel" })
-    }
-
-    fn bound(&self) -> Option<&'static str> {
-        self.bound.map(|bound| match bound {
-            Bound::Lowest => "lowest",
-            Bound::Highest => "highest",
-        })
-    }
-
-    /// Keys and values, the same in JSON and in the recording.
-    pub fn fields(&self) -> Vec<(&'static str, Value)> {
-        let Violation { start, end, worst, amount, .. } = *self.violation;
-        let mut fields = vec![
-            ("kind", json!(self.kind)),
-            ("start", json!(start)),
-            ("end", json!(end)),
-            ("worst", json!(worst)),
-            ("amount", json!(amount)),
-            ("unit", json!(self.unit())),
-        ];
-        let words = [
-            ("leg", self.leg.map(String::from)),
-            ("joint", self.joint.map(String::from)),
-            ("section", self.section.map(|section| section.to_string())),
-            ("bound", self.bound().map(String::from)),
-            ("singularity", self.singularity().map(String::from)),
-        ];
-        fields.extend(words.into_iter().filter_map(|(key, word)| Some((key, json!(word?)))));
-        fields
-    }
-
-    fn json(&self) -> Value {
-        self.fields().into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
-    }
-
-    /// What is wrong, without when and how much.
-    pub fn what(&self) -> String {
-        let section = self.section.map_or_else(String::new, |section| format!("{section} "));
-        let leg = self.leg.unwrap_or_default();
-        match self.violation.gauge {
-            Gauge::Reach { .. } if self.violation.is_singularity() => {
-                format!("{leg}: serial singularity of its {section}section")
-            }
-            Gauge::Reach { .. } => format!("{leg}: out of reach in its {section}section"),
-            Gauge::Limit { .. } => {
-                let (joint, bound) = (self.joint.unwrap_or_default(), self.bound());
-                format!("{leg}: {joint} past its {} value", bound.unwrap_or_default())
-            }
-            Gauge::Parallel { part: Part::Whole } => "parallel singularity".to_owned(),
-            Gauge::Parallel { .. } => format!("parallel singularity of the {section}section"),
-        }
-    }
-
-    /// One line for people, in the units of the mechanism file.
-    fn text(&self, run: &Run<'_>) -> String {
-        let Violation { start, end, worst, amount, quantity, .. } = *self.violation;
-        let (what, units) = (self.what(), run.loaded.file.units);
-        match quantity {
-            Some(quantity) => format!(
-                "t = {start:.6} .. {end:.6} s: {what} by {} {} at {worst:.6} s",
-                text::number(amount, quantity, units),
-                units.symbol(quantity)
-            ),
-            None => format!("t = {start:.6} s: {what}"),
-        }
-    }
-
-    /// One line for the recording, in SI.
-    pub fn si(&self) -> String {
-        let Violation { worst, amount, .. } = *self.violation;
-        format!("{} by {amount} {} at t = {worst} s", self.what(), self.unit())
+/// One line for people, in the units of the mechanism file.
+fn line(violation: &Violation, run: &Run<'_>) -> String {
+    let Violation { start, end, worst, amount, quantity, .. } = *violation;
+    let (what, units) = (Told::new(violation, run.manipulator).what(), run.loaded.file.units);
+    match quantity {
+        Some(quantity) => format!(
+            "t = {start:.6} .. {end:.6} s: {what} by {} {} at {worst:.6} s",
+            text::number(amount, quantity, units),
+            units.symbol(quantity)
+        ),
+        None => format!("t = {start:.6} s: {what}"),
     }
 }

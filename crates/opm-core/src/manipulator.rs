@@ -190,6 +190,11 @@ impl Manipulator {
         self.modes.count()
     }
 
+    /// Every working mode, all-plus first: `2^choices`, in the order of [`AllModes::modes`].
+    pub fn modes(&self) -> impl Iterator<Item = Mode> + use<> {
+        (0..1u64 << self.choices()).map(Mode)
+    }
+
     /// The working mode that the mechanism is assembled in.
     pub fn home_mode(&self) -> Mode {
         self.home_mode

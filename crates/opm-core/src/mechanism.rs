@@ -4,8 +4,10 @@ pub mod examples;
 pub mod family;
 pub mod file;
 mod hints;
+mod screws;
 
 pub use hints::{FrameHints, TaskHints, TaskKey};
+pub use screws::{ScrewError, ScrewJoint};
 
 use crate::joint::{Joint, JointCoordinate};
 use crate::leg::Leg;

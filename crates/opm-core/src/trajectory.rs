@@ -23,9 +23,11 @@
 //! [`RESOLUTION`] of the step from sample to sample; lowest values come with about 1e-8 of it.
 
 mod gauge;
+mod told;
 mod watch;
 
 pub use gauge::{Bound, Gauge, Part, Violation};
+pub use told::Told;
 pub use watch::Change;
 
 use crate::joint::Quantity;

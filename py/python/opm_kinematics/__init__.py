@@ -1,7 +1,8 @@
 """Kinematics and workspaces of overconstrained parallel manipulators with partial subspaces.
 
 From a mechanism file :class:`Manipulator` finds the decomposition with imaginary joints, and solves inverse kinematics in
-closed form; :func:`sweep` finds which poses of a grid are reachable. Arrays are float64, numbers SI units and radians.
+closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, and :mod:`plot`
+draws. Arrays are float64, numbers SI units and radians.
 
 >>> import opm_kinematics as opm
 >>> m = opm.examples.load("plano-spherical-5dof")
@@ -9,30 +10,63 @@ closed form; :func:`sweep` finds which poses of a grid are reachable. Arrays are
 array([ True])
 """
 
+from typing import TYPE_CHECKING, Any
+
 from . import examples
 from ._native import (
     Assembly,
+    Decomposition,
+    Intersection,
+    LegSplit,
     Manipulator,
     Motion,
     OpmError,
     Singularity,
+    Solid,
     Solutions,
     Sweep,
     TaskCoordinate,
+    Trajectory,
+    Violation,
     __version__,
     sweep,
+    trajectory,
 )
 
 __all__ = [
     "Assembly",
+    "Decomposition",
+    "Intersection",
+    "LegSplit",
     "Manipulator",
     "Motion",
     "OpmError",
     "Singularity",
+    "Solid",
     "Solutions",
     "Sweep",
     "TaskCoordinate",
+    "Trajectory",
+    "Violation",
     "__version__",
     "examples",
+    "plot",
     "sweep",
+    "trajectory",
 ]
+
+if TYPE_CHECKING:
+    from . import plot
+
+
+def __getattr__(name: str) -> Any:
+    # Only when it is asked for: it needs NumPy, for which the command line has no use.
+    if name == "plot":
+        from importlib import import_module
+
+        return import_module(".plot", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,24 +1,31 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import TypeAlias, TypedDict, final
+from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Assembly",
+    "Decomposition",
+    "Intersection",
+    "LegSplit",
     "Manipulator",
     "Motion",
     "OpmError",
     "Singularity",
+    "Solid",
     "Solutions",
     "Sweep",
     "TaskCoordinate",
+    "Trajectory",
+    "Violation",
     "__version__",
     "command",
     "example",
     "examples",
     "sweep",
+    "trajectory",
 ]
 
 __version__: str
@@ -28,27 +35,76 @@ class OpmError(ValueError):
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
 
-class _Subspace(TypedDict):
-    subspace: str
+@final
+class Decomposition:
+    """How the legs of a mechanism were cut in two: what ``opm decompose`` says."""
 
-class _Leg(TypedDict):
-    name: str
-    lower: list[str]
-    upper: list[str]
-    imaginary: str | None
+    @property
+    def name(self) -> str:
+        """Of the mechanism."""
+    @property
+    def rank(self) -> int:
+        """Of all joint screws, lambda."""
+    @property
+    def mobility(self) -> int:
+        """N."""
+    @property
+    def imaginary_joints(self) -> int:
+        """Independent motions of the imaginary joints, J."""
+    @property
+    def first_section_motions(self) -> int:
+        """Motions of the lower section with the imaginary joints held, M = N - J."""
+    @property
+    def lower(self) -> str:
+        """Subspace of the lower section: ``"planar"``, for instance."""
+    @property
+    def upper(self) -> str:
+        """Subspace of the upper section."""
+    @property
+    def intersection(self) -> Intersection:
+        """What both have in common."""
+    @property
+    def legs(self) -> list[LegSplit]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def _repr_html_(self) -> str: ...
 
-_Decomposition = TypedDict(
-    "_Decomposition",
-    {
-        "lambda": int,
-        "mobility": int,
-        "imaginary_joints": int,
-        "first_section_motions": int,
-        "lower": _Subspace,
-        "upper": _Subspace,
-        "legs": list[_Leg],
-    },
-)
+@final
+class Intersection:
+    """The motion that both sections have in common, in base coordinates at home."""
+
+    @property
+    def kind(self) -> str:
+        """``"rotation"``, ``"translation"`` or ``"helical"``."""
+    @property
+    def axis(self) -> tuple[float, float, float] | None:
+        """Unit vector of its positive direction."""
+    @property
+    def point(self) -> tuple[float, float, float] | None:
+        """A point of the axis, metres; of a translation none."""
+    @property
+    def pitch(self) -> float | None:
+        """Advance of a helical motion, metres per radian."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class LegSplit:
+    """Where a leg was cut."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def lower(self) -> list[str]:
+        """Joints in the lower section, base first."""
+    @property
+    def upper(self) -> list[str]:
+        """Joints in the upper section, base first."""
+    @property
+    def imaginary(self) -> str | None:
+        """The imaginary joint that bridges the cut."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class TaskCoordinate:
@@ -82,6 +138,46 @@ class Manipulator:
             The file cannot be read.
         OpmError
             Every problem of the file with its line and column, or why it has no closed-form inverse kinematics.
+        """
+    @staticmethod
+    def from_screws(
+        legs: Mapping[str, ArrayLike] | Sequence[ArrayLike],
+        actuated: Sequence[Sequence[bool]] | Sequence[NDArray[np.bool_]] | NDArray[np.bool_],
+        *,
+        home: Sequence[Sequence[float]] | Sequence[NDArray[np.float64]] | NDArray[np.float64] | None = None,
+        limits: Sequence[Sequence[tuple[float, float] | None]] | NDArray[np.float64] | None = None,
+        joints: Sequence[Sequence[str]] | None = None,
+        platform: Sequence[float] | NDArray[np.float64] = ...,
+        name: str = "mechanism",
+    ) -> Manipulator:
+        """Compile a mechanism that is given by the screws of its joints at an assembled pose, home.
+
+        It is decomposed as any other; `text` is a mechanism file that says the same.
+
+        Parameters
+        ----------
+        legs : mapping of str to (n, 6) array_like, or sequence of them
+            A leg each, by name; else they are called leg1, leg2, ... A row is the twist (omega; v) of a joint of one
+            freedom about the base frame, base to platform, of any length but zero: ``(a, p × a + h a)`` turns about ``a``
+            through ``p`` with an advance of ``h`` metres a radian, ``(0, a)`` slides along ``a``. Joints of several
+            freedoms are several rows.
+        actuated : sequence of (n,) sequences of bool
+            Which joints are driven, a sequence a leg.
+        home : sequence of (n,) sequences of float, optional
+            Joint values at home, radians and metres; zero if not given.
+        limits : sequence of (n,) sequences of (float, float) or None, optional
+            Lowest and highest value of each joint. ``None``, or both infinite, is none.
+        joints : sequence of (n,) sequences of str, optional
+            Names, q1_1, q1_2, ... if not given: leg, then joint.
+        platform : (3,) sequence of float
+            Reference point of the platform at home, metres; the base's origin if not given.
+        name : str
+            Of the mechanism.
+
+        Raises
+        ------
+        OpmError
+            What is wrong with which joint of which leg; or why the mechanism has no closed-form inverse kinematics.
         """
     @staticmethod
     def parse(text: str, label: str | None = None) -> Manipulator:
@@ -152,19 +248,46 @@ class Manipulator:
     def choices(self) -> int:
         """Number of two-valued choices; there are ``2**choices`` working modes."""
     @property
-    def decomposition(self) -> _Decomposition:
-        """How the legs were cut in two: the keys are those of ``opm decompose --format json``."""
+    def decomposition(self) -> Decomposition:
+        """How the legs were cut in two."""
+    @property
+    def modes(self) -> list[str]:
+        """Every working mode, all-plus first: the mode axis of ``inverse(poses, mode="all")``."""
+    @property
+    def screws(self) -> dict[str, NDArray[np.float64]]:
+        """The joints' unit screws by leg, (f, 6) each: (omega; v) at home about the base frame, a row a freedom."""
+    def solids(self, pose: Sequence[float] | NDArray[np.float64] | None = None, *, mode: str = "home") -> list[Solid]:
+        """The solids that the mechanism is drawn with, from its joint screws alone.
+
+        Parameters
+        ----------
+        pose : (d,) sequence of float, optional
+            Home if not given.
+
+        Raises
+        ------
+        OpmError
+            The pose is out of reach.
+        """
+    def _repr_html_(self) -> str: ...
     def inverse(self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None) -> Solutions:
-        """Inverse kinematics of many poses in one working mode.
+        """Inverse kinematics of many poses, in one working mode or in all of them.
 
         Parameters
         ----------
         poses : (n, d) array_like
             A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is.
         mode : str
-            ``"home"``, or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``.
+            ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
+            gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
+            of the ``m = 2**choices`` modes of `modes`.
         threads : int, optional
             How many; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        Solutions
+            Poses out of reach have NaN; angles are within half a turn of home, unless the limits allow another turn.
 
         Raises
         ------
@@ -303,8 +426,32 @@ class Singularity:
     def reachable(self) -> NDArray[np.bool_]: ...
 
 @final
+class Solid:
+    """A simple body to draw, in base coordinates."""
+
+    @property
+    def body(self) -> str:
+        """The body that it is a part of: ``"base"``, ``"LEG/JOINT"``, ``"platform"``, ``"imaginary/NAME"``."""
+    @property
+    def shape(self) -> str:
+        """``"cylinder"``, ``"ball"`` or ``"block"``."""
+    @property
+    def material(self) -> str:
+        """``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``."""
+    @property
+    def ends(self) -> NDArray[np.float64]:
+        """(2, 3): the ends of its axis, metres; of a ball both are its middle."""
+    @property
+    def width(self) -> float:
+        """Diameter, or side of the square of a block; metres."""
+
+@final
 class Solutions:
-    """Joint values of many poses in one working mode; rows of poses out of reach are NaN."""
+    """Joint values of ``n`` poses, NaN where a pose is out of reach.
+
+    Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
+    entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
+    """
 
     @property
     def joints(self) -> NDArray[np.float64]:
@@ -319,19 +466,36 @@ class Solutions:
     def within_limits(self) -> NDArray[np.bool_]:
         """(n,): in reach, and all joints within their limits."""
     @property
-    def joint_names(self) -> list[str]: ...
+    def joint_names(self) -> list[str]:
+        """Of the last axis of `joints`."""
     @property
-    def imaginary_names(self) -> list[str]: ...
+    def imaginary_names(self) -> list[str]:
+        """Of the last axis of `imaginary`."""
     @property
-    def mode(self) -> str: ...
+    def units(self) -> dict[str, str]:
+        """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
     @property
-    def rows(self) -> int: ...
+    def mode(self) -> str:
+        """The working mode, or ``"all"``."""
+    @property
+    def modes(self) -> list[str]:
+        """The working modes: of the mode axis, if there is one."""
+    @property
+    def rows(self) -> int:
+        """n."""
     def __len__(self) -> int: ...
+    def __getitem__(self, name: str, /) -> NDArray[np.float64]:
+        """The values of one joint or imaginary joint, (n,): a view."""
+    def _repr_html_(self) -> str: ...
 
 @final
 class Sweep:
     """A grid of poses, swept."""
 
+    @property
+    def mode(self) -> str:
+        """The working mode, as it was asked for."""
+    def _repr_html_(self) -> str: ...
     @property
     def count(self) -> int:
         """Poses in reach and within all limits."""
@@ -347,6 +511,9 @@ class Sweep:
     @property
     def axes(self) -> dict[str, NDArray[np.float64]]:
         """The values of every task coordinate, in the order of the mask's axes."""
+    @property
+    def units(self) -> dict[str, str]:
+        """``"m"`` or ``"rad"`` of every task coordinate, by name."""
     def mask(self) -> NDArray[np.bool_]:
         """Which poses are reachable: an axis a task coordinate, as many values as the grid has."""
     def points(self) -> NDArray[np.float64]:
@@ -377,6 +544,151 @@ def sweep(
     ------
     OpmError
         An axis that is none, ends that are not numbers or reversed, an unknown mode.
+    """
+
+@final
+class Trajectory:
+    """A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate."""
+
+    @property
+    def name(self) -> str:
+        """Of the motion."""
+    @property
+    def mode(self) -> str:
+        """The working mode."""
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(n,), seconds."""
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(n, d): task coordinates, metres and radians."""
+    @property
+    def pose_rates(self) -> NDArray[np.float64]:
+        """(n, d): their first derivatives by time."""
+    @property
+    def pose_accelerations(self) -> NDArray[np.float64]:
+        """(n, d): their second derivatives."""
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """(n, k): every joint coordinate; angles go on across half turns."""
+    @property
+    def joint_rates(self) -> NDArray[np.float64]:
+        """(n, k)."""
+    @property
+    def joint_accelerations(self) -> NDArray[np.float64]:
+        """(n, k)."""
+    @property
+    def imaginary(self) -> NDArray[np.float64]:
+        """(n, j): every imaginary joint."""
+    @property
+    def imaginary_rates(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def imaginary_accelerations(self) -> NDArray[np.float64]:
+        """(n, j)."""
+    @property
+    def condition(self) -> NDArray[np.float64]:
+        """(n,): condition number of the actuated joints' Jacobian by the platform's twist."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): in reach, limits apart."""
+    @property
+    def within_limits(self) -> NDArray[np.bool_]:
+        """(n,): in reach, and all joints within their limits."""
+    @property
+    def regular(self) -> NDArray[np.bool_]:
+        """(n,): in reach, and every joint has its rate."""
+    @property
+    def violations(self) -> list[Violation]:
+        """What it cannot follow, found between the samples too, in the order of time."""
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the columns of `joints`."""
+    @property
+    def imaginary_names(self) -> list[str]:
+        """Of the columns of `imaginary`."""
+    @property
+    def units(self) -> dict[str, str]:
+        """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
+    @property
+    def rows(self) -> int:
+        """n."""
+    def __len__(self) -> int: ...
+    def __getitem__(self, name: str, /) -> NDArray[np.float64]:
+        """The values of one joint or imaginary joint, (n,): a view."""
+
+@final
+class Violation:
+    """A part of a motion that the mechanism cannot follow, or a singularity on its way."""
+
+    @property
+    def kind(self) -> str:
+        """``"reach"``, ``"limit"`` or ``"singularity"``."""
+    @property
+    def start(self) -> float:
+        """Seconds."""
+    @property
+    def end(self) -> float:
+        """Seconds; of a singularity, as `start`."""
+    @property
+    def worst(self) -> float:
+        """When it is worst, seconds."""
+    @property
+    def amount(self) -> float:
+        """By how much, there."""
+    @property
+    def unit(self) -> str:
+        """Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure."""
+    @property
+    def leg(self) -> str | None: ...
+    @property
+    def joint(self) -> str | None:
+        """The joint that is past its limit."""
+    @property
+    def section(self) -> str | None:
+        """``"lower"`` or ``"upper"``: what is out of reach or singular."""
+    @property
+    def bound(self) -> str | None:
+        """``"lowest"`` or ``"highest"``: the limit that is passed."""
+    @property
+    def singularity(self) -> str | None:
+        """``"serial"`` or ``"parallel"``."""
+    @property
+    def message(self) -> str:
+        """All of it, as a line."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+def trajectory(
+    manipulator: Manipulator,
+    motion: str | PathLike[str] | ArrayLike,
+    /,
+    *,
+    times: Sequence[float] | NDArray[np.float64] | None = None,
+    rate: float | None = None,
+    mode: str | None = None,
+) -> Trajectory:
+    """Follow a motion of the platform.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    motion : path, str or (w, d) array_like
+        A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
+        coordinate a column, which a natural cubic spline goes through.
+    times : (w,) sequence of float, optional
+        When the waypoints are, seconds, increasing; three at least.
+    rate : float, optional
+        Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+    mode : str, optional
+        ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    OpmError
+        Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
     """
 
 def examples() -> list[str]:

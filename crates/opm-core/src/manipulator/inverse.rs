@@ -102,7 +102,6 @@ pub struct Drives {
 pub struct AllModes {
     place: Place,
     legs: Vec<LegModes>,
-    count: u32,
 }
 
 /// A leg's solutions, by [`super::mode::ModeLayout::of_leg`]; `None` for combinations that it does
@@ -135,11 +134,7 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        AllModes {
-            place: self.place_at_home(),
-            legs: vec![[None; 4]; self.legs.len()],
-            count: self.modes.count(),
-        }
+        AllModes { place: self.place_at_home(), legs: vec![[None; 4]; self.legs.len()] }
     }
 
     fn place_at_home(&self) -> Place {
@@ -411,7 +406,7 @@ impl AllModes {
     /// The modes in which the pose is in reach, all-plus first.
     pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
         let layout = &manipulator.modes;
-        (0..1u64 << self.count).map(Mode).filter(move |&mode| {
+        manipulator.modes().filter(move |&mode| {
             let mut legs = self.legs.iter().enumerate();
             legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
         })

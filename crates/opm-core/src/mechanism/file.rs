@@ -53,11 +53,11 @@ mod parameters;
 mod problem;
 mod reader;
 mod units;
-#[cfg(test)]
-pub(super) mod writer;
+mod writer;
 
 pub use problem::{FileErrors, Place, Places, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
+pub use writer::{Digits, write};
 
 pub(super) use parameters::{read_home, read_leg, table_of, tables_of};
 pub(crate) use reader::{LARGEST, Reader, Table, Value};

@@ -2,7 +2,7 @@ use super::*;
 use crate::joint::Joint;
 use crate::leg::Leg;
 use crate::mechanism::Mechanism;
-use crate::mechanism::file::{self, writer};
+use crate::mechanism::file::{self, Digits};
 use crate::screw::Screw;
 use nalgebra::{DMatrix, Point3, Vector3};
 
@@ -31,7 +31,7 @@ fn joint_lists_are_the_assembled_families() {
         let (family, list) = (read(name), read(&format!("{name}-joints")));
         let mut expected = family.mechanism;
         expected.name.push_str("-joints");
-        let text = writer::write(&expected, family.units);
+        let text = file::write(&expected, family.units, Digits::Sure);
         assert!(same(&expected, &list.mechanism), "{text}");
         assert_eq!(list.units, family.units);
         assert_eq!((list.family, list.mode), (None, None));

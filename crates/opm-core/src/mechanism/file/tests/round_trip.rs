@@ -2,7 +2,7 @@
 
 use crate::joint::{Joint, JointKind};
 use crate::leg::Leg;
-use crate::mechanism::file::{AngleUnit, FileUnits, LengthUnit, read, writer};
+use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
 use crate::mechanism::{FrameHints, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
@@ -144,7 +144,7 @@ proptest! {
 
     #[test]
     fn what_is_written_is_read(mechanism in mechanism(), units in units()) {
-        let text = writer::write(&mechanism, units);
+        let text = write(&mechanism, units, Digits::Sure);
         let file = read(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
         prop_assert_eq!(file.units, units);
         let read = file.mechanism;
@@ -165,6 +165,24 @@ proptest! {
             prop_assert_eq!(found.len(), expected.len());
             for (found, expected) in found.iter().zip(expected) {
                 prop_assert!((found - expected).abs() < WRITTEN, "{found} {expected}\n{text}");
+            }
+        }
+    }
+
+    /// But for unit vectors, which reading makes unit vectors once more.
+    #[test]
+    fn all_digits_are_read_again(mechanism in mechanism()) {
+        let text = write(&mechanism, FileUnits::SI, Digits::All);
+        let read = read(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?.mechanism;
+        prop_assert_eq!(read.platform, mechanism.platform);
+        for (read, written) in read.joints().zip(mechanism.joints()) {
+            prop_assert_eq!(&read.coordinates, &written.coordinates);
+            prop_assert_eq!(read.point, written.point);
+            prop_assert!((read.axis.into_inner() - written.axis.into_inner()).norm() < 1e-15);
+            if let (JointKind::Helical { pitch }, JointKind::Helical { pitch: written }) =
+                (read.kind, written.kind)
+            {
+                prop_assert_eq!(pitch, written);
             }
         }
     }

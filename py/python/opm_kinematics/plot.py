@@ -1,0 +1,362 @@
+"""Pictures by matplotlib: ``pip install opm-kinematics[plot]``.
+
+Every function draws on the axes that it is given, or on new ones, and returns what it drew on; nothing is shown or saved.
+Numbers are SI units and radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._native import Manipulator, OpmError, Solid, Solutions, Sweep, Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D as _Axes3D  # type: ignore[import-untyped]
+    from numpy.typing import ArrayLike, NDArray
+
+    _Array = NDArray[np.float64]
+
+__all__ = ["imaginary", "joints", "mechanism", "workspace"]
+
+# Colours that people with colour-blindness tell apart (Okabe and Ito's), and greys: those of recordings.
+COLORS = {
+    "base": (0.30, 0.30, 0.33, 1.0),
+    "link": (0.72, 0.74, 0.77, 1.0),
+    "actuated": (0.84, 0.37, 0.0, 1.0),
+    "passive": (0.34, 0.71, 0.91, 1.0),
+    "platform": (0.0, 0.45, 0.70, 1.0),
+    "imaginary": (0.80, 0.47, 0.65, 0.45),
+}
+CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
+
+# Where the light comes from, a little from the left of who looks at it.
+LIGHT = np.array([-0.4, -0.6, 0.8]) / np.sqrt(1.16)
+# Sides of a cylinder, and meridians of a ball.
+SIDES = 16
+# Panels of a workspace where nobody says.
+PANELS = 6
+
+
+def mechanism(
+    manipulator: Manipulator,
+    pose: Sequence[float] | _Array | None = None,
+    *,
+    mode: str = "home",
+    ax: _Axes3D | None = None,
+) -> _Axes3D:
+    """Draw a mechanism in a pose, from its joint screws alone.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    pose : (d,) sequence of float, optional
+        Home if not given.
+    mode : str
+        The working mode.
+    ax : Axes3D, optional
+        A three-dimensional panel to draw on; a new one if not given.
+
+    Returns
+    -------
+    Axes3D
+        Metres. Motors are orange, other joints light blue, imaginary joints translucent, the platform blue.
+
+    Raises
+    ------
+    OpmError
+        The pose is out of reach.
+    """
+    _pyplot()
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+
+    solids = manipulator.solids(pose, mode=mode)
+    panel = ax if ax is not None else _panel3d()
+    faces: list[_Array] = []
+    colors: list[tuple[float, ...]] = []
+    for solid in solids:
+        for face in _faces(solid):
+            normal = np.cross(face[1] - face[0], face[2] - face[1])
+            length = np.linalg.norm(normal)
+            # Both sides of a face are lit, the one that looks away from the light less.
+            shade = 0.72 + 0.28 * float(normal @ LIGHT) / length if length > 0 else 1.0
+            *rgb, alpha = COLORS[solid.material]
+            faces.append(face)
+            colors.append((*(float(shade * c) for c in rgb), alpha))
+    points = np.vstack(faces)
+    low, high = points.min(axis=0), points.max(axis=0)
+    # What is flat still needs a box.
+    room = np.maximum(high - low, 0.2 * (high - low).max())
+    middle = (low + high) / 2
+    for name, centre, width in zip("xyz", middle, room, strict=True):
+        panel.set(**{f"{name}lim": (centre - width / 2, centre + width / 2), f"{name}label": f"{name} (m)"})
+    panel.set_box_aspect(tuple(room))
+    panel.locator_params(nbins=4)
+    panel.add_collection3d(Poly3DCollection(faces, facecolors=colors, edgecolors="none", linewidths=0))
+    return panel
+
+
+def workspace(
+    sweep: Sweep,
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    slices: str | None = None,
+    values: Sequence[float] | None = None,
+    ax: Axes | Sequence[Axes] | None = None,
+) -> list[Axes]:
+    """Draw slices of a workspace.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    x, y : str, optional
+        The task coordinates along the axes; the first two with several values if not given.
+    slices : str, optional
+        The task coordinate that has a panel for each of its values; without it there is one panel.
+    values : sequence of float, optional
+        For which of them: the nearest on the grid. Six at most, evenly chosen, if not given.
+    ax : Axes or sequence of them, optional
+        What to draw on, one a panel; a new figure if not given.
+
+    Returns
+    -------
+    list of Axes
+        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached.
+    """
+    pyplot = _pyplot()
+    from matplotlib.colors import LinearSegmentedColormap
+
+    axes = sweep.axes
+    several = [name for name, v in axes.items() if len(v) > 1 and name != slices]
+    free = [name for name in several if name not in (x, y)]
+    x = x if x is not None else _take(free, "x")
+    y = y if y is not None else _take(free, "y")
+    for name in (x, y, *([slices] if slices is not None else [])):
+        if name not in axes:
+            raise OpmError(f"{name}: no such task coordinate, expected one of {', '.join(axes)}")
+    if len({x, y, slices}) < 3:
+        raise OpmError(f"x, y and slices are {x}, {y} and {slices}, expected different task coordinates")
+
+    order = list(axes)
+    kept = [order.index(name) for name in (y, x, *([slices] if slices is not None else []))]
+    others = tuple(i for i in range(len(order)) if i not in kept)
+    # The mean over no axis would be one over all.
+    share = sweep.mask().astype(np.float64) if not others else sweep.mask().mean(axis=others)
+    remaining = [i for i in range(len(order)) if i in kept]
+    share = np.transpose(share, [remaining.index(i) for i in kept])
+    numbers: list[int | None] = [None]
+    if slices is not None:
+        grid = axes[slices]
+        wanted = values if values is not None else grid[np.linspace(0, len(grid) - 1, min(PANELS, len(grid))).astype(int)]
+        numbers = [int(np.argmin(np.abs(grid - value))) for value in wanted]
+    panels = _panels(pyplot, len(numbers), ax)
+    units = sweep.units
+    shades = LinearSegmentedColormap.from_list("reached", ["#ffffff", "#9ecae1", "#08519c"])
+    for panel, number in zip(panels, numbers, strict=True):
+        image = share if number is None else share[:, :, number]
+        panel.pcolormesh(axes[x], axes[y], image, shading="nearest", cmap=shades, vmin=0, vmax=1, rasterized=True)
+        panel.set(xlabel=f"{x} ({units[x]})", ylabel=f"{y} ({units[y]})")
+        if units[x] == units[y]:
+            panel.set_aspect("equal")
+        if slices is not None and number is not None:
+            panel.set_title(f"{slices} = {axes[slices][number] + 0.0:.3g} {units[slices]}", fontsize="medium")
+    return panels
+
+
+def imaginary(
+    solutions: Solutions,
+    names: Sequence[str] | None = None,
+    *,
+    color: ArrayLike | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the workspace of imaginary joints: their values at the poses that are reached within the limits.
+
+    Parameters
+    ----------
+    solutions : Solutions
+        ``m.inverse(sweep.points())``, for instance.
+    names : sequence of str, optional
+        Two or three imaginary joints; the first three if not given.
+    color : (n,) array_like, optional
+        A number a pose, to colour it by.
+    ax : Axes, optional
+        What to draw on, with three dimensions for three joints; a new one if not given.
+    """
+    pyplot = _pyplot()
+    names = list(names) if names is not None else solutions.imaginary_names[:3]
+    if len(names) not in (2, 3):
+        raise OpmError(f"{len(names)} imaginary joints, expected two or three to draw")
+    inside = solutions.within_limits
+    values = [solutions[name][inside] for name in names]
+    shade: str | _Array = CURVES[0]
+    if color is not None:
+        given = np.asarray(color, dtype=np.float64)
+        if given.shape != inside.shape:
+            raise OpmError(f"color has shape {given.shape}, expected {inside.shape}, a number a pose")
+        shade = given[inside]
+    panel: Any = ax
+    if panel is None:
+        panel = _panel3d() if len(names) == 3 else pyplot.figure().add_subplot()
+    panel.scatter(*values, c=shade, s=2, linewidths=0, rasterized=True)
+    for axis, name in zip("xyz", names, strict=False):
+        panel.set(**{f"{axis}label": f"{name} ({solutions.units[name]})"})
+    result: Axes = panel
+    return result
+
+
+def joints(
+    followed: Trajectory | Solutions,
+    names: Sequence[str] | None = None,
+    *,
+    rates: bool = False,
+    times: ArrayLike | None = None,
+    ax: Axes | Sequence[Axes] | None = None,
+) -> list[Axes]:
+    """Draw joints as curves over time.
+
+    Parameters
+    ----------
+    followed : Trajectory or Solutions
+        Solutions of one working mode need `times`.
+    names : sequence of str, optional
+        Joints and imaginary joints; all imaginary ones if not given.
+    rates : bool
+        Of a trajectory: their rates instead of their values.
+    times : (n,) array_like, optional
+        Seconds.
+    ax : Axes or sequence of them, optional
+        What to draw on, one for lengths and one for angles where there are both; a new figure if not given.
+
+    Returns
+    -------
+    list of Axes
+        Lengths, then angles. Curves have gaps where the motion is out of reach.
+    """
+    names = list(names) if names is not None else followed.imaginary_names
+    units = {name: followed.units[name] for name in names}
+    if isinstance(followed, Trajectory):
+        t = followed.times if times is None else np.asarray(times, dtype=np.float64)
+        if rates:
+            columns = [*followed.joint_names, *followed.imaginary_names]
+            table = np.hstack([followed.joint_rates, followed.imaginary_rates])
+            curves = {name: table[:, columns.index(name)] for name in names}
+            units = {name: f"{unit}/s" for name, unit in units.items()}
+        else:
+            curves = {name: followed[name] for name in names}
+    else:
+        t = np.asarray(times if times is not None else [], dtype=np.float64)
+        if rates or followed.mode == "all":
+            raise OpmError(f"{followed!r} has no curves of this kind, expected a Trajectory, or one working mode")
+        curves = {name: followed[name] for name in names}
+    if t.shape != (len(followed),):
+        raise OpmError(f"times of shape {t.shape} for {followed!r}, expected a time a pose")
+    return _curves(t, curves, units, ax)
+
+
+def _curves(
+    times: _Array, curves: dict[str, _Array], units: dict[str, str], ax: Axes | Sequence[Axes] | None
+) -> list[Axes]:
+    """Curves over time, a panel for each unit."""
+    kinds = sorted(set(units.values()))
+    panels = _panels(_pyplot(), len(kinds), ax)
+    for panel, kind in zip(panels, kinds, strict=True):
+        panel.set_prop_cycle(color=CURVES)
+        of_kind = [name for name in curves if units[name] == kind]
+        for name in of_kind:
+            panel.plot(times, curves[name], label=name, linewidth=1.2)
+        panel.set(xlabel="t (s)", ylabel=kind)
+        panel.margins(x=0, y=0.12)
+        panel.legend(ncols=min(len(of_kind), 3), fontsize="small", frameon=False)
+    return panels
+
+
+def _pyplot() -> Any:
+    """Matplotlib, where there is one."""
+    try:
+        from matplotlib import pyplot
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib: pip install 'opm-kinematics[plot]'") from error
+    return pyplot
+
+
+def _panel3d() -> Any:
+    panel = _pyplot().figure().add_subplot(projection="3d")
+    panel.view_init(elev=32, azim=-60)
+    panel.figure.subplots_adjust(left=0.02, right=0.94, bottom=0.04, top=1.0)
+    return panel
+
+
+def _panels(pyplot: Any, count: int, given: Axes | Sequence[Axes] | None) -> list[Axes]:
+    """As many panels as are needed: those given, or those of a new figure."""
+    if given is not None:
+        panels = list(given) if isinstance(given, (Sequence, np.ndarray)) else [given]
+        if len(panels) != count:
+            raise OpmError(f"{len(panels)} axes to draw on, expected {count}")
+        return panels
+    columns = min(count, 3)
+    rows = -(-count // columns)
+    figure: Figure = pyplot.figure(figsize=(1.0 + 3.2 * columns, 0.6 + 2.6 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, squeeze=False)
+    for unused in grid.flat[count:]:
+        unused.remove()
+    return list(grid.flat[:count])
+
+
+def _take(free: list[str], what: str) -> str:
+    """The next coordinate with several values."""
+    if not free:
+        raise OpmError(f"{what} is not given, and no coordinate is left that the grid has several values of")
+    return free.pop(0)
+
+
+def _faces(solid: Solid) -> list[_Array]:
+    """Polygons of a solid, corners counter-clockwise as seen from outside: four of them, some twice, since
+    matplotlib projects whatever is in memory where one polygon has fewer corners than another."""
+    start, end = solid.ends
+    radius = solid.width / 2
+    if solid.shape == "ball":
+        return _ball(start, radius)
+    axis = end - start
+    length = np.linalg.norm(axis)
+    axis = axis / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    # Any direction across, the same for parallel axes.
+    across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    across /= np.linalg.norm(across)
+    up = np.cross(axis, across)
+    if solid.shape == "block":
+        ring = [(a * across + b * up) * radius for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    else:
+        angles = np.arange(SIDES) * 2 * np.pi / SIDES
+        ring = [(np.cos(t) * across + np.sin(t) * up) * radius for t in angles]
+    low, high = [start + r for r in ring], [end + r for r in ring]
+    return [
+        np.array(corners)
+        for i in range(len(ring))
+        for corners in (
+            [low[i - 1], low[i], high[i], high[i - 1]],
+            [low[i], low[i - 1], start, start],
+            [high[i - 1], high[i], end, end],
+        )
+    ]
+
+
+def _ball(centre: _Array, radius: float) -> list[_Array]:
+    """Quadrilaterals between meridians and parallels."""
+    u = np.arange(SIDES + 1) * 2 * np.pi / SIDES
+    v = np.linspace(-np.pi / 2, np.pi / 2, SIDES // 2 + 1)
+    p = np.stack(
+        [np.cos(u)[:, None] * np.cos(v), np.sin(u)[:, None] * np.cos(v), np.broadcast_to(np.sin(v), (len(u), len(v)))],
+        axis=-1,
+    )
+    p = centre + radius * p
+    return [
+        np.array([p[i, j], p[i + 1, j], p[i + 1, j + 1], p[i, j + 1]])
+        for i in range(SIDES)
+        for j in range(SIDES // 2)
+    ]

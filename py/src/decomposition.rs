@@ -1,0 +1,127 @@
+//! How a mechanism falls into two sections.
+
+use crate::html;
+use opm_core::decomposition::Freedom;
+use opm_core::leg::Leg;
+use opm_core::manipulator as core;
+use opm_core::subspace::SubspaceClass;
+use pyo3::prelude::*;
+
+/// How the legs of a mechanism were cut in two.
+#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[derive(Clone, PartialEq)]
+pub struct Decomposition {
+    name: String,
+    rank: usize,
+    mobility: usize,
+    imaginary_joints: usize,
+    first_section_motions: usize,
+    lower: String,
+    upper: String,
+    intersection: Intersection,
+    legs: Vec<LegSplit>,
+}
+
+/// The motion that both sections have in common.
+#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[derive(Clone, PartialEq)]
+pub struct Intersection {
+    kind: String,
+    axis: Option<(f64, f64, f64)>,
+    point: Option<(f64, f64, f64)>,
+    pitch: Option<f64>,
+}
+
+/// Where a leg was cut.
+#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[derive(Clone, PartialEq)]
+pub struct LegSplit {
+    name: String,
+    lower: Vec<String>,
+    upper: Vec<String>,
+    imaginary: Option<String>,
+}
+
+impl Decomposition {
+    pub fn of(manipulator: &core::Manipulator) -> Self {
+        let (found, mechanism) = (manipulator.decomposition(), manipulator.mechanism());
+        let names = |leg: &Leg, freedoms: &[Freedom]| {
+            let names = freedoms.iter().map(|freedom| leg.joints[freedom.joint].name.clone());
+            let mut names: Vec<_> = names.collect();
+            names.dedup();
+            names
+        };
+        let splits = mechanism.legs.iter().zip(&found.legs).map(|(leg, split)| LegSplit {
+            name: leg.name.clone(),
+            lower: names(leg, &split.lower),
+            upper: names(leg, &split.upper),
+            imaginary: split.imaginary.then(|| leg.imaginary_name()),
+        });
+        Self {
+            name: mechanism.name.clone(),
+            rank: found.lambda,
+            mobility: found.mobility,
+            imaginary_joints: found.imaginary_joints,
+            first_section_motions: found.first_section_motions,
+            lower: found.lower.name().to_owned(),
+            upper: found.upper.name().to_owned(),
+            intersection: Intersection::of(&found.intersection),
+            legs: splits.collect(),
+        }
+    }
+}
+
+impl Intersection {
+    fn of(class: &SubspaceClass) -> Self {
+        let (axis, point, pitch) = match class {
+            SubspaceClass::Rotation { axis, point } => (Some(axis), Some(point), None),
+            SubspaceClass::Helical { axis, point, pitch } => {
+                (Some(axis), Some(point), Some(*pitch))
+            }
+            SubspaceClass::Translation { axis } => (Some(axis), None, None),
+            _ => (None, None, None),
+        };
+        Self {
+            kind: class.name().to_owned(),
+            axis: axis.map(|a| (a.x, a.y, a.z)),
+            point: point.map(|p| (p.x, p.y, p.z)),
+            pitch,
+        }
+    }
+}
+
+#[pymethods]
+impl Decomposition {
+    fn __repr__(&self) -> String {
+        format!(
+            "<Decomposition of {}: {} + {}, {} in common, {} imaginary joints>",
+            self.name, self.lower, self.upper, self.intersection.kind, self.imaginary_joints
+        )
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "decomposition")
+    }
+}
+
+#[pymethods]
+impl Intersection {
+    fn __repr__(&self) -> String {
+        let Self { kind, axis, point, .. } = self;
+        let text = |v: &Option<(f64, f64, f64)>| match v {
+            Some((x, y, z)) => format!("({x}, {y}, {z})"),
+            None => "None".to_owned(),
+        };
+        let pitch = self.pitch.map_or_else(|| "None".to_owned(), |pitch| pitch.to_string());
+        format!("Intersection({kind:?}, axis={}, point={}, pitch={pitch})", text(axis), text(point))
+    }
+}
+
+#[pymethods]
+impl LegSplit {
+    fn __repr__(&self) -> String {
+        let Self { name, lower, upper, imaginary } = self;
+        let imaginary = imaginary.as_deref().map_or_else(String::new, |i| format!(", {i}"));
+        format!("<LegSplit {name}: {} | {}{imaginary}>", lower.join(" "), upper.join(" "))
+    }
+}

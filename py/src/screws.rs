@@ -1,0 +1,181 @@
+//! Manipulators from arrays of joint screws, and the screws of any manipulator.
+
+use crate::error::wrong;
+use crate::manipulator::Manipulator;
+use nalgebra::{Point3, Vector6};
+use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods};
+use opm_core::mechanism::file::{self, Digits, FileErrors, FileUnits};
+use opm_core::mechanism::{Mechanism, ScrewJoint};
+use opm_core::screw::Screw;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+
+/// A leg's name and the screws of its joints.
+type Leg = (String, Vec<Screw>);
+
+#[pymethods]
+impl Manipulator {
+    /// Compiles a mechanism that is given by the screws of its joints at an assembled pose.
+    #[staticmethod]
+    #[pyo3(signature = (
+        legs, actuated, *, home = None, limits = None, joints = None, platform = [0.0; 3],
+        name = "mechanism",
+    ))]
+    // One a keyword of Python's.
+    #[allow(clippy::too_many_arguments)]
+    fn from_screws(
+        legs: &Bound<'_, PyAny>,
+        actuated: &Bound<'_, PyAny>,
+        home: Option<&Bound<'_, PyAny>>,
+        limits: Option<&Bound<'_, PyAny>>,
+        joints: Option<&Bound<'_, PyAny>>,
+        platform: [f64; 3],
+        name: &str,
+    ) -> PyResult<Self> {
+        let legs = read_legs(legs)?;
+        let actuated: Vec<Vec<bool>> = per_joint(actuated, "actuated", "bools", &legs)?;
+        let home = home.map(|given| per_joint::<f64>(given, "home", "numbers", &legs));
+        let home = home.transpose()?;
+        let limits = limits.map(|given| per_joint(given, "limits", "pairs or None", &legs));
+        let limits: Option<Vec<Vec<Option<[f64; 2]>>>> = limits.transpose()?;
+        let names = joints.map(|given| per_joint::<String>(given, "joints", "names", &legs));
+        let names = names.transpose()?;
+        let joint = |leg: usize, joint: usize, screw: Screw| {
+            let place = || place(&legs[leg].0, joint);
+            let home = home.as_ref().map_or(0.0, |home| home[leg][joint]);
+            if !home.is_finite() {
+                return Err(wrong(format!("{}: home is {home}, expected a number", place())));
+            }
+            let limits = match limits.as_ref().and_then(|limits| limits[leg][joint]) {
+                Some([f64::NEG_INFINITY, f64::INFINITY]) | None => None,
+                Some(pair) if pair.iter().all(|limit| limit.is_finite()) => Some(pair),
+                Some([low, high]) => {
+                    return Err(wrong(format!(
+                        "{}: limits are {low} and {high}, expected two numbers, or both infinite \
+                         for none",
+                        place()
+                    )));
+                }
+            };
+            let name = match &names {
+                Some(names) => names[leg][joint].clone(),
+                None => format!("q{}_{}", leg + 1, joint + 1),
+            };
+            Ok(ScrewJoint { name, screw, actuated: actuated[leg][joint], home, limits })
+        };
+        let legs_of_joints = legs.iter().enumerate().map(|(number, (name, screws))| {
+            let joints = screws.iter().enumerate();
+            let joints = joints.map(|(i, &screw)| joint(number, i, screw));
+            Ok((name.clone(), joints.collect::<PyResult<_>>()?))
+        });
+        let legs_of_joints = legs_of_joints.collect::<PyResult<Vec<_>>>()?;
+        if let Some(odd) = platform.iter().find(|c| !c.is_finite()) {
+            return Err(wrong(format!("platform has {odd} in it, expected a point [x, y, z]")));
+        }
+        let mechanism = Mechanism::from_screws(name, legs_of_joints, Point3::from(platform))
+            .map_err(|(leg, joint, error)| {
+                wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
+            })?;
+        // By way of a file, so that it is checked as any other, can be saved, and crosses processes.
+        let text = file::write(&mechanism, FileUnits::SI, Digits::All);
+        let file = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?;
+        Self::compile(file, text, name.to_owned())
+    }
+
+    /// The unit screws of every leg's joints at home, a row a freedom.
+    #[getter]
+    fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for leg in &self.inner.mechanism().legs {
+            let screws = leg.screws();
+            let rows = screws.iter().flat_map(|screw| <[f64; 6]>::from(screw.to_vector()));
+            let rows = rows.collect::<Vec<_>>().into_pyarray(py).reshape([screws.len(), 6])?;
+            dict.set_item(&leg.name, rows)?;
+        }
+        Ok(dict)
+    }
+}
+
+fn place(leg: &str, joint: usize) -> String {
+    format!("{leg}, joint {}", joint + 1)
+}
+
+/// A mapping of names to arrays, or a sequence of arrays: `leg1`, `leg2`, ...
+fn read_legs(given: &Bound<'_, PyAny>) -> PyResult<Vec<Leg>> {
+    let named: Vec<(String, Bound<'_, PyAny>)> = match given.cast::<PyMapping>() {
+        Ok(mapping) => mapping.items()?.extract()?,
+        Err(_) => {
+            let arrays: Vec<_> = given.try_iter()?.collect::<PyResult<_>>()?;
+            arrays.into_iter().enumerate().map(|(i, leg)| (format!("leg{}", i + 1), leg)).collect()
+        }
+    };
+    let read = |(name, rows): (String, Bound<'_, PyAny>)| {
+        let expected = "expected an (n, 6) array of screws (omega; v), a row a joint";
+        let array = rows.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>();
+        let array = array.map_err(|_| wrong(format!("{name}: {expected}")))?;
+        let [joints, width] = [array.shape()[0], array.shape()[1]];
+        if width != 6 || joints == 0 {
+            return Err(wrong(format!("{name} has shape ({joints}, {width}), {expected}")));
+        }
+        let rows = array.as_array();
+        let screw = |row| Screw::from_vector(&Vector6::from_fn(|i, _| rows[[row, i]]));
+        Ok((name, (0..joints).map(screw).collect()))
+    };
+    named.into_iter().map(read).collect()
+}
+
+/// A sequence a leg of an entry a joint.
+fn per_joint<'py, T: FromPyObjectOwned<'py>>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    entries: &str,
+    legs: &[Leg],
+) -> PyResult<Vec<Vec<T>>> {
+    let expected = |found: String| wrong(format!("{what}: {found}"));
+    let of_legs: Vec<Bound<'py, PyAny>> = given
+        .extract()
+        .map_err(|_| expected("expected a sequence a leg, with an entry a joint".to_owned()))?;
+    if of_legs.len() != legs.len() {
+        let (found, legs) = (of_legs.len(), legs.len());
+        return Err(expected(format!("{found} sequences, expected {legs}, one a leg")));
+    }
+    let read = |(given, (name, screws)): (Bound<'py, PyAny>, &Leg)| {
+        let joints = screws.len();
+        let list: Vec<T> = given.extract().map_err(|_| {
+            let given = given.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
+            expected(format!("{given} of {name}, expected {joints} {entries}, one a joint"))
+        })?;
+        if list.len() != joints {
+            let found = list.len();
+            return Err(expected(format!("{found} of {name}, expected {joints}, one a joint")));
+        }
+        Ok(list)
+    };
+    of_legs.into_iter().zip(legs).map(read).collect()
+}
+
+/// The problems of a written file, at the joints that they are about instead of its lines.
+fn told(errors: &FileErrors, text: &str, legs: &[Leg]) -> String {
+    let (mut leg, mut joint) = (0, 0);
+    let places: Vec<String> = text
+        .lines()
+        .map(|line| {
+            if line == "[[leg]]" {
+                (leg, joint) = (leg + 1, 0);
+            } else if line.starts_with("  {") {
+                joint += 1;
+            }
+            match (leg, joint) {
+                (0, _) => "mechanism".to_owned(),
+                (leg, 0) => legs[leg - 1].0.clone(),
+                (leg, joint) => place(&legs[leg - 1].0, joint - 1),
+            }
+        })
+        .collect();
+    let problems = errors.problems.iter();
+    let lines = problems.map(|problem| {
+        let place = places.get(problem.line - 1).map_or("mechanism", String::as_str);
+        format!("{place}: {}", problem.message)
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,98 @@
+//! What there is to draw of a mechanism in a pose.
+
+use crate::error::{failed, wrong};
+use crate::manipulator::Manipulator;
+use nalgebra::{Isometry3, Point3};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use opm_core::skeleton::{self, Cuts, Material, Posture, Skeleton};
+use pyo3::prelude::*;
+
+/// A simple body to draw, in base coordinates.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Solid {
+    body: String,
+    shape: &'static str,
+    material: &'static str,
+    ends: Py<PyArray2<f64>>,
+    width: f64,
+}
+
+#[pymethods]
+impl Solid {
+    fn __repr__(&self) -> String {
+        format!("<Solid {} of {}, {}>", self.shape, self.body, self.material)
+    }
+}
+
+#[pymethods]
+impl Manipulator {
+    /// The solids that the mechanism is drawn with in a pose, home if it is not given.
+    #[pyo3(signature = (pose = None, *, mode = "home"))]
+    fn solids(&self, py: Python<'_>, pose: Option<Vec<f64>>, mode: &str) -> PyResult<Vec<Solid>> {
+        let manipulator = &self.inner;
+        let mode = self.mode(mode)?;
+        let pose = pose.unwrap_or_else(|| manipulator.task().home());
+        let mut solution = manipulator.solution();
+        if !manipulator.inverse(&pose, mode, &mut solution).map_err(|error| failed(&error))? {
+            let legs = solution.unreachable.iter();
+            let legs: Vec<_> = legs.map(|u| &*manipulator.mechanism().legs[u.leg].name).collect();
+            return Err(wrong(format!("the pose {pose:?} is out of reach of {}", legs.join(", "))));
+        }
+        let decomposition = manipulator.decomposition();
+        let cuts = Cuts { decomposition, imaginary: manipulator.imaginary() };
+        let skeleton = Skeleton::new(manipulator.mechanism(), cuts);
+        let posture = Posture {
+            joints: &solution.joints,
+            imaginary: &solution.imaginary,
+            platform: manipulator.task().displacement(&pose),
+        };
+        let mut places = Vec::new();
+        skeleton.place(&posture, &mut places);
+        let mut solids = Vec::new();
+        for (number, body) in skeleton.bodies().iter().enumerate() {
+            let mut place = places[number];
+            let mut parent = body.parent;
+            while let Some(outer) = parent {
+                place = places[outer] * place;
+                parent = skeleton.bodies()[outer].parent;
+            }
+            for part in &body.parts {
+                let (shape, ends, width) = shape(&part.solid, &place);
+                let ends = ends.iter().flat_map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>();
+                solids.push(Solid {
+                    body: body.name.clone(),
+                    shape,
+                    material: material(part.material),
+                    ends: ends.into_pyarray(py).reshape([2, 3])?.unbind(),
+                    width,
+                });
+            }
+        }
+        Ok(solids)
+    }
+}
+
+/// Its name, the ends of its axis, and its diameter or width.
+fn shape(solid: &skeleton::Solid, place: &Isometry3<f64>) -> (&'static str, [Point3<f64>; 2], f64) {
+    match *solid {
+        skeleton::Solid::Cylinder { from, to, radius } => {
+            ("cylinder", [place * from, place * to], 2.0 * radius)
+        }
+        skeleton::Solid::Ball { centre, radius } => ("ball", [place * centre; 2], 2.0 * radius),
+        skeleton::Solid::Block { centre, axis, length, width } => {
+            let half = axis.into_inner() * (length / 2.0);
+            ("block", [place * (centre - half), place * (centre + half)], width)
+        }
+    }
+}
+
+fn material(material: Material) -> &'static str {
+    match material {
+        Material::Base => "base",
+        Material::Link => "link",
+        Material::Actuated => "actuated",
+        Material::Passive => "passive",
+        Material::Platform => "platform",
+        Material::Imaginary => "imaginary",
+    }
+}

@@ -1,0 +1,145 @@
+"""Pictures: what is drawn, where it is; and that the paper's figures can be drawn."""
+
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import opm_kinematics as opm
+import pytest
+from opm_kinematics import plot
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def manipulator():
+    return opm.examples.load("plano-spherical-5dof")
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def test_solids_are_where_the_geometry_puts_them(manipulator):
+    """The two-link arm of leg 4: D = (0, 75) mm, b1 = b2 = 100 mm, its end at P."""
+    pose = np.array([0.03, -0.02, 0.2, 0.3, 0.1])
+    rods = {s.body: s for s in manipulator.solids(pose.tolist()) if s.body.startswith("leg4/") and s.material == "link"}
+    first = [s.ends for s in manipulator.solids(pose.tolist()) if s.body == "leg4/phi14" and s.shape == "cylinder"]
+    joints = manipulator.inverse([pose])
+    phi14 = joints["phi14"][0]
+    elbow = np.array([0.1 * np.cos(phi14), 0.075 + 0.1 * np.sin(phi14), 0])
+    ends = np.vstack(first)
+    assert rods and np.linalg.norm(ends - [0, 0.075, 0], axis=1).min() < 1e-12
+    assert np.linalg.norm(ends[:, :2] - elbow[:2], axis=1).min() < 1e-12
+    with pytest.raises(opm.OpmError, match="is out of reach of leg1"):
+        manipulator.solids([1.0, 0, 0, 0, 0])
+
+
+@pytest.mark.parametrize("name", [n for n in opm.examples.names() if "bennett" not in n])
+def test_every_mechanism_can_be_drawn(name):
+    manipulator = opm.examples.load(name)
+    panel = plot.mechanism(manipulator)
+    panel.figure.canvas.draw()
+    ends = np.vstack([s.ends for s in manipulator.solids()])
+    low, high = np.array([panel.get_xlim(), panel.get_ylim(), panel.get_zlim()]).T
+    assert (ends >= low - 1e-12).all() and (ends <= high + 1e-12).all()
+
+
+def test_faces_look_outward(manipulator):
+    for solid in manipulator.solids():
+        middle = solid.ends.mean(axis=0)
+        for face in plot._faces(solid):
+            normal = np.cross(face[1] - face[0], face[2] - face[1])
+            assert normal @ (face.mean(axis=0) - middle) > -1e-15
+
+
+def test_slices_are_those_of_the_mask(manipulator):
+    swept = opm.sweep(manipulator, x=(-0.2, 0.2, 21), y=(-0.15, 0.15, 16), xi=(0, 1.2, 5), zeta=(-0.3, 0.3, 3))
+    panels = plot.workspace(swept, slices="xi", values=[0.0, 0.9])
+    assert [panel.get_title() for panel in panels] == ["xi = 0 rad", "xi = 0.9 rad"]
+    mask = swept.mask()
+    for panel, number in zip(panels, (0, 3), strict=True):
+        image = panel.collections[0].get_array().reshape(16, 21)
+        np.testing.assert_allclose(image, mask[:, :, :, number, 0].mean(axis=2).T)
+    (panel,) = plot.workspace(swept, "zeta", "xi", ax=plt.figure().add_subplot())
+    image = panel.collections[0].get_array().reshape(5, 3)
+    np.testing.assert_allclose(image, mask.mean(axis=(0, 1, 4)).T)
+    whole = opm.sweep(opm.examples.load("translational-helical-3dof"), x=(-1, 1, 5), y=(-1, 1, 4), phi=(0, 1, 3))
+    image = plot.workspace(whole, slices="phi")[2].collections[0].get_array().reshape(4, 5)
+    np.testing.assert_array_equal(image, whole.mask()[:, :, 2].T)
+
+
+def test_curves_are_those_of_the_joints(manipulator):
+    followed = opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=10)
+    lengths, angles = plot.joints(followed, ["S1", "theta11", "phi24"])
+    np.testing.assert_array_equal(lengths.lines[0].get_ydata(), followed["S1"])
+    np.testing.assert_array_equal(angles.lines[1].get_ydata(), followed["phi24"])
+    assert (lengths.get_ylabel(), angles.get_ylabel()) == ("m", "rad")
+    (rates,) = plot.joints(followed, rates=True)
+    np.testing.assert_array_equal(rates.lines[2].get_ydata(), followed.imaginary_rates[:, 2])
+    solutions = manipulator.inverse(followed.poses)
+    (panel,) = plot.joints(solutions, ["S2"], times=followed.times)
+    np.testing.assert_array_equal(panel.lines[0].get_ydata(), solutions["S2"])
+
+
+def test_the_imaginary_workspace_is_of_poses_within_limits(manipulator):
+    poses = np.random.default_rng(8).uniform(-0.4, 0.4, (300, 5))
+    solutions = manipulator.inverse(poses)
+    panel = plot.imaginary(solutions, ["theta11", "theta13"], color=poses[:, 3])
+    drawn = panel.collections[0].get_offsets()
+    np.testing.assert_array_equal(drawn, solutions.imaginary[solutions.within_limits][:, [0, 2]])
+    assert plot.imaginary(solutions).name == "3d"
+
+
+def test_wrong_input_is_told(manipulator):
+    swept = opm.sweep(manipulator, x=(-0.2, 0.2, 3))
+    with pytest.raises(opm.OpmError, match="y is not given, and no coordinate is left"):
+        plot.workspace(swept)
+    with pytest.raises(opm.OpmError, match="w: no such task coordinate"):
+        plot.workspace(swept, "x", "w")
+    with pytest.raises(opm.OpmError, match="expected different task coordinates"):
+        plot.workspace(swept, "x", "y", slices="x")
+    with pytest.raises(opm.OpmError, match="2 axes to draw on, expected 1"):
+        plot.workspace(swept, "x", "y", ax=plt.subplots(1, 2)[1])
+    solutions = manipulator.inverse(np.zeros((4, 5)))
+    with pytest.raises(opm.OpmError, match=r"times of shape \(0,\)"):
+        plot.joints(solutions)
+    with pytest.raises(opm.OpmError, match="one working mode"):
+        plot.joints(manipulator.inverse(np.zeros((4, 5)), mode="all"), times=np.arange(4.0))
+    with pytest.raises(opm.OpmError, match="1 imaginary joints, expected two or three"):
+        plot.imaginary(solutions, ["theta11"])
+    with pytest.raises(KeyError, match="S9"):
+        plot.joints(solutions, ["S9"], times=np.arange(4.0))
+
+
+def test_without_matplotlib_it_says_what_to_install(tmp_path):
+    (tmp_path / "matplotlib.py").write_text("raise ImportError('none')")
+    code = "import opm_kinematics as o; m = o.examples.load('plano-spherical-5dof'); o.plot.mechanism(m)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True, check=False
+    )
+    assert "pip install 'opm-kinematics[plot]'" in done.stderr
+
+
+def test_the_command_line_does_not_wait_for_numpy():
+    code = "import opm_kinematics.__main__, sys; assert 'numpy' not in sys.modules and 'matplotlib' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_the_figures_of_the_paper_can_be_drawn(tmp_path):
+    example = runpy.run_path(str(EXAMPLES / "paper_figures.py"))
+    example["main"](tmp_path)
+    drawn = sorted(path.name for path in tmp_path.iterdir())
+    assert drawn == sorted(f"figure_{n}.png" for n in (4, 7, 8, 9, 10, 11, 13, 14, 15, 16, 17))
+    for path in tmp_path.iterdir():
+        # Something is on it: white is not all there is.
+        assert np.mean(plt.imread(path)[:, :, :3].min(axis=2) < 0.9) > 0.005, path.name

@@ -1,0 +1,106 @@
+"""Trajectories from Python, against the command line, formulas and inverse kinematics."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import opm_kinematics as opm
+import pytest
+
+# The shipped motion: millimetres and degrees, amplitude, frequency, phase, offset.
+SINUSOIDS = [(30, 0.2, 0, 0), (25, 0.3, 60, 0), (15, 0.1, 30, 0), (12, 0.2, 90, 3), (10, 0.3, 120, 0)]
+
+
+@pytest.fixture(scope="module")
+def manipulator():
+    return opm.examples.load("plano-spherical-5dof")
+
+
+@pytest.fixture(scope="module")
+def followed(manipulator):
+    return opm.trajectory(manipulator, "plano-spherical-sinusoids")
+
+
+def test_the_shipped_motion_is_its_sinusoids(manipulator, followed):
+    t = np.arange(1001) / 100
+    a, f, phase, offset = np.array(SINUSOIDS, dtype=float).T
+    si = np.array([1e-3, 1e-3, *[np.pi / 180] * 3])
+    expected = (offset + a * np.sin(2 * np.pi * f * t[:, None] + np.radians(phase))) * si
+    np.testing.assert_allclose(followed.times, t, atol=1e-12)
+    np.testing.assert_allclose(followed.poses, expected, atol=1e-12)
+    np.testing.assert_allclose(np.gradient(followed.poses, t, axis=0)[1:-1], followed.pose_rates[1:-1], atol=2e-3)
+    solutions = manipulator.inverse(followed.poses)
+    turns = (followed.joints - solutions.joints) / (2 * np.pi)
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
+    np.testing.assert_allclose(followed.imaginary, solutions.imaginary, atol=1e-9)
+    motion = manipulator.velocity(followed.poses, followed.pose_rates, followed.pose_accelerations)
+    np.testing.assert_allclose(followed.joint_rates, motion.joint_rates, atol=1e-9)
+    np.testing.assert_allclose(followed.joint_accelerations, motion.joint_accelerations, atol=1e-7)
+    np.testing.assert_allclose(followed.imaginary_rates, motion.imaginary_rates, atol=1e-9)
+    np.testing.assert_allclose(followed.imaginary_accelerations, motion.imaginary_accelerations, atol=1e-7)
+    np.testing.assert_allclose(followed.condition, manipulator.singularity(followed.poses).condition, rtol=1e-9)
+    assert followed.reachable.all() and followed.regular.all() and followed.violations == []
+    assert np.abs(np.diff(followed.joints, axis=0)).max() < 0.2  # no jump by a turn
+    assert len(followed) == 1001 and "0 violations" in repr(followed)
+
+
+def test_it_is_what_the_command_line_says(manipulator, tmp_path):
+    """A straight line out of the workspace, as a table of poses and as waypoints."""
+    times, x = np.linspace(0, 3, 7), np.linspace(0, 0.3, 7)
+    rows = "\n".join(f"{t!r},{v!r}" for t, v in zip(times.tolist(), x.tolist(), strict=True))
+    path = tmp_path / "out.csv"
+    path.write_text(f"t,x\n{rows}\n")
+    command = [sys.executable, "-m", "opm_kinematics", "trajectory", "plano-spherical-5dof", "--motion", path]
+    told = subprocess.run([*command, "--rate", "50", "--format", "json", "--quiet"], capture_output=True, check=True)
+    told = json.loads(told.stdout)
+    poses = np.zeros((7, 5))
+    poses[:, 0] = x
+    for found in (
+        opm.trajectory(manipulator, path, rate=50),
+        opm.trajectory(manipulator, poses, times=times, rate=50),
+    ):
+        assert (len(found), int(found.reachable.sum()), int(found.within_limits.sum())) == (
+            told["samples"], told["reached"], told["valid"],
+        )  # fmt: skip
+        assert 0 < told["reached"] < told["samples"] and told["violations"]
+        keys = ("kind", "start", "end", "worst", "amount", "unit", "leg", "joint", "section", "bound", "singularity")
+        assert [{k: getattr(v, k) for k in keys if getattr(v, k) is not None} for v in found.violations] == told["violations"]
+        for name, ranges in {**told["joints"], **told["imaginary"]}.items():
+            values = found[name]
+            np.testing.assert_array_equal([np.nanmin(values), np.nanmax(values)], ranges["position"])
+        assert np.isnan(found.joints[~found.reachable]).all() and np.isfinite(found.poses).all()
+        assert str(found.violations[0].leg) in found.violations[0].message
+
+
+def test_the_mode_is_that_which_was_asked_for(manipulator):
+    found = opm.trajectory(manipulator, "plano-spherical-sinusoids", mode="++ ++ ++ -", rate=20)
+    assert found.mode == "++ ++ ++ -" and len(found) == 201
+    solutions = manipulator.inverse(found.poses, mode="++ ++ ++ -")
+    # A ball's rotation vector may be the other way round, once it is past half a turn.
+    for name in (n for n in found.joint_names if not n.startswith("s4.")):
+        np.testing.assert_allclose(np.cos(found[name]), np.cos(solutions[name]), atol=1e-9)
+
+
+def test_wrong_input_is_told(manipulator, tmp_path):
+    with pytest.raises(FileNotFoundError):
+        opm.trajectory(manipulator, tmp_path / "none.toml")
+    (tmp_path / "wrong.csv").write_text("t,w\n0,1\n")
+    with pytest.raises(opm.OpmError, match=r"wrong\.csv:1:3: "):
+        opm.trajectory(manipulator, tmp_path / "wrong.csv")
+    home = np.zeros((4, 5))
+    for motion, options, message in [
+        (home, {"times": [0, 1, 2]}, "3 times of 4 poses"),
+        (home, {"times": [0, 1, 1, 2]}, "the times do not increase"),
+        (home[:2], {"times": [0, 1]}, "2 times, expected at least 3"),
+        (home[:, :3], {"times": [0, 1, 2, 3]}, "3 columns of poses, expected 5"),
+        (home * np.nan, {"times": [0, 1, 2, 3]}, "NaN among the poses and times"),
+        (home, {}, "expected a path, the name of a shipped motion, or poses with times"),
+        ("plano-spherical-sinusoids", {"rate": 0.0}, "expected a rate above zero"),
+        ("plano-spherical-sinusoids", {"rate": np.nan}, "expected a rate above zero"),
+        ("plano-spherical-sinusoids", {"mode": "+"}, "sign"),
+    ]:
+        with pytest.raises(opm.OpmError, match=message):
+            opm.trajectory(manipulator, motion, **options)
+    with pytest.raises(MemoryError):
+        opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=1e14)
