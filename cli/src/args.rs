@@ -345,8 +345,7 @@ Examples:
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
-  opm workspace plano-spherical-5dof --kind lower --grid x=-0.3:0.3:201 --grid y=-0.3:0.3:201 \
-      --grid theta11=-0.7:0.9:17
+  opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {

@@ -34,7 +34,7 @@ fn shoelace(rings: &Value) -> f64 {
 const GRID: [&str; 6] = [
     "--grid=x=-250mm:250mm:26",
     "--grid=y=-200mm:200mm:21",
-    "--grid=xi=-100deg:100deg:7",
+    "--grid=xi=-30deg:30deg:7",
     "--grid=zeta=0:1:3",
     "--grid=psi=0.1",
     "--mode=any",
