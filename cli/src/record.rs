@@ -2,6 +2,7 @@
 
 use crate::cloud::{Cloud, Points, Portion};
 use crate::failure::Failure;
+use crate::kind::{SetRecording, Study, pose_boundary};
 use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
@@ -18,6 +19,9 @@ pub const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
 
 /// More slices than this play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
+
+/// Points between two looks at whether somebody pressed Ctrl-C.
+const PORTION: u64 = 1 << 12;
 
 /// Opens a file for a recording before the work starts, so that a wrong path costs no time.
 pub fn create(path: &Path) -> Result<PartialFile, Failure> {
@@ -75,6 +79,20 @@ impl Recorder {
         Err(Failure::flag("--grid", problem))
     }
 
+    /// Refuses what a set that is no set of poses is not written as.
+    pub fn check_set(path: &Path, kind: &str) -> Result<(), Failure> {
+        match Format::of(path)? {
+            Format::Mcap => Ok(()),
+            Format::Table(_) => Err(Failure::flag(
+                "--output",
+                format!(
+                    "{}: --kind {kind} is written as MCAP, expected a name that ends in .mcap",
+                    path.display()
+                ),
+            )),
+        }
+    }
+
     /// Opens the file.
     pub fn create(path: &Path) -> Result<Self, Failure> {
         let format = Format::of(path)?;
@@ -88,12 +106,13 @@ impl Recorder {
         cloud: &Cloud<'_>,
         source: &Source<'_>,
         found: &Count,
+        study: Option<&Study>,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
         let Self { path, file, format } = self;
         let color_range = cloud.color_range(source, found, run.grid, progress)?;
         let layout = cloud.layout(color_range);
-        let job = Job { run, cloud, source, found, progress, path: &path, layout };
+        let job = Job { run, cloud, source, found, study, progress, path: &path, layout };
         match format {
             Format::Mcap => job.mcap(file)?,
             Format::Table(format) => job.table(file, format)?,
@@ -116,6 +135,7 @@ struct Job<'a> {
     cloud: &'a Cloud<'a>,
     source: &'a Source<'a>,
     found: &'a Count,
+    study: Option<&'a Study>,
     progress: &'a Progress,
     path: &'a Path,
     layout: CloudLayout,
@@ -177,7 +197,7 @@ impl Job<'_> {
     /// A recording: an overview, then all points.
     fn mcap(&self, file: PartialFile) -> Result<(), Failure> {
         let failed = |error| Failure::at(self.path.display(), &error);
-        let Self { run, cloud, source, found, progress, .. } = *self;
+        let Self { run, cloud, source, found, study, progress, .. } = *self;
         let columns = cloud.columns();
         let workspace = Workspace {
             layout: self.layout.clone(),
@@ -189,9 +209,14 @@ impl Job<'_> {
         };
         let packer = Packer::new(&workspace.layout).map_err(failed)?;
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        let together = together(run.grid);
+        let lines = study
+            .and_then(|study| pose_boundary(run.grid, study, together, |pose| cloud.place(pose)));
+        if let Some(lines) = lines {
+            recorder.boundary(lines).map_err(failed)?;
+        }
         let interrupted = |failure| self.interrupted(failure);
         let every = recorder.overview_every();
-        let together = together(run.grid);
         // Of all points, how many there were, and which is the overview's next.
         let (mut seen, mut next) = (0, 0);
         let mut overview = Points::new(cloud, &columns, Some(&packer));
@@ -229,6 +254,55 @@ impl Job<'_> {
             .map_err(interrupted)?;
         recorder.finish(&result(run, found)).map_err(failed)
     }
+
+    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
+    pub fn record_set(
+        self,
+        run: &Run<'_>,
+        set: &SetRecording<'_>,
+        found: &Count,
+        progress: &Progress,
+    ) -> Result<PathBuf, Failure> {
+        let Self { path, file, .. } = self;
+        let failed = |error: RecordError| Failure::at(path.display(), &error);
+        let mut about = describe(run);
+        about.insert("poses".to_owned(), found.poses.to_string());
+        about.insert("set".to_owned(), set.set_axes());
+        let workspace = Workspace {
+            layout: set.layout(found),
+            mechanism_name: &run.loaded.file_name,
+            mechanism: run.loaded.text.as_bytes(),
+            run: about,
+            points: found.reachable,
+            slices: set.slices,
+        };
+        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        if let Some(lines) = set.boundary() {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
+        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+            false => Ok(()),
+            true => Err(Failure::Interrupted(format!(
+                "interrupted; what was recorded is in {}",
+                partial(&path).display()
+            ))),
+        };
+        let mut number = 0;
+        set.points(|_, row| {
+            going(number)?;
+            let wanted = number % every == 0;
+            number += 1;
+            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+        })?;
+        set.points(|slice, row| {
+            number += 1;
+            going(number)?;
+            recorder.push(slice, row).map_err(failed)
+        })?;
+        recorder.finish(&result(run, found)).map_err(failed)?;
+        Ok(path)
+    }
 }
 
 /// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
@@ -257,6 +331,7 @@ pub fn describe(run: &Run<'_>) -> Metadata {
         ("program", PROGRAM.to_owned()),
         ("mechanism", run.manipulator.mechanism().name.clone()),
         ("mechanism_file", run.loaded.file_name.clone()),
+        ("kind", run.kind.name()),
         ("mode", run.mode()),
         ("poses", run.grid.poses().to_string()),
     ]

@@ -33,6 +33,7 @@ pub use file::{PartialFile, Sink};
 pub use flat::Flat;
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use scene::ClosedLine;
 pub use shard::{Shard, ShardRecorder};
 pub use table::{TableFormat, TableRecorder, table_columns};
 pub use trajectory::{Trajectory, TrajectoryRecorder};
