@@ -120,6 +120,55 @@ impl Recorder {
         Ok(path)
     }
 
+    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
+    pub fn record_set(
+        self,
+        run: &Run<'_>,
+        set: &SetRecording<'_>,
+        found: &Count,
+        progress: &Progress,
+    ) -> Result<PathBuf, Failure> {
+        let Self { path, file, .. } = self;
+        let failed = |error: RecordError| Failure::at(path.display(), &error);
+        let mut about = describe(run);
+        about.insert("poses".to_owned(), found.poses.to_string());
+        about.insert("set".to_owned(), set.set_axes());
+        let workspace = Workspace {
+            layout: set.layout(found),
+            mechanism_name: &run.loaded.file_name,
+            mechanism: run.loaded.text.as_bytes(),
+            run: about,
+            points: found.reachable,
+            slices: set.slices,
+        };
+        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        if let Some(lines) = set.boundary() {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
+        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+            false => Ok(()),
+            true => Err(Failure::Interrupted(format!(
+                "interrupted; what was recorded is in {}",
+                partial(&path).display()
+            ))),
+        };
+        let mut number = 0;
+        set.points(|_, row| {
+            going(number)?;
+            let wanted = number % every == 0;
+            number += 1;
+            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+        })?;
+        set.points(|slice, row| {
+            number += 1;
+            going(number)?;
+            recorder.push(slice, row).map_err(failed)
+        })?;
+        recorder.finish(&result(run, found)).map_err(failed)?;
+        Ok(path)
+    }
+
     /// How often the poses are gone through.
     pub fn passes(&self, cloud: &Cloud<'_>) -> u64 {
         match self.format {
@@ -253,55 +302,6 @@ impl Job<'_> {
             )
             .map_err(interrupted)?;
         recorder.finish(&result(run, found)).map_err(failed)
-    }
-
-    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
-    pub fn record_set(
-        self,
-        run: &Run<'_>,
-        set: &SetRecording<'_>,
-        found: &Count,
-        progress: &Progress,
-    ) -> Result<PathBuf, Failure> {
-        let Self { path, file, .. } = self;
-        let failed = |error: RecordError| Failure::at(path.display(), &error);
-        let mut about = describe(run);
-        about.insert("poses".to_owned(), found.poses.to_string());
-        about.insert("set".to_owned(), set.set_axes());
-        let workspace = Workspace {
-            layout: set.layout(found),
-            mechanism_name: &run.loaded.file_name,
-            mechanism: run.loaded.text.as_bytes(),
-            run: about,
-            points: found.reachable,
-            slices: set.slices,
-        };
-        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
-        if let Some(lines) = set.boundary() {
-            recorder.boundary(lines).map_err(failed)?;
-        }
-        let every = recorder.overview_every();
-        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
-            false => Ok(()),
-            true => Err(Failure::Interrupted(format!(
-                "interrupted; what was recorded is in {}",
-                partial(&path).display()
-            ))),
-        };
-        let mut number = 0;
-        set.points(|_, row| {
-            going(number)?;
-            let wanted = number % every == 0;
-            number += 1;
-            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
-        })?;
-        set.points(|slice, row| {
-            number += 1;
-            going(number)?;
-            recorder.push(slice, row).map_err(failed)
-        })?;
-        recorder.finish(&result(run, found)).map_err(failed)?;
-        Ok(path)
     }
 }
 
