@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+use crate::kind::Kind;
 use crate::linkage::InputValue;
 use crate::plot::{PanelName, PictureSize};
 use crate::pose::{GridAxis, Number, Pose, SliceValue};
@@ -316,6 +317,16 @@ pub struct TrajectoryArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
+/// --kind asks for another set than that of poses. A place is a value for each coordinate of the lower
+/// section (x and y, say), an orientation one for each of the upper section. `reachable` and
+/// `dexterous` have the share of the orientations that reach a place stored with it, as `share`. The
+/// lower section alone has the imaginary joints for coordinates, too, by their names, at home where
+/// --grid does not say otherwise; what it has in common with `upper` is the whole workspace.
+///
+/// All kinds but `grid`, and that with --shape, tell the connected components of the set, and the
+/// boundary of one that varies in two coordinates, or in slices of a third: closed lines, whose inside
+/// is to the left, in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
+///
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
@@ -332,12 +343,18 @@ Examples:
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
+  opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
+  opm workspace plano-spherical-5dof --kind reachable -o places.mcap
+  opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+    /// What the workspace is of
+    #[arg(long, value_name = "KIND", value_enum, default_value = "grid")]
+    pub kind: Kind,
     /// Values of one task coordinate: MIN, MAX and how many, or one value alone
     #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
     pub grid: Vec<GridAxis>,
@@ -347,9 +364,15 @@ pub struct WorkspaceArgs {
     /// Only poses with a condition number of at most C count, in a mode in which they have it
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
-    /// Characteristic length of the condition number, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", requires = "max_condition", allow_hyphen_values = true)]
+    /// Also tell the global conditioning index: the mean of 1 / condition number, a few us a pose
+    #[arg(long)]
+    pub conditioning: bool,
+    /// Characteristic length of condition numbers, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
+    /// Also find the boundary and the connected components, as all kinds but `grid` do
+    #[arg(long)]
+    pub shape: bool,
     /// Sweep only part number I of N, from 1 on, and write it to -o, for `opm merge`
     #[arg(
         long,
@@ -375,10 +398,12 @@ pub struct CloudArgs {
     /// Record the points in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// What x, y and z of the cloud are: three task coordinates, or `tip`, the platform's point
+    /// What x, y and z of the cloud are: three coordinates (of `imaginary`, imaginary joints), or `tip`,
+    /// the platform's point
     #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
     pub axes: Vec<String>,
-    /// What the colour shows: a task coordinate, an imaginary joint or an actuated joint
+    /// What the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
+    /// `inverse_condition`, one over the condition number
     #[arg(long, value_name = "NAME", requires = "output")]
     pub color: Option<String>,
     /// Values stored with every point, named like those of --color

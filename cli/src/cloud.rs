@@ -12,6 +12,8 @@ use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes,
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
+/// The local conditioning index among the values of a point.
+const INVERSE_CONDITION: &str = "inverse_condition";
 
 /// One value of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +26,8 @@ pub enum Column {
     Actuated(usize),
     /// The platform's point: x, y or z.
     Tip(usize),
+    /// One over the condition number.
+    InverseCondition,
 }
 
 /// A value with its name.
@@ -34,11 +38,13 @@ pub struct Wishes {
     axes: Option<[Named; 3]>,
     scalars: Option<Vec<Named>>,
     color: Option<Named>,
+    /// Of condition numbers, metres.
+    length: f64,
 }
 
 impl Wishes {
-    /// From the flags, each of which is checked.
-    pub fn new(args: &CloudArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
+    /// From the flags, each of which is checked; condition numbers have this characteristic length.
+    pub fn new(args: &CloudArgs, length: f64, manipulator: &Manipulator) -> Result<Self, Failure> {
         let named = |name: &String, flag| column(manipulator, name, flag);
         let color = args.color.as_ref().map(|name| named(name, "--color")).transpose()?;
         let scalars: Option<Vec<Named>> = (args.scalars.as_ref())
@@ -53,7 +59,15 @@ impl Wishes {
                 return wrong(format!("{name} is given twice"));
             }
         }
-        Ok(Self { axes: axes(&args.axes, manipulator)?, scalars, color })
+        Ok(Self { axes: axes(&args.axes, manipulator)?, scalars, color, length })
+    }
+}
+
+impl Wishes {
+    /// Whether a value of the points is a condition number.
+    pub fn asks_condition(&self) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|(_, column)| *column == Column::InverseCondition)
     }
 }
 
@@ -67,6 +81,7 @@ pub struct Cloud<'a> {
     manipulator: &'a Manipulator,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    length: f64,
     axes: [Named; 3],
     scalars: Vec<Named>,
     color: Named,
@@ -79,7 +94,13 @@ impl<'a> Cloud<'a> {
         let tallest = tallest(grid);
         let task = |number: usize| (grid.axes()[number].name.clone(), Column::Task(number));
         let color = wishes.color.unwrap_or_else(|| task(tallest));
+        let several = |number: &usize| grid.axes()[*number].count > 1;
+        let varying: Vec<usize> = (0..grid.axes().len()).filter(several).collect();
         let axes = wishes.axes.unwrap_or_else(|| {
+            if let [a, b] = varying[..] {
+                let flat = (0..grid.axes().len()).rfind(|number| !several(number));
+                return [task(a), task(b), task(flat.unwrap_or(tallest))];
+            }
             // Every pair of subspaces has at least three coordinates.
             let mut others = (0..grid.axes().len()).filter(|&number| number != tallest);
             let mut other = || others.next().unwrap_or(tallest);
@@ -90,7 +111,7 @@ impl<'a> Cloud<'a> {
             let known = axes.contains(&color) || is_field(&color.0);
             if known { vec![] } else { vec![color.clone()] }
         });
-        Self { manipulator, modes, limit, axes, scalars, color }
+        Self { manipulator, modes, limit, length: wishes.length, axes, scalars, color }
     }
 
     /// How often the grid is swept to record it.
@@ -117,6 +138,21 @@ impl<'a> Cloud<'a> {
         }
     }
 
+    /// Where a pose is in the cloud.
+    pub fn place(&self, pose: &[f64]) -> [f64; 3] {
+        let tip = || {
+            let task = self.manipulator.task();
+            task.displacement(pose) * self.manipulator.mechanism().platform
+        };
+        self.axes.each_ref().map(|(_, column)| match *column {
+            Column::Task(number) => pose[number],
+            Column::Tip(i) => tip()[i],
+            Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition => {
+                unreachable!("axes are task coordinates, or the platform's point")
+            }
+        })
+    }
+
     /// The values of a row, in the order of [`CloudLayout::columns`].
     pub fn columns(&self) -> Vec<Column> {
         let listed = || self.axes.iter().chain(&self.scalars);
@@ -140,6 +176,7 @@ impl<'a> Cloud<'a> {
             Column::Task(number) => Some([grid.axes()[number].min, grid.axes()[number].max]),
             Column::Imaginary(number) => Some(found.imaginary[number].unwrap_or_default()),
             Column::Actuated(number) => self.limits(number),
+            Column::InverseCondition => Some([0.0, 1.0]),
             Column::Tip(_) => None,
         };
         if let Some(range) = known {
@@ -209,9 +246,10 @@ fn column(manipulator: &Manipulator, name: &str, flag: &str) -> Result<Named, Fa
     (find(&task).map(Column::Task))
         .or_else(|| find(&imaginary).map(Column::Imaginary))
         .or_else(|| find(&actuated).map(Column::Actuated))
+        .or_else(|| (name == INVERSE_CONDITION).then_some(Column::InverseCondition))
         .map(|column| (name.to_owned(), column))
         .ok_or_else(|| {
-            let known = [task, imaginary, actuated].concat().join(", ");
+            let known = [task, imaginary, actuated, vec![INVERSE_CONDITION]].concat().join(", ");
             Failure::flag(flag, format!("{name:?} is none of {known}"))
         })
 }
@@ -266,7 +304,8 @@ enum Joints<'a> {
     Unused,
     One(Drives),
     Any(Box<(AllModes, Solution)>),
-    /// With a limit on the condition number, which decides on the mode.
+    /// With a limit on the condition number, which decides on the mode, or with a column that asks for
+    /// that number.
     Limited(Box<(Conditioned<'a>, Solution)>),
 }
 
@@ -274,7 +313,13 @@ impl<'a> Points<'a> {
     pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column]) -> Self {
         let manipulator = cloud.manipulator;
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
+        let condition = columns.contains(&Column::InverseCondition);
         let joints = match (cloud.modes, cloud.limit) {
+            _ if condition => {
+                let limit = cloud.limit.unwrap_or(ConditionLimit::none(cloud.length));
+                let conditioned = Conditioned::new(manipulator, limit);
+                Joints::Limited(Box::new((conditioned, manipulator.solution())))
+            }
             _ if !columns.iter().any(asked) => Joints::Unused,
             (Modes::One(_), _) => Joints::One(manipulator.drives()),
             (Modes::Any, Some(limit)) => {
@@ -348,8 +393,12 @@ impl<'a> Points<'a> {
                 (Column::Actuated(number), Joints::Limited(buffers)) => {
                     buffers.1.joints[manipulator.actuated()[number]]
                 }
-                (Column::Imaginary(_) | Column::Actuated(_), Joints::Unused) => {
-                    unreachable!("Points::new has buffers for joints that columns ask for")
+                (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
+                (
+                    Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition,
+                    Joints::Unused | Joints::One(_) | Joints::Any(_),
+                ) => {
+                    unreachable!("Points::new has buffers for what columns ask for")
                 }
             });
         }

@@ -12,6 +12,7 @@ mod failure;
 mod fk;
 mod ik;
 mod inspect;
+mod kind;
 mod lines;
 mod linkage;
 mod load;

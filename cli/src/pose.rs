@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use opm_core::joint::Quantity;
 use opm_core::mechanism::file::{AngleUnit, LengthUnit};
 use opm_core::task::TaskCoordinate;
-use opm_workspace::Axis;
+use opm_workspace::{Axis, Coordinate, Sections};
 use std::fmt;
 use std::str::FromStr;
 
@@ -219,12 +219,17 @@ impl FromStr for GridAxis {
 }
 
 impl GridAxis {
-    /// The axis in SI.
-    pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Axis, Failure> {
+    /// The axis in SI, of a grid of these sections.
+    pub fn resolve(&self, of: Sections, coordinates: &[Coordinate]) -> Result<Axis, Failure> {
         let axis = || {
-            let coordinate = &coordinates[find(&self.name, coordinates)?];
-            let (min, max) = (self.min.of(coordinate)?, self.max.of(coordinate)?);
-            Ok(Axis::new(&self.name, min, max, self.count))
+            let name = &self.name;
+            let found = coordinates.iter().find(|c| c.name == *name).ok_or_else(|| {
+                let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();
+                let (what, names) = (of.coordinate(), names.join(", "));
+                Misread(format!("no {what} {name:?}, expected one of {names}"))
+            })?;
+            let value = |number: Number| number.value_of(name, found.quantity);
+            Ok(Axis::new(name, value(self.min)?, value(self.max)?, self.count))
         };
         axis().map_err(|error: Misread| Failure::flag("--grid", error))
     }
@@ -299,7 +304,17 @@ mod tests {
 
     #[test]
     fn a_grid_axis_is_a_range_or_a_value() {
-        let axis = |text: &str| text.parse::<GridAxis>().unwrap().resolve(&coordinates());
+        let axis = |text: &str| {
+            let coordinates: Vec<Coordinate> = (coordinates().iter())
+                .map(|c| Coordinate {
+                    name: c.name.to_owned(),
+                    quantity: c.quantity,
+                    home: c.home,
+                    counts_turns: false,
+                })
+                .collect();
+            text.parse::<GridAxis>().unwrap().resolve(Sections::Whole, &coordinates)
+        };
         assert_eq!(axis("x=-10mm:10mm:21"), Ok(Axis::new("x", -0.01, 0.01, 21)));
         assert_eq!(axis("x=0:10mm:3"), Ok(Axis::new("x", 0.0, 0.01, 3)));
         assert_eq!(axis("xi=0.5"), Ok(Axis::fixed("xi", 0.5)));

@@ -2,6 +2,7 @@
 
 use crate::cloud::{Cloud, Points, Poses};
 use crate::failure::Failure;
+use crate::kind::{SetRecording, Study, pose_boundary};
 use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
@@ -16,6 +17,8 @@ pub const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
 /// More slices than this play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
 
+/// Points between two looks at whether somebody pressed Ctrl-C.
+const PORTION: u64 = 1 << 12;
 /// Opens a file for a recording before the work starts, so that a wrong path costs no time.
 pub fn create(path: &Path) -> Result<PartialFile, Failure> {
     if path == Path::new("-") {
@@ -55,6 +58,7 @@ impl Recorder {
         cloud: &Cloud<'_>,
         source: &Source<'_>,
         found: &Count,
+        study: Option<&Study>,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
         let Self { path, file } = self;
@@ -78,8 +82,13 @@ impl Recorder {
             other => other,
         };
 
-        let every = recorder.overview_every();
         let together = together(run.grid);
+        let lines = study
+            .and_then(|study| pose_boundary(run.grid, study, together, |pose| cloud.place(pose)));
+        if let Some(lines) = lines {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
         let mut number = 0;
         let mut overview = Points::new(cloud, &columns);
         source
@@ -114,6 +123,55 @@ impl Recorder {
         recorder.finish(&result(run, found)).map_err(failed)?;
         Ok(path)
     }
+
+    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
+    pub fn record_set(
+        self,
+        run: &Run<'_>,
+        set: &SetRecording<'_>,
+        found: &Count,
+        progress: &Progress,
+    ) -> Result<PathBuf, Failure> {
+        let Self { path, file } = self;
+        let failed = |error: RecordError| Failure::at(path.display(), &error);
+        let mut about = describe(run);
+        about.insert("poses".to_owned(), found.poses.to_string());
+        about.insert("set".to_owned(), set.set_axes());
+        let workspace = Workspace {
+            layout: set.layout(found),
+            mechanism_name: &run.loaded.file_name,
+            mechanism: run.loaded.text.as_bytes(),
+            run: about,
+            points: found.reachable,
+            slices: set.slices,
+        };
+        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        if let Some(lines) = set.boundary() {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
+        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+            false => Ok(()),
+            true => Err(Failure::Interrupted(format!(
+                "interrupted; what was recorded is in {}",
+                partial(&path).display()
+            ))),
+        };
+        let mut number = 0;
+        set.points(|_, row| {
+            going(number)?;
+            let wanted = number % every == 0;
+            number += 1;
+            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+        })?;
+        set.points(|slice, row| {
+            number += 1;
+            going(number)?;
+            recorder.push(slice, row).map_err(failed)
+        })?;
+        recorder.finish(&result(run, found)).map_err(failed)?;
+        Ok(path)
+    }
 }
 
 /// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
@@ -142,6 +200,7 @@ pub fn describe(run: &Run<'_>) -> Metadata {
         ("program", PROGRAM.to_owned()),
         ("mechanism", run.manipulator.mechanism().name.clone()),
         ("mechanism_file", run.loaded.file_name.clone()),
+        ("kind", run.kind.name()),
         ("mode", run.mode()),
         ("poses", run.grid.poses().to_string()),
     ]

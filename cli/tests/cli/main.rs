@@ -6,6 +6,7 @@ mod decompose;
 mod fk;
 mod ik;
 mod inspect;
+mod kind;
 mod linkage;
 mod plot;
 mod run;

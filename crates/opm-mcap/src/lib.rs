@@ -31,6 +31,7 @@ pub use file::{PartialFile, Sink};
 pub use flat::Flat;
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use scene::ClosedLine;
 pub use shard::{Shard, ShardRecorder};
 pub use trajectory::{Trajectory, TrajectoryRecorder};
 pub use workspace::{MAX_SLICES, Workspace, WorkspaceRecorder};

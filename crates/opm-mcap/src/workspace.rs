@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
 //! | `/workspace/slices` | one a slice, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/boundary` | `foxglove.SceneUpdate`, where the boundary is known: its closed lines, with the slice |
 //!
 //! A viewer shows the newest message of a topic. So the overview, which comes first, is always in
 //! view, and moving the playhead walks through the slices; a slice without points has its message
@@ -16,16 +17,20 @@
 
 use std::path::Path;
 
-use foxglove::messages::{PointCloud, Timestamp};
+use foxglove::Encode;
+use foxglove::messages::{PointCloud, SceneUpdate, Timestamp};
 
 use crate::cloud::CloudEncoder;
 use crate::log::{Log, Topic};
+use crate::scene::{ClosedLine, lines};
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
 /// Topic of the overview.
 pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
 /// Topic of the slices.
 pub const SLICES_TOPIC: &str = "/workspace/slices";
+/// Topic of the boundary.
+pub const BOUNDARY_TOPIC: &str = "/workspace/boundary";
 /// Time of the first message, in nanoseconds: one second. Not zero, which viewers take for unset.
 pub const START: u64 = 1_000_000_000;
 /// Time between slices, in nanoseconds.
@@ -98,6 +103,12 @@ impl Plan {
     }
 }
 
+/// Boundaries that are still to be written.
+struct Boundary {
+    topic: Topic,
+    left: std::vec::IntoIter<(u64, Vec<ClosedLine>)>,
+}
+
 /// The slice that points go to.
 #[derive(Debug, Clone, Copy)]
 struct Open {
@@ -118,6 +129,8 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     plan: Plan,
     overview: Topic,
     slices: Topic,
+    frame_id: String,
+    boundary: Option<Boundary>,
     /// None while the overview is being gathered.
     open: Option<Open>,
     pushed: u64,
@@ -152,12 +165,24 @@ impl<W: Sink> WorkspaceRecorder<W> {
         log.metadata("clouds", &describe(layout, &plan))?;
         let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
         let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
-        Ok(Self { log, encoder, plan, overview, slices, open: None, pushed: 0 })
+        let frame_id = layout.frame_id.clone();
+        let (boundary, open) = (None, None);
+        Ok(Self { log, encoder, plan, overview, slices, frame_id, boundary, open, pushed: 0 })
     }
 
     /// The k of the overview's every k-th point: points number 0, k, 2k, ... belong to it.
     pub fn overview_every(&self) -> u64 {
         self.plan.overview_every
+    }
+
+    /// Records the boundary, too, in the cloud's axes: closed lines, each with the number of the slice
+    /// that they are shown from, ascending. Before any points.
+    ///
+    /// # Errors
+    /// After the first slice, lines out of order or beyond the last slice, or a failed write.
+    pub fn boundary(&mut self, lines: Vec<(u64, Vec<ClosedLine>)>) -> Result<(), RecordError> {
+        let result = self.try_boundary(lines);
+        self.settle(result)
     }
 
     /// Adds points of the overview, as rows of [`CloudLayout::columns`].
@@ -204,6 +229,22 @@ impl<W: Sink> WorkspaceRecorder<W> {
             self.log.give_up();
         }
         result
+    }
+
+    fn try_boundary(&mut self, lines: Vec<(u64, Vec<ClosedLine>)>) -> Result<(), RecordError> {
+        if self.open.is_some() {
+            return Err(RecordError::OverviewClosed);
+        }
+        let mut first = 0;
+        for &(slice, _) in &lines {
+            if slice < first || slice >= self.plan.slices {
+                return Err(RecordError::Slice { slice, first, end: self.plan.slices });
+            }
+            first = slice + 1;
+        }
+        let topic = self.log.topic::<SceneUpdate>(BOUNDARY_TOPIC)?;
+        self.boundary = Some(Boundary { topic, left: lines.into_iter() });
+        Ok(())
     }
 
     fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
@@ -269,6 +310,17 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(open)
     }
 
+    /// Writes the boundary that goes with a slice, if there is one still to be written.
+    fn write_boundary(&mut self, slice: u64, time: u64) -> Result<(), RecordError> {
+        let Some(boundary) = &mut self.boundary else { return Ok(()) };
+        let Some(rings) = boundary.at(slice) else { return Ok(()) };
+        let mut message = Vec::new();
+        lines(&self.frame_id, stamp(time)?, &rings)
+            .encode(&mut message)
+            .map_err(|reason| RecordError::Layout(format!("the boundary: {reason}")))?;
+        self.log.message(&mut boundary.topic, time, &message)
+    }
+
     /// Writes the gathered points as the open slice's next message.
     fn write_part(&mut self, open: Open) -> Result<Open, RecordError> {
         const LIMIT: u64 = SLICE_STEP / PART_STEP;
@@ -277,9 +329,18 @@ impl<W: Sink> WorkspaceRecorder<W> {
             return Err(RecordError::SliceTooLarge { slice, limit: LIMIT });
         }
         let time = START + slice * SLICE_STEP + parts * PART_STEP;
+        self.write_boundary(slice, time)?;
         self.log.message(&mut self.slices, time, self.encoder.message(stamp(time)?)?)?;
         self.encoder.clear();
         Ok(*self.open.insert(Open { slice, parts: parts + 1 }))
+    }
+}
+
+impl Boundary {
+    /// The lines that are shown from this slice on, if they are others than before.
+    fn at(&mut self, slice: u64) -> Option<Vec<ClosedLine>> {
+        let next = self.left.as_slice().first()?;
+        (next.0 <= slice).then(|| self.left.next())?.map(|(_, lines)| lines)
     }
 }
 
