@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use opm_core::joint::Quantity;
 use opm_core::mechanism::file::{AngleUnit, LengthUnit};
 use opm_core::task::TaskCoordinate;
+use opm_workspace::measure::Over;
 use opm_workspace::{Axis, Coordinate, Sections};
 use std::fmt;
 use std::str::FromStr;
@@ -47,6 +48,14 @@ pub struct GridAxis {
     min: Number,
     max: Number,
     count: u64,
+}
+
+/// A range of one coordinate, or one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverAxis {
+    name: String,
+    min: Number,
+    max: Number,
 }
 
 /// A value of one task coordinate.
@@ -200,14 +209,7 @@ impl FromStr for GridAxis {
                 axis(value, value, 1)
             }
             [min, max, count] => {
-                let (min, max): (Number, Number) = (min.parse()?, max.parse()?);
-                // -10:10mm would run from minus ten metres.
-                let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
-                if (bare(min) && max.quantity.is_some()) || (min.quantity.is_some() && bare(max)) {
-                    return Err(Misread(format!(
-                        "{values:?} has a unit at one end only, expected one at both or none"
-                    )));
-                }
+                let [min, max] = ends(min, max)?;
                 let count = count.trim().parse().map_err(|_| {
                     Misread(format!("{count:?} is not a number of values, expected 1 or more"))
                 })?;
@@ -232,6 +234,48 @@ impl GridAxis {
             Ok(Axis::new(name, value(self.min)?, value(self.max)?, self.count))
         };
         axis().map_err(|error: Misread| Failure::flag("--grid", error))
+    }
+}
+
+/// The two ends of a range.
+fn ends(min: &str, max: &str) -> Result<[Number; 2], Misread> {
+    let (low, high): (Number, Number) = (min.parse()?, max.parse()?);
+    // -10:10mm would run from minus ten metres.
+    let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
+    if (bare(low) && high.quantity.is_some()) || (low.quantity.is_some() && bare(high)) {
+        let range = format!("{min}:{max}");
+        return Err(Misread(format!(
+            "{range:?} has a unit at one end only, expected one at both or none"
+        )));
+    }
+    Ok([low, high])
+}
+
+impl FromStr for OverAxis {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        const FORM: &str = "AXIS=MIN:MAX or AXIS=VALUE, for example x=-100mm:100mm";
+        let (name, values) = assignment(text, FORM)?;
+        let [min, max] = match *values.split(':').collect::<Vec<_>>() {
+            [value] => [value.parse()?; 2],
+            [min, max] => ends(min, max)?,
+            _ => return Err(Misread(format!("{text:?}, expected {FORM}"))),
+        };
+        Ok(Self { name: name.to_owned(), min, max })
+    }
+}
+
+impl OverAxis {
+    /// The range in SI, of one of these coordinates.
+    pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<Over, Misread> {
+        let known = coordinates.iter().find(|c| c.name == self.name);
+        // A name that is not known is for others to refuse.
+        let end = |number: Number| match known {
+            Some(c) => number.value_of(&c.name, c.quantity),
+            None => Ok(number.value),
+        };
+        Ok(Over::new(&*self.name, end(self.min)?, end(self.max)?))
     }
 }
 

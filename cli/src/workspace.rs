@@ -250,6 +250,7 @@ pub fn grid_flags(grid: &Grid) -> String {
     flags.join(" ")
 }
 
+/// A pool of so many threads, or of one a processor.
 pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
     builder.build().map_err(|error| Failure::at("threads", &error))

@@ -8,6 +8,7 @@ mod ik;
 mod inspect;
 mod kind;
 mod linkage;
+mod measure;
 mod plot;
 mod run;
 mod shard;
