@@ -10,6 +10,7 @@ fi
 : "${PEERS_PYTHON:?a Python with opm_kinematics, NumPy and numba}"
 export PEERS_PYTHON
 results=$("${CARGO:-cargo}" bench --quiet -p opm-benches -p opm-kinematics)
+from_python=$("$PEERS_PYTHON" benches/peers/inverse.py)
 
 cat <<END
 # Benchmarks
@@ -19,12 +20,12 @@ Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always -
 * Processor: ${processor:-unknown}, $(getconf _NPROCESSORS_ONLN) logical
 * System: $(uname -sm), $(rustc --version)
 
-What a table compares was timed in one run, turn and turn about; each number is a median over the rounds. On another
-machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, for NumPy and numba,
-\`benches/peers\`.
+What a table compares was timed in one run, turn and turn about; each number is a median over the rounds, of inverse
+kinematics from Python the best of them. On another machine the times differ, the ratios hardly. The code is in
+\`benches/benches\`, \`cli/benches\` and, for NumPy and numba, \`benches/peers\`.
 END
 # A blank line between paragraphs and tables; a table begins above its rule.
-printf '%s\n' "$results" | awk '
+printf '%s\n' "$results" "" "$from_python" | awk '
   NF { lines[++count] = $0 }
   END {
     for (i = 1; i <= count; i++) {

@@ -216,25 +216,7 @@ impl Manipulator {
         if mode == "all" {
             return self.inverse_all(py, &poses, threads);
         }
-        let mode = self.mode(mode)?;
-        let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
-        let mut tables = Tables::fill(
-            py,
-            poses.count,
-            widths,
-            threads,
-            || self.inner.solution(),
-            |solution, row, [joints, imaginary]| {
-                let reached = self.inner.inverse(poses.row(row), mode, solution);
-                if !reached.map_err(|error| error.to_string())? {
-                    return Ok([false; 2]);
-                }
-                joints.copy_from_slice(&solution.joints);
-                imaginary.copy_from_slice(&solution.imaginary);
-                Ok([true, solution.within_limits])
-            },
-        )?;
-        Solutions::new(py, &self.inner, Some(mode), &mut tables)
+        Solutions::find(py, &self.inner, &poses, self.mode(mode)?, threads)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -288,7 +270,7 @@ impl Manipulator {
     fn inverse_all(
         &self,
         py: Python<'_>,
-        poses: &Rows,
+        poses: &Rows<'_>,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
         let many = || {
@@ -322,11 +304,14 @@ impl Manipulator {
                 Ok([true, solution.within_limits])
             },
         )?;
-        Solutions::new(py, &self.inner, None, &mut tables)
+        Solutions::of_all_modes(py, &self.inner, poses.count, &mut tables)
     }
 
     /// An array of poses, checked.
-    pub fn poses(&self, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Rows> {
+    pub fn poses<'a>(
+        &self,
+        array: &'a PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<Rows<'a>> {
         let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
         Rows::new(array, "poses", &names)
     }

@@ -8,6 +8,7 @@ use numpy::{
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,17 +16,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const BLOCK: usize = 1024;
 
 /// An array from Python: rows of `names`.
-pub struct Rows {
-    values: Vec<f64>,
+pub struct Rows<'a> {
+    values: Cow<'a, [f64]>,
     pub count: usize,
     width: usize,
 }
 
-impl Rows {
-    /// Checks the number of columns. The interpreter's lock is let go while the rows are worked on, and
-    /// nobody may write to them meanwhile: so they are copied.
+impl<'a> Rows<'a> {
+    /// Checks the number of columns. What is float64 in C order already is used where it is: while rows
+    /// are worked on the interpreter's lock is let go, and nobody may write to them, as to those that NumPy
+    /// works on.
     pub fn new(
-        array: &PyArrayLike2<'_, f64, AllowTypeChange>,
+        array: &'a PyArrayLike2<'_, f64, AllowTypeChange>,
         what: &str,
         names: &[&str],
     ) -> PyResult<Self> {
@@ -34,7 +36,24 @@ impl Rows {
             let (expected, names) = (names.len(), names.join(", "));
             return Err(wrong(format!("{width} columns of {what}, expected {expected}: {names}")));
         }
-        Ok(Self { values: array.as_array().iter().copied().collect(), count, width })
+        let values = match array.as_slice() {
+            Ok(values) if array.is_c_contiguous() => Cow::Borrowed(values),
+            _ => {
+                // A slice of it, or an element, cannot be had where elements lie at odd addresses.
+                let aligned = array.is_aligned().then(|| array.as_any().clone());
+                let aligned = aligned.map_or_else(|| array.call_method0("copy"), Ok)?;
+                let aligned = aligned.cast_into::<PyArray2<f64>>()?.readonly();
+                let mut values = memory(count, width)?;
+                values.extend(aligned.as_array());
+                Cow::Owned(values)
+            }
+        };
+        Ok(Self { values, count, width })
+    }
+
+    /// All of them, one after the other.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     pub fn row(&self, number: usize) -> &[f64] {
@@ -52,11 +71,16 @@ pub struct Tables<const N: usize> {
 }
 
 /// Memory for a table, or Python's exception that there is none.
-fn table<T: Clone>(count: usize, width: usize, value: T) -> PyResult<Vec<T>> {
+fn memory<T>(count: usize, width: usize) -> PyResult<Vec<T>> {
     let mut table = Vec::new();
     let size = count.checked_mul(width).filter(|&size| table.try_reserve_exact(size).is_ok());
-    let size = size.ok_or_else(|| no_memory(format_args!("{count} rows of {width}")))?;
-    table.resize(size, value);
+    size.map(|_| table).ok_or_else(|| no_memory(format_args!("{count} rows of {width}")))
+}
+
+/// A table of one value.
+fn table<T: Clone>(count: usize, width: usize, value: T) -> PyResult<Vec<T>> {
+    let mut table = memory(count, width)?;
+    table.resize(count * width, value);
     Ok(table)
 }
 

@@ -1,13 +1,20 @@
 //! What inverse kinematics finds for many poses, as arrays.
 
-use crate::html;
-use crate::rows::Tables;
+use crate::error::failed;
+use crate::rows::{Rows, Tables};
+use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::manipulator::{Answers, Batch, Manipulator, Mode, RowError};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyEllipsis;
+use pyo3::types::{PyBool, PyEllipsis};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Poses that a thread solves between two looks at whether it is to stop.
+const PART: usize = 4096;
 
 /// Joint values of many poses, in one working mode or in all of them.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
@@ -34,41 +41,151 @@ pub struct Solutions {
 }
 
 impl Solutions {
-    /// From tables with a row a pose in one mode; or, without a mode, a row for each mode of each pose,
-    /// the modes of a pose together.
-    pub fn new(
+    /// Inverse kinematics of every pose in one mode, straight into arrays of NumPy. The result does not
+    /// depend on the number of threads.
+    pub fn find(
         py: Python<'_>,
         manipulator: &Manipulator,
-        mode: Option<Mode>,
+        poses: &Rows<'_>,
+        mode: Mode,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Self> {
+        let numpy = py.import("numpy")?;
+        let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
+        // Made by calls from Python, which raise where there is no memory.
+        let table = |width| -> PyResult<Bound<'_, PyArrayDyn<f64>>> {
+            Ok(numpy.call_method1("empty", ((poses.count, width),))?.cast_into()?)
+        };
+        let answers = || -> PyResult<Bound<'_, PyArrayDyn<bool>>> {
+            Ok(numpy.call_method1("zeros", (poses.count, py.get_type::<PyBool>()))?.cast_into()?)
+        };
+        let (joints, imaginary) = (table(widths[0])?, table(widths[1])?);
+        let (reachable, within_limits) = (answers()?, answers()?);
+        Part {
+            first: 0,
+            poses: poses.values(),
+            out: Answers {
+                joints: joints.readwrite().as_slice_mut()?,
+                imaginary: imaginary.readwrite().as_slice_mut()?,
+                reachable: reachable.readwrite().as_slice_mut()?,
+                within_limits: within_limits.readwrite().as_slice_mut()?,
+            },
+        }
+        .solve(py, manipulator, mode, threads)?;
+        let tables = [joints, imaginary];
+        Ok(Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits]))
+    }
+
+    /// From tables with a row for each mode of each pose, the modes of a pose together.
+    pub fn of_all_modes(
+        py: Python<'_>,
+        manipulator: &Manipulator,
+        rows: usize,
         tables: &mut Tables<2>,
     ) -> PyResult<Self> {
-        let modes: Vec<String> = match mode {
-            Some(mode) => vec![manipulator.format_mode(mode)],
-            None => manipulator.modes().map(|mode| manipulator.format_mode(mode)).collect(),
-        };
-        let answers = std::mem::take(&mut tables.answers);
-        let rows = answers[0].len() / modes.len();
-        let axis = mode.is_none().then_some(modes.len());
-        let shape = |last: Option<usize>| -> Vec<usize> {
-            [Some(rows), axis, last].into_iter().flatten().collect()
-        };
+        let modes = manipulator.modes().count();
         let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
-        let [joints, imaginary] = widths.map(|width| shape(Some(width)));
-        let [reachable, within_limits] =
-            answers.map(|answers| answers.into_pyarray(py).reshape(shape(None)));
-        Ok(Self {
-            joints: tables.take(py, 0)?.reshape(joints)?.unbind(),
-            imaginary: tables.take(py, 1)?.reshape(imaginary)?.unbind(),
-            rows,
-            reachable: reachable?.unbind(),
-            within_limits: within_limits?.unbind(),
-            units: units(manipulator),
+        let [joints, imaginary] = widths.map(|width| vec![rows, modes, width]);
+        let numbers =
+            [tables.take(py, 0)?.reshape(joints)?, tables.take(py, 1)?.reshape(imaginary)?];
+        let [reachable, within_limits] = std::mem::take(&mut tables.answers)
+            .map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
+        Ok(Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?]))
+    }
+
+    /// The arrays, and what their axes are called.
+    fn new(
+        manipulator: &Manipulator,
+        mode: Option<Mode>,
+        rows: usize,
+        [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
+        [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
+    ) -> Self {
+        let format = |mode| manipulator.format_mode(mode);
+        Self {
+            joints: joints.unbind(),
+            imaginary: imaginary.unbind(),
+            reachable: reachable.unbind(),
+            within_limits: within_limits.unbind(),
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
-            mode: if axis.is_some() { "all".to_owned() } else { modes[0].clone() },
-            modes,
-        })
+            units: units(manipulator),
+            mode: mode.map_or_else(|| "all".to_owned(), format),
+            modes: match mode {
+                Some(mode) => vec![format(mode)],
+                None => manipulator.modes().map(format).collect(),
+            },
+            rows,
+        }
     }
+}
+
+/// Some of the poses, and where their answers go.
+struct Part<'a> {
+    /// Number of the first.
+    first: usize,
+    poses: &'a [f64],
+    out: Answers<'a>,
+}
+
+impl Part<'_> {
+    fn solve(
+        self,
+        py: Python<'_>,
+        manipulator: &Manipulator,
+        mode: Mode,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<()> {
+        let stop = AtomicBool::new(false);
+        let work = |batch: &mut Batch, Part { first, poses, mut out }: Part<'_>| {
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let solved = manipulator.inverse_many(poses, mode, batch, &mut out);
+            solved.err().map(|RowError { row, error }| RowError { row: first + row, error })
+        };
+        // Of several wrong poses, the first.
+        let wrong = if self.out.reachable.len() <= PART {
+            work(&mut manipulator.batch(), self)
+        } else {
+            let parts = self.parts(manipulator);
+            let all = || {
+                let parts = parts.into_par_iter().map_init(|| manipulator.batch(), work);
+                parts.flatten().min_by_key(|error| error.row)
+            };
+            interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
+        };
+        wrong.map_or(Ok(()), |error| Err(failed(&error)))
+    }
+
+    fn parts(self, manipulator: &Manipulator) -> Vec<Self> {
+        let [width, joints, imaginary] = [
+            manipulator.task_coordinates().len(),
+            manipulator.coordinates().len(),
+            manipulator.imaginary().len(),
+        ];
+        let Self { mut first, poses, mut out } = self;
+        let mut parts = Vec::with_capacity(out.reachable.len().div_ceil(PART));
+        for poses in poses.chunks(PART * width) {
+            let rows = poses.len() / width;
+            let answers = Answers {
+                joints: split(&mut out.joints, rows * joints),
+                imaginary: split(&mut out.imaginary, rows * imaginary),
+                reachable: split(&mut out.reachable, rows),
+                within_limits: split(&mut out.within_limits, rows),
+            };
+            parts.push(Self { first, poses, out: answers });
+            first += rows;
+        }
+        parts
+    }
+}
+
+/// Takes the first elements of a slice away.
+fn split<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (taken, left) = std::mem::take(rest).split_at_mut(count);
+    *rest = left;
+    taken
 }
 
 /// The units of all joints and imaginary joints.

@@ -132,18 +132,21 @@ impl Manipulator {
         let mode = self.mode(mode)?;
         let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
         let poses = self.poses(&poses)?;
-        let per_pose = |array: &Array2<'py>, what: &str| {
-            let rows = Rows::new(array, what, &names)?;
+        let per_pose = |rows: &Rows<'_>, what: &str| {
             // One row is for all poses.
             if rows.count != poses.count && rows.count != 1 {
                 let (given, expected) = (rows.count, poses.count);
                 return Err(wrong(format!("{given} rows of {what}, expected {expected}, or one")));
             }
-            Ok(rows)
+            Ok(())
         };
-        let rates = per_pose(&rates, "rates")?;
-        let accelerations =
-            accelerations.map(|array| per_pose(&array, "accelerations")).transpose()?;
+        let rates = Rows::new(&rates, "rates", &names)?;
+        per_pose(&rates, "rates")?;
+        let accelerations = accelerations
+            .as_ref()
+            .map(|array| Rows::new(array, "accelerations", &names))
+            .transpose()?;
+        accelerations.iter().try_for_each(|rows| per_pose(rows, "accelerations"))?;
         let none = vec![0.0; names.len()];
         let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
         let mut tables = Tables::fill(
@@ -156,7 +159,7 @@ impl Manipulator {
                 if !self.solve(poses.row(row), mode, at)? {
                     return Ok([false; 2]);
                 }
-                let of = |rows: &Rows| row.min(rows.count - 1);
+                let of = |rows: &Rows<'_>| row.min(rows.count - 1);
                 let rates = rates.row(of(&rates));
                 let accelerations = accelerations.as_ref().map_or(&none[..], |a| a.row(of(a)));
                 let regular = self.inner.velocity(at, rates, accelerations, motion);

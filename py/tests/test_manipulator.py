@@ -1,6 +1,11 @@
 """Manipulators from Python, held against formulas written here in NumPy and against themselves."""
 
+import os
 import pickle
+import signal
+import subprocess
+import sys
+import threading
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
@@ -90,6 +95,91 @@ def test_inverse_is_what_the_formulas_say(manipulator, poses):
     assert np.isnan(solutions.joints[~inside]).all()
 
 
+def test_passive_joints_close_the_legs(manipulator, poses):
+    """By the products of rotations and of plane displacements that define the joints."""
+    solutions = manipulator.inverse(poses)
+    assert 0.2 < solutions.reachable.mean() < 0.95
+    inside = solutions.reachable
+    joint = dict(zip(solutions.joint_names, solutions.joints[inside].T, strict=True))
+    x, y, *angles = poses[inside].T
+    point, r = x + 1j * y, rotation(*angles)
+    zero = np.zeros(len(x))
+    for leg, (eta, alpha) in enumerate(zip(ETA, DIRECTION, strict=True), 1):
+        s, phi_1, phi_2, theta_2, theta_3 = (joint[f"{name}{leg}"] for name in ("S", "phi1", "phi2", "theta2", "theta3"))
+        theta_1 = solutions.imaginary[inside, leg - 1]
+        # R Rz(eta) Ry(beta) = Rz(theta_1) Rx(alpha_1) Rz(theta_2) Rx(alpha_2) Rz(theta_3), with Rx(a) = Rz(-pi/2) Ry(a) Rz(pi/2).
+        arcs = rotation(theta_1 - np.pi / 2, zero + ALPHA_1, theta_2) @ rotation(zero, zero + ALPHA_2, theta_3 + np.pi / 2)
+        assert np.abs(r @ rotation(zero + eta, zero + BETA, zero) - arcs).max() < 1e-7  # as near as arccos tells at the rim
+        assert np.median(np.abs(r @ rotation(zero + eta, zero + BETA, zero) - arcs)) < 1e-15
+        # The slider, link a1 and link a2 end at P.
+        along, link = np.exp(1j * alpha), np.exp(1j * (alpha + np.pi / 2 + phi_1))
+        assert np.abs((H + 1j * s) * along + A1 * link - A2 * np.exp(1j * theta_1) - point).max() < 1e-13
+        assert np.abs(link * np.exp(1j * phi_2) - np.exp(1j * theta_1)).max() < 1e-14
+    # The arm turns what it carries from where it is at home; the ball, a rotation vector, makes up for that.
+    turned = joint["phi14"] + joint["phi24"] - manipulator.inverse([manipulator.home]).joints[0, [15, 16]].sum()
+    vector = np.stack([joint[f"s4.{axis}"] for axis in "xyz"], axis=1)
+    angle = np.linalg.norm(vector, axis=1)[:, None, None]
+    assert angle.max() <= np.pi + 1e-15
+    axes = vector[:, :, None] / angle
+    cross = np.cross(axes.transpose(0, 2, 1), np.eye(3)).transpose(0, 2, 1)
+    ball = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    assert np.abs(rotation(turned, zero, zero) @ ball - r).max() < 1e-13
+
+
+def test_what_comes_in_and_goes_out(manipulator, poses):
+    expected = manipulator.inverse(poses)
+    for table in (expected.joints, expected.imaginary):
+        assert table.dtype == np.float64 and table.flags.c_contiguous and table.flags.writeable and table.base is None
+    for same in (poses[:, ::-1][:, ::-1], np.repeat(poses, 2, axis=0)[::2], poses.astype(">f8"), poses.astype(object)):
+        np.testing.assert_array_equal(manipulator.inverse(same).joints, expected.joints)
+    single = poses.astype(np.float32)
+    np.testing.assert_array_equal(manipulator.inverse(single).joints, manipulator.inverse(single.astype(float)).joints)
+    whole = np.zeros((3, 5), int)
+    np.testing.assert_array_equal(manipulator.inverse(whole).joints, manipulator.inverse(whole.astype(float)).joints)
+    none = manipulator.inverse(np.zeros((0, 5)))
+    assert none.joints.shape == (0, 20) and none.imaginary.shape == (0, 3) and none.reachable.shape == (0,)
+    unaligned = np.frombuffer(b"." + poses.tobytes(), np.float64, poses.size, 1).reshape(poses.shape)
+    np.testing.assert_array_equal(manipulator.inverse(unaligned).joints, expected.joints)
+    read_only = poses.copy()
+    read_only.flags.writeable = False
+    np.testing.assert_array_equal(manipulator.inverse(read_only).joints, expected.joints)
+
+
+GROWTH = """
+import resource, sys
+import numpy as np
+import opm_kinematics as opm
+
+manipulator = opm.examples.load("plano-spherical-5dof")
+poses = np.zeros((400_000, 5), order=sys.argv[1])
+poses[:] = np.linspace(-0.1, 0.1, 5)
+manipulator.inverse(poses[:5000], threads=1)
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+found = manipulator.inverse(poses, threads=1)
+assert found.reachable.all()
+written = found.joints.nbytes + found.imaginary.nbytes + found.reachable.nbytes + found.within_limits.nbytes
+print(1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) - written, poses.nbytes)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss is in another unit")
+def test_poses_in_c_order_are_not_copied(manipulator):
+    """By the most memory that a process ever held: what it grew beyond the answers."""
+    for order, copies in [("C", 0), ("F", 1)]:
+        run = subprocess.run([sys.executable, "-c", GROWTH, order], capture_output=True, text=True, check=True)
+        grown, size = map(int, run.stdout.split())
+        assert abs(grown - copies * size) < size / 2, (order, grown, size)
+
+
+def test_ctrl_c_stops_it(manipulator):
+    poses = np.zeros((2_000_000, 5))
+    poses[:, 3] = 0.1
+    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        while True:
+            manipulator.inverse(poses, threads=1)
+
+
 def test_threads_and_memory_orders_do_not_matter(manipulator, poses):
     expected = manipulator.inverse(poses, threads=1)
     for same in [
@@ -115,6 +205,10 @@ def test_wrong_input_is_told(manipulator, tmp_path):
         manipulator.inverse(np.zeros((2, 3)))
     with pytest.raises(opm.OpmError, match="xi is NaN"):
         manipulator.inverse([[0, 0, 0, np.nan, 0]])
+    many = np.zeros((20_000, 5))
+    many[[7_777, 19_999], 3] = np.nan
+    with pytest.raises(opm.OpmError, match="pose 7777: xi is NaN"):
+        manipulator.inverse(many, threads=3)
     with pytest.raises(opm.OpmError, match="sign"):
         manipulator.inverse([manipulator.home], mode="+")
     with pytest.raises(opm.OpmError, match="no such example"):

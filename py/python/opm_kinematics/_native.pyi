@@ -281,7 +281,8 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is.
+            A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is, and must not be
+            written to meanwhile; anything else is converted, with one copy.
         mode : str
             ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
             gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
@@ -297,7 +298,8 @@ class Manipulator:
         Raises
         ------
         OpmError
-            Columns that are not the task coordinates, a number that is not finite, an unknown mode.
+            Columns that are not the task coordinates, a number that is not finite (of which pose, counted from zero), an unknown
+            mode.
         """
 
     def jacobian(
