@@ -7,17 +7,20 @@ use crate::manipulator::Manipulator;
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
 use opm_core::manipulator as core;
 use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A grid of poses, swept.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
+    owner: Py<Manipulator>,
     manipulator: Arc<core::Manipulator>,
     grid: Grid,
     modes: Modes,
@@ -33,13 +36,20 @@ enum Range {
     Several((f64, f64, u64)),
 }
 
+/// What x, y and z of a cloud are: three task coordinates, or `tip`.
+#[derive(FromPyObject)]
+enum CloudAxes {
+    One(String),
+    Several(Vec<String>),
+}
+
 /// Sweeps a grid: `sweep(m, x=(min, max, count), y=value)`. A coordinate that is not given stays at
 /// home.
 #[pyfunction]
 #[pyo3(signature = (manipulator, /, *, mode = "home", threads = None, **axes))]
 pub fn sweep(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    manipulator: &Bound<'_, Manipulator>,
     mode: &str,
     threads: Option<NonZeroUsize>,
     axes: Option<BTreeMap<String, Bound<'_, PyAny>>>,
@@ -53,6 +63,8 @@ pub fn sweep(
                 range.repr()?
             ))),
         });
+    let owner = manipulator.clone().unbind();
+    let manipulator = manipulator.get();
     let inner = Arc::clone(&manipulator.inner);
     let grid = Grid::new(&inner, axes.collect::<PyResult<_>>()?).map_err(|e| failed(&e))?;
     let modes = match mode {
@@ -63,7 +75,7 @@ pub fn sweep(
     let swept = opm_workspace::Sweep::new(&inner, &grid, modes);
     let count = interrupt::run(py, threads, || swept.count(&progress), || progress.cancel())?;
     let count = count.map_err(|error| failed(&error))?;
-    Ok(Sweep { manipulator: inner, grid, modes, mode: mode.to_owned(), threads, count })
+    Ok(Sweep { owner, manipulator: inner, grid, modes, mode: mode.to_owned(), threads, count })
 }
 
 #[pymethods]
@@ -157,6 +169,36 @@ impl Sweep {
             |made| all.extend(made),
         )?;
         all.into_pyarray(py).reshape([count, width])
+    }
+
+    /// Records the points, as `opm workspace -o` does: the same bytes.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write_mcap(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        axes: Option<CloudAxes>,
+        scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        let owner = self.owner.get();
+        let name = owner.file_name();
+        let swept = Swept {
+            mechanism: Attached { name: &name, text: owner.text() },
+            manipulator: &self.manipulator,
+            grid: &self.grid,
+            modes: self.modes,
+            found: &self.count,
+        };
+        let axes = match axes {
+            None => Vec::new(),
+            Some(CloudAxes::One(name)) => vec![name],
+            Some(CloudAxes::Several(names)) => names,
+        };
+        let shown = Shown { axes, scalars, color };
+        let progress = Progress::default();
+        let work = || record_sweep(&swept, shown, &path, &progress);
+        interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -92,3 +94,33 @@ def test_other_threads_go_on_during_a_sweep(manipulator):
         done.set()
         ticker.join()
     assert len(ticks) > 3
+
+
+@pytest.mark.parametrize(
+    ("mode", "shown"),
+    [("home", {}), ("any", {"axes": ["x", "y", "psi"], "scalars": ["theta11", "S1"], "color": "theta12"}), ("home", {"axes": "tip"})],
+)
+def test_a_recording_is_that_of_the_command_line(manipulator, tmp_path, mode, shown):
+    swept = opm.sweep(manipulator, mode=mode, **GRID)
+    command = [sys.executable, "-m", "opm_kinematics", "workspace", "plano-spherical-5dof", "--mode", mode, "--quiet"]
+    for name, range_ in GRID.items():
+        command += ["--grid", f"{name}=" + (":".join(map(str, range_)) if isinstance(range_, tuple) else str(range_))]
+    for name, value in shown.items():
+        command += [f"--{name}", value if isinstance(value, str) else ",".join(value)]
+    subprocess.run([*command, "-o", tmp_path / "a.mcap"], capture_output=True, check=True)
+    swept.write_mcap(tmp_path / "b.mcap", **shown)
+    assert (tmp_path / "a.mcap").read_bytes() == (tmp_path / "b.mcap").read_bytes()
+
+
+def test_wrong_recordings_are_told(manipulator, tmp_path):
+    swept = opm.sweep(manipulator, **GRID)
+    for options, message in [
+        ({"axes": ["x", "y"]}, "^axes: .*expected three different task coordinates"),
+        ({"scalars": ["w"]}, "^scalars: .*none of"),
+        ({"color": "w"}, "^color: .*none of"),
+    ]:
+        with pytest.raises(opm.OpmError, match=message):
+            swept.write_mcap(tmp_path / "a.mcap", **options)
+    with pytest.raises(opm.OpmError, match="No such file"):
+        swept.write_mcap(tmp_path / "none" / "a.mcap")
+    assert list(tmp_path.iterdir()) == []

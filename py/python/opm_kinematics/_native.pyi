@@ -516,6 +516,32 @@ class Sweep:
         """``"m"`` or ``"rad"`` of every task coordinate, by name."""
     def mask(self) -> NDArray[np.bool_]:
         """Which poses are reachable: an axis a task coordinate, as many values as the grid has."""
+    def write_mcap(
+        self,
+        path: str | PathLike[str],
+        *,
+        axes: Sequence[str] | None = None,
+        scalars: Sequence[str] | None = None,
+        color: str | None = None,
+    ) -> None:
+        """Record the points as ``opm workspace -o`` does, byte for byte: for Foxglove, Lichtblick and Rerun.
+
+        Parameters
+        ----------
+        path : path
+            The file appears when it is whole.
+        axes : sequence of three str, or "tip", optional
+            The task coordinates that are x, y and z of the cloud, or the platform's point.
+        scalars : sequence of str, optional
+            Values stored with every point: task coordinates, imaginary joints, actuated joints.
+        color : str, optional
+            The one of them that the colour shows.
+
+        Raises
+        ------
+        OpmError
+            A name that is none, a file that cannot be written.
+        """
     def points(self) -> NDArray[np.float64]:
         """(count, d): the reachable poses in the order of the grid, the first coordinate fastest."""
 
@@ -616,6 +642,19 @@ class Trajectory:
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
+    def write_mcap(self, path: str | PathLike[str]) -> None:
+        """Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
+
+        Parameters
+        ----------
+        path : path
+            The file appears when it is whole.
+
+        Raises
+        ------
+        OpmError
+            A file that cannot be written.
+        """
 
 @final
 class Violation:
@@ -675,7 +714,8 @@ def trajectory(
     manipulator : Manipulator
     motion : path, str or (w, d) array_like
         A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
-        coordinate a column, which a natural cubic spline goes through.
+        coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
+        waypoint before, as those of a table are.
     times : (w,) sequence of float, optional
         When the waypoints are, seconds, increasing; three at least.
     rate : float, optional
