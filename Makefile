@@ -11,7 +11,7 @@ PEERS_VENV := target/venv-peers
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help test lint test-rust test-python bench figures python
+.PHONY: help test lint test-rust test-python bench guard guard-store figures python
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,9 +33,16 @@ test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's re
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
 	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
-	CARGO="$(CARGO)" PEERS_PYTHON=$(PEERS_VENV)/bin/python benches/report.sh > target/BENCHMARKS.md
+	CARGO="$(CARGO)" PEERS_PYTHON="$(CURDIR)/$(PEERS_VENV)/bin/python" benches/report.sh > target/BENCHMARKS.md
 	mv target/BENCHMARKS.md BENCHMARKS.md
 	cat BENCHMARKS.md
+
+# Instructions, not seconds: benches/examples/guard.rs says how. Release code, as it is measured.
+guard: ## Check that nothing takes more instructions than are stored; needs valgrind
+	$(CARGO) run --quiet --release -p opm-benches --example guard
+
+guard-store: ## Store the instructions that are taken now, for make guard to compare with
+	$(CARGO) run --quiet --release -p opm-benches --example guard -- --store
 
 figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 	$(FIGURES_VENV)/bin/python docs/figures/make_figures.py

@@ -7,8 +7,9 @@ if [ -r /proc/cpuinfo ]; then
 else
   processor=$(sysctl -n machdep.cpu.brand_string 2>/dev/null || true)
 fi
+: "${PEERS_PYTHON:?a Python with opm_kinematics, NumPy and numba}"
+export PEERS_PYTHON
 results=$("${CARGO:-cargo}" bench --quiet -p opm-benches -p opm-kinematics)
-peers=$("${PEERS_PYTHON:?a Python with opm_kinematics, NumPy and numba}" benches/peers/sweep.py)
 
 cat <<END
 # Benchmarks
@@ -19,11 +20,11 @@ Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always -
 * System: $(uname -sm), $(rustc --version)
 
 What a table compares was timed in one run, turn and turn about; each number is a median over the rounds. On another
-machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, what compares with
-NumPy and numba, \`benches/peers\`: there opm is called from Python.
+machine the times differ, the ratios hardly. The code is in \`benches/benches\`, \`cli/benches\` and, for NumPy and numba,
+\`benches/peers\`.
 END
 # A blank line between paragraphs and tables; a table begins above its rule.
-printf '%s\n' "$results" "$peers" | awk '
+printf '%s\n' "$results" | awk '
   NF { lines[++count] = $0 }
   END {
     for (i = 1; i <= count; i++) {

@@ -1,63 +1,193 @@
-//! Sweeps of the paper's 5-DoF manipulator against one inverse-kinematics call per pose.
+//! Sweeps of the paper's 5-DoF manipulator against what counts the same poses otherwise, and against what the
+//! machine could do at most.
+//!
+//! `PEERS_PYTHON` names a Python with NumPy, numba and `opm_kinematics`, which `benches/peers/sweep.py` compares
+//! with; without it the table lacks these.
 
-use opm_benches::{Contender, compare, example};
-use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
-use std::hint::black_box;
+use nalgebra::Complex;
+use opm_benches::peers::Peers;
+use opm_benches::{
+    Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_passive_angles,
+};
+use opm_core::chain::region::{Convex, Region};
+use opm_core::manipulator::{Follow, Manipulator};
+use opm_workspace::{Grid, Modes, Progress, Sweep};
+use rayon::ThreadPool;
+
+/// What the tables call them, and what the script does.
+const PEERS: &[(&str, &str)] = &[
+    ("opm from Python, one thread", "opm-1"),
+    ("opm from Python, two threads", "opm-2"),
+    ("numba, factorised", "numba-factorised"),
+    ("NumPy, factorised", "numpy-factorised"),
+    ("NumPy, pose by pose", "numpy-per-pose"),
+];
 
 fn main() {
-    let manipulator = example("plano-spherical-5dof");
-    let mode = manipulator.home_mode();
-    let grid = |n: u64, orientations: u64| {
-        let axes = vec![
-            Axis::new("x", -0.15, 0.15, n),
-            Axis::new("y", -0.15, 0.15, n),
-            Axis::new("zeta", -0.4, 0.4, orientations),
-            Axis::new("xi", -0.4, 0.4, orientations),
-            Axis::new("psi", -0.4, 0.4, orientations),
-        ];
-        Grid::new(&manipulator, axes).expect("a grid")
-    };
-    let (small, large, long) = (grid(64, 5), grid(64, 25), grid(256, 12));
-    let pool = |threads| {
+    let pools = [1, 2].map(|threads| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool")
-    };
-    let (one, two) = (pool(1), pool(2));
-    let mut drives = manipulator.drives();
-    let count = |grid: &Grid, pool: &rayon::ThreadPool| {
-        let sweep = Sweep::new(&manipulator, grid, Modes::One(mode));
-        pool.install(|| sweep.count(&Progress::default()).expect("not cancelled").reachable)
-    };
-    let mut per_pose = || {
-        let mut reachable = 0;
-        for index in 0..small.poses() {
-            let pose = small.pose(index);
-            let reached = manipulator.inverse_drives(&pose, mode, &mut drives);
-            reachable += u64::from(reached.expect("a finite pose") && drives.within_limits);
-        }
-        reachable
-    };
-    let expected = per_pose();
-    assert_eq!(expected, count(&small, &one), "the sweep counts what inverse kinematics counts");
-    assert_eq!(count(&large, &one), count(&large, &two), "threads do not matter");
-    println!("{} of {} poses reachable", expected, small.poses());
-    let timings = compare(vec![
-        Contender::new("inverse kinematics per pose, one thread", small.poses(), || {
-            black_box(per_pose());
-        }),
-        Contender::new("sweep, 64 poses a row, one thread", large.poses(), || {
-            black_box(count(&large, &one));
-        }),
-        Contender::new("sweep, 64 poses a row, two threads", large.poses(), || {
-            black_box(count(&large, &two));
-        }),
-        Contender::new("sweep, 256 poses a row, one thread", long.poses(), || {
-            black_box(count(&long, &one));
-        }),
-    ]);
-    println!("| sweep, 5 DoF | million poses a second | times inverse kinematics per pose |");
-    println!("|---|---:|---:|");
-    for t in &timings {
-        println!("| {} | {:.1} | {:.1} |", t.name, 1e-6 / t.seconds, 1.0 / t.ratio);
+    });
+    let manipulator = example("plano-spherical-5dof");
+    let peers = Peers::start("peers/sweep.py");
+    let sizes = [[64, 13], [256, 5]];
+    for size in sizes {
+        table(&manipulator, size, &pools, peers.as_ref());
     }
-    println!("two threads: {:.2} times one", timings[1].seconds / timings[2].seconds);
+    if peers.is_none() {
+        println!("PEERS_PYTHON names no Python with NumPy and numba to compare with.");
+    }
+    let limited = with_limits_on_passive_angles(&manipulator);
+    for size in sizes {
+        table_of_limits(&limited, size, &pools);
+    }
+}
+
+fn by_rows(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> u64 {
+    let sweep = Sweep::new(manipulator, grid, Modes::One(manipulator.home_mode()));
+    pool.install(|| sweep.count(&Progress::default()).expect("not cancelled").reachable)
+}
+
+fn per_pose(manipulator: &Manipulator, grid: &Grid) -> u64 {
+    let (mode, mut drives) = (manipulator.home_mode(), manipulator.drives());
+    let mut pose = [0.0; 5];
+    let reached = (0..grid.poses()).filter(|&index| {
+        take(grid, index, &mut pose);
+        let reached = manipulator.inverse_drives(&pose, mode, &mut drives);
+        reached.expect("a finite pose") && drives.within_limits
+    });
+    reached.count() as u64
+}
+
+/// The upper section once an orientation, then pose by pose.
+fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
+    let (task, in_slice) = (manipulator.task(), grid.poses() / grid.slices());
+    let mut pose = [0.0; 5];
+    let mut count = 0;
+    for slice in 0..grid.slices() {
+        let Some(ways) = ways(manipulator, grid, slice) else { continue };
+        for index in slice * in_slice..(slice + 1) * in_slice {
+            take(grid, index, &mut pose);
+            let v = task.lower(&pose[..grid.lower()]);
+            count += u64::from(ways.iter().all(|way| manipulator.follows(way, &v)));
+        }
+    }
+    count
+}
+
+/// How each leg follows in a slice, in the home mode; `None` where one does not.
+fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<Follow>> {
+    let mut pose = [0.0; 5];
+    take(grid, slice * (grid.poses() / grid.slices()), &mut pose);
+    let b = manipulator.task().upper(&pose[grid.lower()..]);
+    let mut ways = Vec::new();
+    for leg in 0..manipulator.legs() {
+        manipulator.follow(leg, &b, Some(manipulator.home_mode()), &mut ways);
+    }
+    (ways.len() == manipulator.legs()).then_some(ways)
+}
+
+/// A pose without the allocation of [`Grid::pose`].
+fn take(grid: &Grid, mut index: u64, pose: &mut [f64; 5]) {
+    for (value, axis) in pose.iter_mut().zip(grid.axes()) {
+        *value = axis.value(index % axis.count);
+        index /= axis.count;
+    }
+}
+
+/// A way of counting a grid, held to what it must count.
+fn contender<'a>(
+    name: &'static str,
+    grid: &Grid,
+    expected: u64,
+    count: impl Fn() -> u64 + 'a,
+) -> Contender<'a> {
+    let run = move || assert_eq!(count(), expected, "{name}: all count the same poses");
+    Contender::new(name, grid.poses(), run)
+}
+
+fn by_opm<'a>(
+    manipulator: &'a Manipulator,
+    grid: &'a Grid,
+    expected: u64,
+    [one, two]: [&'a ThreadPool; 2],
+) -> Vec<Contender<'a>> {
+    vec![
+        contender("opm, rows, one thread", grid, expected, move || by_rows(manipulator, grid, one)),
+        contender("opm, rows, two threads", grid, expected, move || {
+            by_rows(manipulator, grid, two)
+        }),
+        contender("opm, factorised, pose by pose", grid, expected, || {
+            factorised(manipulator, grid)
+        }),
+    ]
+}
+
+/// All ways of counting one grid, and how far the rows are from what the machine can do.
+fn table(
+    manipulator: &Manipulator,
+    [points, orientations]: [u64; 2],
+    [one, two]: &[ThreadPool; 2],
+    peers: Option<&Peers>,
+) {
+    let grid = &sweep_grid(manipulator, [points, orientations]);
+    let expected = by_rows(manipulator, grid, one);
+    let mut contenders = by_opm(manipulator, grid, expected, [one, two]);
+    contenders.push(contender("opm, inverse kinematics per pose", grid, expected, || {
+        per_pose(manipulator, grid)
+    }));
+    if let Some(peers) = peers {
+        for (name, short) in PEERS {
+            let question = format!("{short} {points} {orientations}");
+            contenders.push(contender(name, grid, expected, move || peers.ask(&question)));
+        }
+    }
+    contenders.push(Contender::new("", square_roots::EACH, square_roots::take));
+    let mut timings = compare(contenders);
+    let roots = timings.pop().expect("the machine's own rate").seconds.recip();
+    print_table(&format!("sweep, {points} poses a row"), &timings);
+    let rows = 1.0 / (timings[0].seconds * points as f64);
+    let each = roots_a_row(manipulator, grid);
+    println!(
+        "Each counts the same {expected} of {} poses. Two threads: {:.2} times one. The machine's limit: a \
+         row takes {each} square roots, and {:.1} million rows a second so {:.0} million; one thread \
+         that does nothing else takes {:.0} million a second (vectorised for {}): {:.0} % of the limit.",
+        grid.poses(),
+        timings[0].seconds / timings[1].seconds,
+        rows * 1e-6,
+        rows * 1e-6 * each as f64,
+        roots * 1e-6,
+        square_roots::instructions(),
+        100.0 * rows * each as f64 / roots,
+    );
+}
+
+/// With limits on angles a leg leaves no region of the plane, and rows are decided in pieces.
+fn table_of_limits(manipulator: &Manipulator, size: [u64; 2], [one, two]: &[ThreadPool; 2]) {
+    let grid = &sweep_grid(manipulator, size);
+    let expected = by_rows(manipulator, grid, one);
+    let timings = compare(by_opm(manipulator, grid, expected, [one, two]));
+    print_table(&format!("limits on passive angles, {} poses a row", size[0]), &timings);
+    println!("{expected} of {} poses are reachable.", grid.poses());
+}
+
+fn print_table(title: &str, timings: &[Timing]) {
+    println!("| {title} | million poses a second | rows are faster by |");
+    println!("|---|---:|---:|");
+    for t in timings {
+        println!("| {} | {:.1} | {:.2} |", t.name, 1e-6 / t.seconds, t.ratio);
+    }
+}
+
+/// Square roots that the intervals of a row take, from the shapes that the legs leave in a slice.
+fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
+    let of = |set: &Convex| match set {
+        Convex::Bands(_) => 0,
+        Convex::Disc(_) | Convex::Stadium(_) => 1,
+    };
+    let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
+    let regions = ways.iter().map(|way| {
+        let region = manipulator.region(way, &[], Complex::ZERO, 1.0);
+        region.expect("only sliders are limited")
+    });
+    regions.map(|Region { whole, hole }| of(&whole) + hole.as_ref().map_or(0, of)).sum()
 }

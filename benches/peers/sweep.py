@@ -1,17 +1,17 @@
-"""Sweeps of one grid with opm and with what one writes otherwise: NumPy for every pose, NumPy and numba with the orientations
-factored out. All count the same poses of the shipped plano-spherical-5dof, in one thread, turn and turn about; prints tables.
+"""Sweeps of the shipped plano-spherical-5dof with what one writes otherwise: NumPy for every pose, NumPy and numba with the
+orientations factored out; and with opm from Python. For each line `contender points orientations` it answers with the number of
+reachable poses: `benches/benches/sweep.rs` asks, and takes the time.
 
 The formulas are the paper's (Selvi, section 3.1; Eqs. 2-3 and 10-16, its errata mended) for one working mode, `++ ++ ++ +`.
 """
 
 import math
-import time
+import sys
 
 import numba
 import numpy as np
 import opm_kinematics as opm
 
-ROUNDS = 9
 LIMIT = 0.3  # of the sliders
 BETA, ALPHA_1, ALPHA_2 = math.radians(60), math.radians(75), math.radians(75)
 ETAS = np.radians([0.0, 120.0, 240.0])
@@ -113,35 +113,23 @@ def numba_factorised(grid):
     return count_points(grid.x, grid.y, outer, np.stack([np.cos(ALPHAS), np.sin(ALPHAS)]))
 
 
-def compare(points, orientations, contenders):
-    """Times the contenders, each on a grid with its own number of orientations, and prints a table."""
+def by_opm(threads):
     manipulator = opm.examples.load("plano-spherical-5dof")
+    return lambda grid: opm.sweep(manipulator, threads=threads, **grid.ranges).count
 
-    def of_opm(threads):
-        return lambda grid: opm.sweep(manipulator, threads=threads, **grid.ranges).count
 
-    contenders = {**contenders, "opm, one thread": of_opm(1), "opm, two threads": of_opm(2)}
-    grids = {name: Grid(points, orientations.get(name, orientations[""])) for name in contenders}
-    for name, count in contenders.items():
-        expected = of_opm(1)(grids[name])
-        found = count(grids[name])
-        if found != expected:
-            raise SystemExit(f"{name} counts {found} of {grids[name].poses} poses, opm {expected}")
-    times = {name: [] for name in contenders}
-    for _ in range(ROUNDS):
-        for name, count in contenders.items():
-            start = time.perf_counter()
-            count(grids[name])
-            times[name].append((time.perf_counter() - start) / grids[name].poses)
-    base = times["opm, one thread"]
-    print(f"| sweep, {points} poses a row | million poses a second | opm is faster by |")
-    print("|---|---:|---:|")
-    for name, seconds in times.items():
-        ratio = np.median(np.array(seconds) / np.array(base))
-        print(f"| {name} | {1e-6 / np.median(seconds):.1f} | {ratio:.2f} |")
+def main():
+    contenders = {
+        "numpy-per-pose": numpy_per_pose,
+        "numpy-factorised": numpy_factorised,
+        "numba-factorised": numba_factorised,
+        "opm-1": by_opm(1),
+        "opm-2": by_opm(2),
+    }
+    for line in sys.stdin:
+        name, points, orientations = line.split()
+        print(contenders[name](Grid(int(points), int(orientations))), flush=True)
 
 
 if __name__ == "__main__":
-    peers = {"NumPy, pose by pose": numpy_per_pose, "NumPy, factorised": numpy_factorised}
-    compare(64, {"": 25, "NumPy, pose by pose": 4, "NumPy, factorised": 7}, {**peers, "numba, factorised": numba_factorised})
-    compare(256, {"": 12}, {"numba, factorised": numba_factorised})
+    main()

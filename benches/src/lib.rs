@@ -1,12 +1,23 @@
 //! What the benchmarks share: timing two things in one run, turn and turn about, since on a machine
 //! that others use only their ratio means anything.
 
+pub mod peers;
+pub mod square_roots;
+
+use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
+use opm_workspace::{Axis, Grid};
 use std::time::{Duration, Instant};
 
-/// Rounds of a comparison; the median of an odd number is one of them.
+/// Rounds of a comparison, where they are short; the median of an odd number is one of them.
 const ROUNDS: usize = 41;
+
+/// Rounds of a comparison, however long one takes.
+const LEAST_ROUNDS: usize = 9;
+
+/// About as long as all rounds may take, where that is more than the least.
+const ALL_ROUNDS: Duration = Duration::from_secs(60);
 
 /// A round is to last about this long, far above the clock's grain.
 const ROUND: Duration = Duration::from_millis(10);
@@ -41,6 +52,7 @@ pub struct Timing {
 
 /// Times the contenders in turn, round after round, and compares each with the first.
 pub fn compare(mut contenders: Vec<Contender<'_>>) -> Vec<Timing> {
+    let mut round = Duration::ZERO;
     let calls: Vec<u32> = contenders
         .iter_mut()
         .map(|c| {
@@ -48,11 +60,14 @@ pub fn compare(mut contenders: Vec<Contender<'_>>) -> Vec<Timing> {
             let start = Instant::now();
             (c.run)();
             let once = start.elapsed().max(Duration::from_nanos(1));
-            (ROUND.as_secs_f64() / once.as_secs_f64()).ceil().max(1.0) as u32
+            let calls = (ROUND.as_secs_f64() / once.as_secs_f64()).ceil().max(1.0) as u32;
+            round += once * calls;
+            calls
         })
         .collect();
+    let count = (ALL_ROUNDS.as_secs_f64() / round.as_secs_f64()) as usize;
     let mut rounds = vec![Vec::with_capacity(ROUNDS); contenders.len()];
-    for _ in 0..ROUNDS {
+    for _ in 0..count.clamp(LEAST_ROUNDS, ROUNDS) | 1 {
         for ((contender, &calls), times) in contenders.iter_mut().zip(&calls).zip(&mut rounds) {
             let start = Instant::now();
             (0..calls).for_each(|_| (contender.run)());
@@ -84,4 +99,52 @@ pub fn example(name: &str) -> Manipulator {
     let text = examples::find(name).expect("a shipped mechanism").text;
     let file = file::read(text).expect("shipped mechanisms are read");
     Manipulator::new(file.mechanism).expect("shipped mechanisms decompose")
+}
+
+/// `points` a row and column in the plane of the 5-DoF manipulator, and as many of each Euler angle as
+/// `orientations` says.
+///
+/// # Panics
+/// If the manipulator has other coordinates.
+pub fn sweep_grid(manipulator: &Manipulator, [points, orientations]: [u64; 2]) -> Grid {
+    let axes = vec![
+        Axis::new("x", -0.15, 0.15, points),
+        Axis::new("y", -0.15, 0.15, points),
+        Axis::new("zeta", -0.4, 0.4, orientations),
+        Axis::new("xi", -0.4, 0.4, orientations),
+        Axis::new("psi", -0.4, 0.4, orientations),
+    ];
+    Grid::new(manipulator, axes).expect("a grid")
+}
+
+/// Random poses of the 5-DoF manipulator that every leg reaches: what a control loop asks for.
+///
+/// # Panics
+/// If the manipulator has other coordinates.
+pub fn reached(manipulator: &Manipulator, count: usize) -> Vec<[f64; 5]> {
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut solution = manipulator.solution();
+    let draw = || [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));
+    let mode = manipulator.home_mode();
+    std::iter::repeat_with(draw)
+        .filter(|pose| manipulator.inverse(pose, mode, &mut solution).expect("a pose"))
+        .take(count)
+        .collect()
+}
+
+/// The same mechanism, no passive revolute joint of which turns by more than a radian.
+///
+/// # Panics
+/// Never: limits change nothing else.
+pub fn with_limits_on_passive_angles(manipulator: &Manipulator) -> Manipulator {
+    let mut mechanism = manipulator.mechanism().clone();
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        if let [angle] = &mut joint.coordinates[..]
+            && angle.quantity == Quantity::Angle
+            && !joint.actuated
+        {
+            angle.limits = Some([angle.home - 1.0, angle.home + 1.0]);
+        }
+    }
+    Manipulator::new(mechanism).expect("limits change nothing else")
 }

@@ -1,11 +1,12 @@
 //! Every argument of the command line; the doc comments are the help.
 
+use crate::kind::Kind;
 use crate::linkage::InputValue;
 use crate::plot::{PanelName, PictureSize};
-use crate::pose::{GridAxis, Number, Pose, SliceValue};
+use crate::pose::{GridAxis, Number, OverAxis, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
-use opm_workspace::Shard;
+use opm_workspace::{Sections, Shard};
 use std::path::PathBuf;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
@@ -37,6 +38,7 @@ Examples:
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
+  opm measure plano-spherical-5dof --section upper     how much of all orientations it has, with bounds
   opm merge part-*.mcap -o cloud.mcap                  a sweep that was shared among machines
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
@@ -74,6 +76,7 @@ pub enum Command {
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),
     Workspace(WorkspaceArgs),
+    Measure(MeasureArgs),
     Merge(MergeArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
@@ -316,8 +319,21 @@ pub struct TrajectoryArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
+/// --kind asks for another set than that of poses. A place is a value for each coordinate of the lower
+/// section (x and y, say), an orientation one for each of the upper section. `reachable` and
+/// `dexterous` have the share of the orientations that reach a place stored with it, as `share`. The
+/// lower section alone has the imaginary joints for coordinates, too, by their names, at home where
+/// --grid does not say otherwise; what it has in common with `upper` is the whole workspace.
+///
+/// All kinds but `grid`, and that with --shape, tell the connected components of the set, and the
+/// boundary of one that varies in two coordinates, or in slices of a third: closed lines, whose inside
+/// is to the left, in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
+///
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
+///
+/// With -o points.npy the points are a structured NumPy array, float64, of the coordinates or joints
+/// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
 ///
 /// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
 /// is nothing to do. `opm merge` joins the parts, and takes --axes, --color and --scalars.
@@ -332,12 +348,18 @@ Examples:
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
+  opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
+  opm workspace plano-spherical-5dof --kind reachable -o places.mcap
+  opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+    /// What the workspace is of
+    #[arg(long, value_name = "KIND", value_enum, default_value = "grid")]
+    pub kind: Kind,
     /// Values of one task coordinate: MIN, MAX and how many, or one value alone
     #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
     pub grid: Vec<GridAxis>,
@@ -347,9 +369,15 @@ pub struct WorkspaceArgs {
     /// Only poses with a condition number of at most C count, in a mode in which they have it
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
-    /// Characteristic length of the condition number, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", requires = "max_condition", allow_hyphen_values = true)]
+    /// Also tell the global conditioning index: the mean of 1 / condition number, a few us a pose
+    #[arg(long)]
+    pub conditioning: bool,
+    /// Characteristic length of condition numbers, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
+    /// Also find the boundary and the connected components, as all kinds but `grid` do
+    #[arg(long)]
+    pub shape: bool,
     /// Sweep only part number I of N, from 1 on, and write it to -o, for `opm merge`
     #[arg(
         long,
@@ -372,13 +400,15 @@ pub struct WorkspaceArgs {
 /// How points are recorded.
 #[derive(Debug, clap::Args)]
 pub struct CloudArgs {
-    /// Record the points in this MCAP file
-    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    /// Record the points in this file: MCAP, an array for NumPy, or a cloud for mesh tools
+    #[arg(short, long, value_name = "OUT.mcap|.npy|.ply", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// What x, y and z of the cloud are: three task coordinates, or `tip`, the platform's point
+    /// What x, y and z of the cloud are: three coordinates (of `imaginary`, imaginary joints), or `tip`,
+    /// the platform's point
     #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
     pub axes: Vec<String>,
-    /// What the colour shows: a task coordinate, an imaginary joint or an actuated joint
+    /// What the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
+    /// `inverse_condition`, one over the condition number
     #[arg(long, value_name = "NAME", requires = "output")]
     pub color: Option<String>,
     /// Values stored with every point, named like those of --color
@@ -408,6 +438,95 @@ pub struct MergeArgs {
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// Measure the workspace: area, volume, share of all orientations, with guaranteed bounds
+///
+/// Covers the ranges of --over with boxes, each known to lie inside the workspace, outside, or in part;
+/// splits those that are least known until the measure is certain to within --tolerance of its value. The
+/// bounds hold whatever it stops for, Ctrl-C included, and do not depend on the number of threads. A pose
+/// counts as in `opm workspace`: in reach and within all joint limits.
+///
+/// What is measured is the product of all ranges. Orientations count as evenly as rotations are
+/// spread (Haar's measure): xi is weighed by sin xi, nu by cos nu, and every orientation once is
+/// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
+/// positive xi has orientations twice if zeta has a whole turn.
+///
+/// A coordinate without --over stays at home, but an angle of `--section upper` takes a whole turn. With
+/// no --over at all, ranges are fitted to the workspace as in `opm workspace`.
+///
+/// --section upper asks of the upper section alone whether it closes, for the coordinates that are
+/// its own; --section lower of the lower one alone, for its own coordinates and the values of the
+/// imaginary joints, which --over names, too.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm measure plano-spherical-5dof --section upper
+  opm measure plano-spherical-5dof --over x=-200mm:200mm --over y=-200mm:300mm
+  opm measure plano-spherical-5dof --section upper --over xi=0:60deg --tolerance 1e-4
+  opm measure translational-helical-3dof --over x=-1:1 --over y=-1:1 --over phi=30deg --tolerance 1e-9
+  opm measure plano-cylindrical-4dof --mode any --budget 1000000 --format json")]
+pub struct MeasureArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Range of one coordinate, or one value
+    #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
+    pub over: Vec<OverAxis>,
+    /// What has to be in reach: the whole mechanism, or one section alone
+    #[arg(long, value_enum, default_value_t = SectionName::Whole)]
+    pub section: SectionName,
+    /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Stop when the measure is certain to be within this share of its value
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = tolerance, allow_hyphen_values = true)]
+    pub tolerance: f64,
+    /// Stop before more than so many boxes are looked at; each takes some 100 bytes of memory
+    #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = clap::value_parser!(u64).range(1..))]
+    pub budget: u64,
+    /// Threads to use, instead of one a processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// What of a mechanism is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SectionName {
+    /// Poses of the platform
+    Whole,
+    /// The upper section alone: its own coordinates
+    Upper,
+    /// The lower section alone: its own coordinates, and the imaginary joints
+    Lower,
+}
+
+impl SectionName {
+    /// As it is given.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Upper => "upper",
+            Self::Lower => "lower",
+        }
+    }
+
+    /// What a domain is of.
+    pub fn sections(self) -> Sections {
+        match self {
+            Self::Whole => Sections::Whole,
+            Self::Upper => Sections::Upper,
+            Self::Lower => Sections::Lower,
+        }
+    }
+}
+
+/// A share of a measure.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if (0.0..1.0).contains(&number) => Ok(number),
+        _ => Err(format!("{text:?}, expected a share of at least 0 and less than 1")),
+    }
 }
 
 /// A condition number to compare with.

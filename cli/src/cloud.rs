@@ -6,12 +6,14 @@ use crate::pose::find;
 use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
-use opm_mcap::CloudLayout;
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
+use opm_mcap::{CloudLayout, Packer};
 use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
+/// The local conditioning index among the values of a point.
+const INVERSE_CONDITION: &str = "inverse_condition";
 
 /// One value of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +26,8 @@ pub enum Column {
     Actuated(usize),
     /// The platform's point: x, y or z.
     Tip(usize),
+    /// One over the condition number.
+    InverseCondition,
 }
 
 /// A value with its name.
@@ -34,11 +38,13 @@ pub struct Wishes {
     axes: Option<[Named; 3]>,
     scalars: Option<Vec<Named>>,
     color: Option<Named>,
+    /// Of condition numbers, metres.
+    length: f64,
 }
 
 impl Wishes {
-    /// From the flags, each of which is checked.
-    pub fn new(args: &CloudArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
+    /// From the flags, each of which is checked; condition numbers have this characteristic length.
+    pub fn new(args: &CloudArgs, length: f64, manipulator: &Manipulator) -> Result<Self, Failure> {
         let named = |name: &String, flag| column(manipulator, name, flag);
         let color = args.color.as_ref().map(|name| named(name, "--color")).transpose()?;
         let scalars: Option<Vec<Named>> = (args.scalars.as_ref())
@@ -53,7 +59,15 @@ impl Wishes {
                 return wrong(format!("{name} is given twice"));
             }
         }
-        Ok(Self { axes: axes(&args.axes, manipulator)?, scalars, color })
+        Ok(Self { axes: axes(&args.axes, manipulator)?, scalars, color, length })
+    }
+}
+
+impl Wishes {
+    /// Whether a value of the points is a condition number.
+    pub fn asks_condition(&self) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|(_, column)| *column == Column::InverseCondition)
     }
 }
 
@@ -67,6 +81,7 @@ pub struct Cloud<'a> {
     manipulator: &'a Manipulator,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    length: f64,
     axes: [Named; 3],
     scalars: Vec<Named>,
     color: Named,
@@ -79,7 +94,13 @@ impl<'a> Cloud<'a> {
         let tallest = tallest(grid);
         let task = |number: usize| (grid.axes()[number].name.clone(), Column::Task(number));
         let color = wishes.color.unwrap_or_else(|| task(tallest));
+        let several = |number: &usize| grid.axes()[*number].count > 1;
+        let varying: Vec<usize> = (0..grid.axes().len()).filter(several).collect();
         let axes = wishes.axes.unwrap_or_else(|| {
+            if let [a, b] = varying[..] {
+                let flat = (0..grid.axes().len()).rfind(|number| !several(number));
+                return [task(a), task(b), task(flat.unwrap_or(tallest))];
+            }
             // Every pair of subspaces has at least three coordinates.
             let mut others = (0..grid.axes().len()).filter(|&number| number != tallest);
             let mut other = || others.next().unwrap_or(tallest);
@@ -90,7 +111,7 @@ impl<'a> Cloud<'a> {
             let known = axes.contains(&color) || is_field(&color.0);
             if known { vec![] } else { vec![color.clone()] }
         });
-        Self { manipulator, modes, limit, axes, scalars, color }
+        Self { manipulator, modes, limit, length: wishes.length, axes, scalars, color }
     }
 
     /// How often the grid is swept to record it.
@@ -117,6 +138,21 @@ impl<'a> Cloud<'a> {
         }
     }
 
+    /// Where a pose is in the cloud.
+    pub fn place(&self, pose: &[f64]) -> [f64; 3] {
+        let tip = || {
+            let task = self.manipulator.task();
+            task.displacement(pose) * self.manipulator.mechanism().platform
+        };
+        self.axes.each_ref().map(|(_, column)| match *column {
+            Column::Task(number) => pose[number],
+            Column::Tip(i) => tip()[i],
+            Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition => {
+                unreachable!("axes are task coordinates, or the platform's point")
+            }
+        })
+    }
+
     /// The values of a row, in the order of [`CloudLayout::columns`].
     pub fn columns(&self) -> Vec<Column> {
         let listed = || self.axes.iter().chain(&self.scalars);
@@ -140,6 +176,7 @@ impl<'a> Cloud<'a> {
             Column::Task(number) => Some([grid.axes()[number].min, grid.axes()[number].max]),
             Column::Imaginary(number) => Some(found.imaginary[number].unwrap_or_default()),
             Column::Actuated(number) => self.limits(number),
+            Column::InverseCondition => Some([0.0, 1.0]),
             Column::Tip(_) => None,
         };
         if let Some(range) = known {
@@ -150,9 +187,9 @@ impl<'a> Cloud<'a> {
         source.points(
             progress,
             |hits, points: &mut Points<'_>| points.add(hits),
-            || Points::new(self, &columns),
+            || Points::new(self, &columns, None),
             |mut points| {
-                for value in points.take()?.into_iter().flat_map(|(_, values)| values) {
+                for value in points.take()?.into_iter().flat_map(|portion| portion.values) {
                     let [low, high] = range.unwrap_or([value; 2]);
                     range = Some([low.min(value), high.max(value)]);
                 }
@@ -209,55 +246,34 @@ fn column(manipulator: &Manipulator, name: &str, flag: &str) -> Result<Named, Fa
     (find(&task).map(Column::Task))
         .or_else(|| find(&imaginary).map(Column::Imaginary))
         .or_else(|| find(&actuated).map(Column::Actuated))
+        .or_else(|| (name == INVERSE_CONDITION).then_some(Column::InverseCondition))
         .map(|column| (name.to_owned(), column))
         .ok_or_else(|| {
-            let known = [task, imaginary, actuated].concat().join(", ");
+            let known = [task, imaginary, actuated, vec![INVERSE_CONDITION]].concat().join(", ");
             Failure::flag(flag, format!("{name:?} is none of {known}"))
         })
 }
 
-/// Reachable poses, packed: points that share all but the first coordinate share the rest.
+/// Points of one slice: values, or bytes of a cloud where there is a packer.
 #[derive(Default)]
-pub struct Poses {
-    first: Vec<f64>,
-    /// Where each run of `first` ends.
-    ends: Vec<usize>,
-    others: Vec<f64>,
-    width: usize,
+pub struct Portion {
+    pub slice: u64,
+    pub values: Vec<f64>,
+    pub packed: Vec<u8>,
 }
 
-impl Poses {
-    pub fn add(&mut self, hits: &Hits<'_>) {
-        self.first.extend(hits.first);
-        self.ends.push(self.first.len());
-        self.others.extend(hits.others);
-        self.width = hits.others.len();
-    }
-
-    pub fn each(&self, mut visit: impl FnMut(&[f64])) {
-        let mut pose = vec![0.0; self.width + 1];
-        let mut start = 0;
-        for (number, &end) in self.ends.iter().enumerate() {
-            let others = number * self.width..(number + 1) * self.width;
-            pose[1..].copy_from_slice(&self.others[others]);
-            for &first in &self.first[start..end] {
-                pose[0] = first;
-                visit(&pose);
-            }
-            start = end;
-        }
-    }
-}
-
-/// Rows of a cloud in the making, in runs of one slice.
+/// Points of a cloud in the making, in portions of one slice.
 pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
+    packer: Option<&'a Packer>,
+    /// All columns are task coordinates.
+    plain: bool,
     joints: Joints<'a>,
     pose: Vec<f64>,
-    runs: Vec<(u64, Vec<f64>)>,
-    /// A pose that the sweep found and inverse kinematics did not.
-    lost: Option<Vec<f64>>,
+    portions: Vec<Portion>,
+    /// A pose that the sweep found and inverse kinematics did not, or a value that is no number.
+    wrong: Option<Failure>,
 }
 
 /// Buffers for what inverse kinematics finds.
@@ -266,15 +282,22 @@ enum Joints<'a> {
     Unused,
     One(Drives),
     Any(Box<(AllModes, Solution)>),
-    /// With a limit on the condition number, which decides on the mode.
+    /// With a limit on the condition number, which decides on the mode, or with a column that asks for
+    /// that number.
     Limited(Box<(Conditioned<'a>, Solution)>),
 }
 
 impl<'a> Points<'a> {
-    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column]) -> Self {
+    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packer: Option<&'a Packer>) -> Self {
         let manipulator = cloud.manipulator;
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
+        let condition = columns.contains(&Column::InverseCondition);
         let joints = match (cloud.modes, cloud.limit) {
+            _ if condition => {
+                let limit = cloud.limit.unwrap_or(ConditionLimit::none(cloud.length));
+                let conditioned = Conditioned::new(manipulator, limit);
+                Joints::Limited(Box::new((conditioned, manipulator.solution())))
+            }
             _ if !columns.iter().any(asked) => Joints::Unused,
             (Modes::One(_), _) => Joints::One(manipulator.drives()),
             (Modes::Any, Some(limit)) => {
@@ -285,7 +308,9 @@ impl<'a> Points<'a> {
                 Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
             }
         };
-        Self { cloud, columns, joints, pose: Vec::new(), runs: Vec::new(), lost: None }
+        let plain = columns.iter().all(|column| matches!(column, Column::Task(_)));
+        let (pose, portions) = (Vec::new(), Vec::new());
+        Self { cloud, columns, packer, plain, joints, pose, portions, wrong: None }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
@@ -293,11 +318,48 @@ impl<'a> Points<'a> {
         pose.clear();
         pose.push(0.0);
         pose.extend(hits.others);
-        for &first in hits.first {
-            pose[0] = first;
-            self.point(hits.slice, &pose);
+        match self.packer {
+            Some(packer) if self.plain => self.line(packer, hits, &pose),
+            _ => {
+                for &first in hits.first {
+                    pose[0] = first;
+                    self.point(hits.slice, &pose);
+                }
+                self.pack();
+            }
         }
         self.pose = pose;
+    }
+
+    /// Points that differ in the first coordinate, and have nothing but coordinates.
+    fn line(&mut self, packer: &Packer, hits: &Hits<'_>, pose: &[f64]) {
+        let value = |column: &Column| match *column {
+            Column::Task(number) => pose[number],
+            _ => unreachable!("plain points are made of task coordinates"),
+        };
+        let row: Vec<f64> = self.columns.iter().map(value).collect();
+        let first = self.columns.iter().position(|column| *column == Column::Task(0));
+        self.open(hits.slice);
+        let Some(portion) = self.portions.last_mut() else { return };
+        if let Err(error) = packer.pack_line(&row, first, hits.first, &mut portion.packed) {
+            self.wrong.get_or_insert(Failure::at("a point", &error));
+        }
+    }
+
+    /// Packs the values so far.
+    fn pack(&mut self) {
+        let (Some(packer), Some(portion)) = (self.packer, self.portions.last_mut()) else { return };
+        if let Err(error) = packer.pack(&portion.values, &mut portion.packed) {
+            self.wrong.get_or_insert(Failure::at("a point", &error));
+        }
+        portion.values.clear();
+    }
+
+    /// Makes the last portion one of this slice.
+    fn open(&mut self, slice: u64) {
+        if self.portions.last().is_none_or(|last| last.slice != slice) {
+            self.portions.push(Portion { slice, ..Default::default() });
+        }
     }
 
     pub fn point(&mut self, slice: u64, pose: &[f64]) {
@@ -322,13 +384,15 @@ impl<'a> Points<'a> {
             _ => true,
         };
         if !found {
-            self.lost.get_or_insert_with(|| pose.to_vec());
+            self.wrong.get_or_insert_with(|| {
+                Failure::Work(format!(
+                    "the sweep counts the pose {pose:?}, but inverse kinematics does not reach it"
+                ))
+            });
             return;
         }
-        if self.runs.last().is_none_or(|(last, _)| *last != slice) {
-            self.runs.push((slice, Vec::new()));
-        }
-        let Some((_, row)) = self.runs.last_mut() else { return };
+        self.open(slice);
+        let Some(Portion { values: row, .. }) = self.portions.last_mut() else { return };
         let mut tip = None;
         for column in self.columns {
             row.push(match (*column, &self.joints) {
@@ -348,20 +412,20 @@ impl<'a> Points<'a> {
                 (Column::Actuated(number), Joints::Limited(buffers)) => {
                     buffers.1.joints[manipulator.actuated()[number]]
                 }
-                (Column::Imaginary(_) | Column::Actuated(_), Joints::Unused) => {
-                    unreachable!("Points::new has buffers for joints that columns ask for")
+                (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
+                (
+                    Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition,
+                    Joints::Unused | Joints::One(_) | Joints::Any(_),
+                ) => {
+                    unreachable!("Points::new has buffers for what columns ask for")
                 }
             });
         }
     }
 
-    /// The rows so far; the next ones start anew.
-    pub fn take(&mut self) -> Result<Vec<(u64, Vec<f64>)>, Failure> {
-        match &self.lost {
-            None => Ok(std::mem::take(&mut self.runs)),
-            Some(pose) => Err(Failure::Work(format!(
-                "the sweep counts the pose {pose:?}, but inverse kinematics does not reach it"
-            ))),
-        }
+    /// The points so far; the next ones start anew.
+    pub fn take(&mut self) -> Result<Vec<Portion>, Failure> {
+        self.pack();
+        self.wrong.take().map_or_else(|| Ok(std::mem::take(&mut self.portions)), Err)
     }
 }

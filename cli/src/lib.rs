@@ -13,9 +13,11 @@ mod failure;
 mod fk;
 mod ik;
 mod inspect;
+mod kind;
 mod lines;
 mod linkage;
 mod load;
+mod measure;
 mod merge;
 mod motion;
 mod output;
@@ -66,6 +68,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
+        Command::Measure(command) => measure::run(command, output),
         Command::Merge(command) => merge::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),

@@ -3,6 +3,7 @@
 use crate::args::{MergeArgs, Output};
 use crate::cloud::Wishes;
 use crate::failure::Failure;
+use crate::kind::Kind;
 use crate::load::{self, Loaded};
 use crate::progress::{interruptible, watch_reading};
 use crate::record::{PROGRAM, Recorder};
@@ -46,6 +47,7 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     let run = Run {
         loaded: &whole.loaded,
         manipulator: &manipulator,
+        kind: Kind::Grid,
         grid,
         modes: *modes,
         limit: *limit,
@@ -53,18 +55,19 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     let found = join(&run, &whole, &parts)?;
 
     let work = Work { output, pool: &pool, progress: &progress };
-    let wishes = Wishes::new(&args.cloud, &manipulator)?;
+    let length = limit.map_or_else(|| manipulator.characteristic_length(), |limit| limit.length);
+    let wishes = Wishes::new(&args.cloud, length, &manipulator)?;
     if let Some(path) = &args.cloud.output {
         let inputs: Vec<&Path> = parts.iter().map(|part| &*part.path).collect();
         whole.loaded.refuse_as_output(path, &inputs)?;
-        Recorder::check(grid)?;
+        Recorder::check(path, grid)?;
         let recorder = Recorder::create(path)?;
         let files = parts.iter().map(|part| part.path.clone()).collect();
-        work.record(recorder, wishes, &run, &found, &Source::Shards { grid, files })?;
+        work.record(recorder, wishes, &run, &found, &Source::Shards { grid, files }, None)?;
     }
     work.warn_of_nothing(&run, &found);
     let effort = Effort::Merged { shards: parts.len() as u64 };
-    let outcome = Outcome { run: &run, found: &found, effort, shard: None };
+    let outcome = Outcome { run: &run, found: &found, study: None, effort, shard: None };
     output.print(&outcome.json(), outcome.text())
 }
 

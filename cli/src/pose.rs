@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use opm_core::joint::Quantity;
 use opm_core::mechanism::file::{AngleUnit, LengthUnit};
 use opm_core::task::TaskCoordinate;
-use opm_workspace::Axis;
+use opm_workspace::measure::Over;
+use opm_workspace::{Axis, Coordinate, Sections};
 use std::fmt;
 use std::str::FromStr;
 
@@ -47,6 +48,14 @@ pub struct GridAxis {
     min: Number,
     max: Number,
     count: u64,
+}
+
+/// A range of one coordinate, or one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverAxis {
+    name: String,
+    min: Number,
+    max: Number,
 }
 
 /// A value of one task coordinate.
@@ -200,14 +209,7 @@ impl FromStr for GridAxis {
                 axis(value, value, 1)
             }
             [min, max, count] => {
-                let (min, max): (Number, Number) = (min.parse()?, max.parse()?);
-                // -10:10mm would run from minus ten metres.
-                let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
-                if (bare(min) && max.quantity.is_some()) || (min.quantity.is_some() && bare(max)) {
-                    return Err(Misread(format!(
-                        "{values:?} has a unit at one end only, expected one at both or none"
-                    )));
-                }
+                let [min, max] = ends(min, max)?;
                 let count = count.trim().parse().map_err(|_| {
                     Misread(format!("{count:?} is not a number of values, expected 1 or more"))
                 })?;
@@ -219,14 +221,61 @@ impl FromStr for GridAxis {
 }
 
 impl GridAxis {
-    /// The axis in SI.
-    pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Axis, Failure> {
+    /// The axis in SI, of a grid of these sections.
+    pub fn resolve(&self, of: Sections, coordinates: &[Coordinate]) -> Result<Axis, Failure> {
         let axis = || {
-            let coordinate = &coordinates[find(&self.name, coordinates)?];
-            let (min, max) = (self.min.of(coordinate)?, self.max.of(coordinate)?);
-            Ok(Axis::new(&self.name, min, max, self.count))
+            let name = &self.name;
+            let found = coordinates.iter().find(|c| c.name == *name).ok_or_else(|| {
+                let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();
+                let (what, names) = (of.coordinate(), names.join(", "));
+                Misread(format!("no {what} {name:?}, expected one of {names}"))
+            })?;
+            let value = |number: Number| number.value_of(name, found.quantity);
+            Ok(Axis::new(name, value(self.min)?, value(self.max)?, self.count))
         };
         axis().map_err(|error: Misread| Failure::flag("--grid", error))
+    }
+}
+
+/// The two ends of a range.
+fn ends(min: &str, max: &str) -> Result<[Number; 2], Misread> {
+    let (low, high): (Number, Number) = (min.parse()?, max.parse()?);
+    // -10:10mm would run from minus ten metres.
+    let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
+    if (bare(low) && high.quantity.is_some()) || (low.quantity.is_some() && bare(high)) {
+        let range = format!("{min}:{max}");
+        return Err(Misread(format!(
+            "{range:?} has a unit at one end only, expected one at both or none"
+        )));
+    }
+    Ok([low, high])
+}
+
+impl FromStr for OverAxis {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        const FORM: &str = "AXIS=MIN:MAX or AXIS=VALUE, for example x=-100mm:100mm";
+        let (name, values) = assignment(text, FORM)?;
+        let [min, max] = match *values.split(':').collect::<Vec<_>>() {
+            [value] => [value.parse()?; 2],
+            [min, max] => ends(min, max)?,
+            _ => return Err(Misread(format!("{text:?}, expected {FORM}"))),
+        };
+        Ok(Self { name: name.to_owned(), min, max })
+    }
+}
+
+impl OverAxis {
+    /// The range in SI, of one of these coordinates.
+    pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<Over, Misread> {
+        let known = coordinates.iter().find(|c| c.name == self.name);
+        // A name that is not known is for others to refuse.
+        let end = |number: Number| match known {
+            Some(c) => number.value_of(&c.name, c.quantity),
+            None => Ok(number.value),
+        };
+        Ok(Over::new(&*self.name, end(self.min)?, end(self.max)?))
     }
 }
 
@@ -299,7 +348,17 @@ mod tests {
 
     #[test]
     fn a_grid_axis_is_a_range_or_a_value() {
-        let axis = |text: &str| text.parse::<GridAxis>().unwrap().resolve(&coordinates());
+        let axis = |text: &str| {
+            let coordinates: Vec<Coordinate> = (coordinates().iter())
+                .map(|c| Coordinate {
+                    name: c.name.to_owned(),
+                    quantity: c.quantity,
+                    home: c.home,
+                    counts_turns: false,
+                })
+                .collect();
+            text.parse::<GridAxis>().unwrap().resolve(Sections::Whole, &coordinates)
+        };
         assert_eq!(axis("x=-10mm:10mm:21"), Ok(Axis::new("x", -0.01, 0.01, 21)));
         assert_eq!(axis("x=0:10mm:3"), Ok(Axis::new("x", 0.0, 0.01, 3)));
         assert_eq!(axis("xi=0.5"), Ok(Axis::fixed("xi", 0.5)));

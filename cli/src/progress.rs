@@ -47,6 +47,18 @@ pub fn watch<T>(
     show(output, &bar, label, done, work)
 }
 
+/// As [`watch`], for boxes of which nobody knows how many there will be.
+pub fn watch_boxes<T>(
+    output: &Output,
+    label: &'static str,
+    done: impl Fn() -> u64 + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    let bar = ProgressBar::no_length()
+        .with_style(style("{spinner} {msg}: {human_pos} boxes, {rate} boxes/s"));
+    show(output, &bar, label, done, work)
+}
+
 /// As [`watch`], for the reading of a recording of so many messages, or of nobody knows how many.
 pub fn watch_reading<T>(
     output: &Output,

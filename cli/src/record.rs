@@ -1,12 +1,16 @@
 //! The recording of a sweep: the passes that write it, and what it says of the run.
 
-use crate::cloud::{Cloud, Points, Poses};
+use crate::cloud::{Cloud, Points, Portion};
 use crate::failure::Failure;
+use crate::kind::{SetRecording, Study, pose_boundary};
 use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
 use opm_core::mechanism::file::FileUnits;
-use opm_mcap::{MAX_SLICES, Metadata, PartialFile, RecordError, Workspace, WorkspaceRecorder};
+use opm_mcap::{
+    CloudLayout, MAX_SLICES, Metadata, Packer, PartialFile, RecordError, TableFormat,
+    TableRecorder, Workspace, WorkspaceRecorder, table_columns,
+};
 use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress};
 use std::path::{Path, PathBuf};
 
@@ -15,6 +19,9 @@ pub const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
 
 /// More slices than this play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
+
+/// Points between two looks at whether somebody pressed Ctrl-C.
+const PORTION: u64 = 1 << 12;
 
 /// Opens a file for a recording before the work starts, so that a wrong path costs no time.
 pub fn create(path: &Path) -> Result<PartialFile, Failure> {
@@ -28,13 +35,42 @@ pub fn create(path: &Path) -> Result<PartialFile, Failure> {
 pub struct Recorder {
     path: PathBuf,
     file: PartialFile,
+    format: Format,
+}
+
+/// What points are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Mcap,
+    Table(TableFormat),
+}
+
+impl Format {
+    /// By the ending of the file's name.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("mcap") => Ok(Self::Mcap),
+            Some("npy") => Ok(Self::Table(TableFormat::Npy)),
+            Some("ply") => Ok(Self::Table(TableFormat::Ply)),
+            _ => Err(Failure::flag(
+                "--output",
+                format!(
+                    "{}, expected a name that ends in .mcap (Foxglove, Lichtblick, Rerun), .npy \
+                     (NumPy) or .ply (mesh tools)",
+                    path.display()
+                ),
+            )),
+        }
+    }
 }
 
 impl Recorder {
-    /// Refuses a grid whose slowest axis alone has more values than a recording may have slices.
-    pub fn check(grid: &Grid) -> Result<(), Failure> {
+    /// Refuses a name of no known ending, and for MCAP a grid whose slowest axis alone has more values
+    /// than a recording may have slices.
+    pub fn check(path: &Path, grid: &Grid) -> Result<(), Failure> {
         let slices = grid.slices() / together(grid);
-        if slices <= MAX_SLICES {
+        if Format::of(path)? != Format::Mcap || slices <= MAX_SLICES {
             return Ok(());
         }
         let slowest = grid.axes().last().map_or("", |axis| &axis.name);
@@ -43,9 +79,24 @@ impl Recorder {
         Err(Failure::flag("--grid", problem))
     }
 
+    /// Refuses what a set that is no set of poses is not written as.
+    pub fn check_set(path: &Path, kind: &str) -> Result<(), Failure> {
+        match Format::of(path)? {
+            Format::Mcap => Ok(()),
+            Format::Table(_) => Err(Failure::flag(
+                "--output",
+                format!(
+                    "{}: --kind {kind} is written as MCAP, expected a name that ends in .mcap",
+                    path.display()
+                ),
+            )),
+        }
+    }
+
     /// Opens the file.
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        Ok(Self { path: path.to_owned(), file: create(path)? })
+        let format = Format::of(path)?;
+        Ok(Self { path: path.to_owned(), file: create(path)?, format })
     }
 
     /// Records every point that was counted: an overview, then all of them. Returns the path.
@@ -55,47 +106,186 @@ impl Recorder {
         cloud: &Cloud<'_>,
         source: &Source<'_>,
         found: &Count,
+        study: Option<&Study>,
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
-        let Self { path, file } = self;
+        let Self { path, file, format } = self;
         let color_range = cloud.color_range(source, found, run.grid, progress)?;
+        let layout = cloud.layout(color_range);
+        let job = Job { run, cloud, source, found, study, progress, path: &path, layout };
+        match format {
+            Format::Mcap => job.mcap(file)?,
+            Format::Table(format) => job.table(file, format)?,
+        }
+        Ok(path)
+    }
+
+    /// Records a set that is no set of poses: an overview, then every point. Returns the path.
+    pub fn record_set(
+        self,
+        run: &Run<'_>,
+        set: &SetRecording<'_>,
+        found: &Count,
+        progress: &Progress,
+    ) -> Result<PathBuf, Failure> {
+        let Self { path, file, .. } = self;
         let failed = |error: RecordError| Failure::at(path.display(), &error);
+        let mut about = describe(run);
+        about.insert("poses".to_owned(), found.poses.to_string());
+        about.insert("set".to_owned(), set.set_axes());
+        let workspace = Workspace {
+            layout: set.layout(found),
+            mechanism_name: &run.loaded.file_name,
+            mechanism: run.loaded.text.as_bytes(),
+            run: about,
+            points: found.reachable,
+            slices: set.slices,
+        };
+        let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
+        if let Some(lines) = set.boundary() {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let every = recorder.overview_every();
+        let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+            false => Ok(()),
+            true => Err(Failure::Interrupted(format!(
+                "interrupted; what was recorded is in {}",
+                partial(&path).display()
+            ))),
+        };
+        let mut number = 0;
+        set.points(|_, row| {
+            going(number)?;
+            let wanted = number % every == 0;
+            number += 1;
+            if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+        })?;
+        set.points(|slice, row| {
+            number += 1;
+            going(number)?;
+            recorder.push(slice, row).map_err(failed)
+        })?;
+        recorder.finish(&result(run, found)).map_err(failed)?;
+        Ok(path)
+    }
+
+    /// How often the poses are gone through.
+    pub fn passes(&self, cloud: &Cloud<'_>) -> u64 {
+        match self.format {
+            Format::Mcap => cloud.passes(),
+            Format::Table(_) => cloud.passes() - 1,
+        }
+    }
+}
+
+/// Everything that there is to record.
+struct Job<'a> {
+    run: &'a Run<'a>,
+    cloud: &'a Cloud<'a>,
+    source: &'a Source<'a>,
+    found: &'a Count,
+    study: Option<&'a Study>,
+    progress: &'a Progress,
+    path: &'a Path,
+    layout: CloudLayout,
+}
+
+impl Job<'_> {
+    /// One table of all points, in one pass.
+    fn table(&self, file: PartialFile, format: TableFormat) -> Result<(), Failure> {
+        let Self { run, cloud, layout, .. } = self;
+        let failed = |error| self.failed(&error);
+        let packer = match format {
+            TableFormat::Npy => None,
+            TableFormat::Ply => Some(Packer::new(layout).map_err(failed)?),
+        };
+        let mut columns = cloud.columns();
+        if format == TableFormat::Npy {
+            let names = layout.columns();
+            let kept = table_columns(layout);
+            let column = |name: &&str| names.iter().position(|n| n == name).map(|i| columns[i]);
+            columns = kept.iter().filter_map(column).collect();
+        }
+        let points = self.found.reachable;
+        let table = TableRecorder::new(file, format, layout, points, &describe(run));
+        let mut table = table.map_err(failed)?;
+        let made = || Points::new(cloud, &columns, packer.as_ref());
+        let mut bytes = Vec::new();
+        let mut write = |portion: &Portion| {
+            bytes.clear();
+            bytes.extend(portion.values.iter().flat_map(|value| value.to_le_bytes()));
+            bytes.extend_from_slice(&portion.packed);
+            table.push(&bytes).map_err(failed)
+        };
+        self.source
+            .points(
+                self.progress,
+                |hits, points: &mut Points<'_>| points.add(hits),
+                made,
+                |mut points| points.take()?.iter().try_for_each(&mut write),
+            )
+            .map_err(|failure| self.interrupted(failure))?;
+        table.finish().map_err(failed)
+    }
+
+    fn failed(&self, error: &RecordError) -> Failure {
+        Failure::at(self.path.display(), error)
+    }
+
+    /// Tells where the rest is.
+    fn interrupted(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Interrupted(message) => Failure::Interrupted(format!(
+                "{message}; what was recorded is in {}",
+                partial(self.path).display()
+            )),
+            other => other,
+        }
+    }
+
+    /// A recording: an overview, then all points.
+    fn mcap(&self, file: PartialFile) -> Result<(), Failure> {
+        let failed = |error| Failure::at(self.path.display(), &error);
+        let Self { run, cloud, source, found, study, progress, .. } = *self;
         let columns = cloud.columns();
         let workspace = Workspace {
-            layout: cloud.layout(color_range),
+            layout: self.layout.clone(),
             mechanism_name: &run.loaded.file_name,
             mechanism: run.loaded.text.as_bytes(),
             run: describe(run),
             points: found.reachable,
             slices: run.grid.slices() / together(run.grid),
         };
+        let packer = Packer::new(&workspace.layout).map_err(failed)?;
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
-        let interrupted = |failure| match failure {
-            Failure::Interrupted(message) => Failure::Interrupted(format!(
-                "{message}; what was recorded is in {}",
-                partial(&path).display()
-            )),
-            other => other,
-        };
-
-        let every = recorder.overview_every();
         let together = together(run.grid);
-        let mut number = 0;
-        let mut overview = Points::new(cloud, &columns);
+        let lines = study
+            .and_then(|study| pose_boundary(run.grid, study, together, |pose| cloud.place(pose)));
+        if let Some(lines) = lines {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let interrupted = |failure| self.interrupted(failure);
+        let every = recorder.overview_every();
+        // Of all points, how many there were, and which is the overview's next.
+        let (mut seen, mut next) = (0, 0);
+        let mut overview = Points::new(cloud, &columns, Some(&packer));
         source
             .points(
                 progress,
-                |hits, poses: &mut Poses| poses.add(hits),
-                Poses::default,
-                |poses| {
-                    poses.each(|pose| {
-                        if number % every == 0 {
-                            overview.point(0, pose);
+                |hits, runs: &mut Vec<_>| runs.extend(hits.numbers(run.grid)),
+                Vec::new,
+                |runs| {
+                    for opm_workspace::Run { from, to } in runs {
+                        let end = seen + (to - from);
+                        while next < end {
+                            overview.point(0, &run.grid.pose(from + (next - seen)));
+                            next += every;
                         }
-                        number += 1;
-                    });
-                    let rows = overview.take()?;
-                    rows.iter().try_for_each(|(_, rows)| recorder.overview(rows).map_err(failed))
+                        seen = end;
+                    }
+                    let made = overview.take()?;
+                    made.iter()
+                        .try_for_each(|p| recorder.overview_packed(&p.packed).map_err(failed))
                 },
             )
             .map_err(interrupted)?;
@@ -103,16 +293,15 @@ impl Recorder {
             .points(
                 progress,
                 |hits, points: &mut Points<'_>| points.add(hits),
-                || Points::new(cloud, &columns),
+                || Points::new(cloud, &columns, Some(&packer)),
                 |mut points| {
-                    let rows = points.take()?;
-                    rows.iter()
-                        .try_for_each(|(s, rows)| recorder.push(s / together, rows).map_err(failed))
+                    points.take()?.iter().try_for_each(|Portion { slice, packed, .. }| {
+                        recorder.push_packed(slice / together, packed).map_err(failed)
+                    })
                 },
             )
             .map_err(interrupted)?;
-        recorder.finish(&result(run, found)).map_err(failed)?;
-        Ok(path)
+        recorder.finish(&result(run, found)).map_err(failed)
     }
 }
 
@@ -142,6 +331,7 @@ pub fn describe(run: &Run<'_>) -> Metadata {
         ("program", PROGRAM.to_owned()),
         ("mechanism", run.manipulator.mechanism().name.clone()),
         ("mechanism_file", run.loaded.file_name.clone()),
+        ("kind", run.kind.name()),
         ("mode", run.mode()),
         ("poses", run.grid.poses().to_string()),
     ]

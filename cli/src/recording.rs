@@ -4,16 +4,16 @@
 use crate::args::CloudArgs;
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
-use crate::load::Loaded;
+use crate::kind::{Kind, Questions, SetRecording, SetWishes, Study};
+use crate::load;
 use crate::motion::LoadedMotion;
 use crate::record::Recorder;
 use crate::source::Source;
 use crate::trajectory;
 use crate::workspace::Run;
 use opm_core::manipulator::{Manipulator, Mode};
-use opm_core::mechanism::file;
 use opm_core::motion::Motion;
-use opm_workspace::{Count, Grid, Modes, Progress};
+use opm_workspace::{Count, Grid, Modes, Progress, Sections, SetError};
 use std::path::Path;
 use std::sync::atomic::AtomicU64;
 
@@ -52,7 +52,8 @@ pub struct Shown {
     pub color: Option<String>,
 }
 
-/// Records the points of a sweep, as `opm workspace -o` does.
+/// Records the points of a sweep, as `opm workspace -o` does: in the format that the file's name ends
+/// in. A sweep of one section alone is what `--kind upper` or `lower` is.
 ///
 /// # Errors
 /// What was asked for and there is not, by the flag's name without dashes; a file that cannot be
@@ -63,19 +64,52 @@ pub fn record_sweep(
     path: &Path,
     progress: &Progress,
 ) -> Result<(), String> {
-    let Swept { mechanism, manipulator, grid, modes, found } = *swept;
     let Shown { axes, scalars, color } = shown;
-    let loaded = loaded(mechanism)?;
     let args = CloudArgs { output: None, axes, color, scalars };
-    let run = Run { loaded: &loaded, manipulator, grid, modes, limit: None };
-    let record = || -> Result<(), Failure> {
-        let wishes = Wishes::new(&args, manipulator)?;
-        Recorder::check(grid)?;
-        let (recorder, cloud) = (Recorder::create(path)?, Cloud::new(wishes, &run));
-        recorder.record(&run, &cloud, &Source::Sweep(run.sweep()), found, progress)?;
-        Ok(())
+    let record = match swept.grid.sections() {
+        Sections::Whole => record_poses(swept, &args, path, progress),
+        Sections::Upper => record_section(swept, Kind::Upper, &args, path, progress),
+        Sections::Lower => record_section(swept, Kind::Lower, &args, path, progress),
     };
-    record().map_err(told)
+    record.map_err(told)
+}
+
+fn record_poses(
+    swept: &Swept<'_>,
+    args: &CloudArgs,
+    path: &Path,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let Swept { mechanism, manipulator, grid, modes, found } = *swept;
+    let loaded = load::attached(mechanism.name, mechanism.name, mechanism.text)?;
+    let run = Run { loaded: &loaded, manipulator, kind: Kind::Grid, grid, modes, limit: None };
+    let wishes = Wishes::new(args, manipulator.characteristic_length(), manipulator)?;
+    Recorder::check(path, grid)?;
+    let (recorder, cloud) = (Recorder::create(path)?, Cloud::new(wishes, &run));
+    recorder.record(&run, &cloud, &Source::Sweep(run.sweep()), found, None, progress)?;
+    Ok(())
+}
+
+fn record_section(
+    swept: &Swept<'_>,
+    kind: Kind,
+    args: &CloudArgs,
+    path: &Path,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let Swept { mechanism, manipulator, grid, modes, found } = *swept;
+    let loaded = load::attached(mechanism.name, mechanism.name, mechanism.text)?;
+    let run = Run { loaded: &loaded, manipulator, kind, grid, modes, limit: None };
+    let wishes = SetWishes::new(kind, args, manipulator)?;
+    Recorder::check_set(path, &kind.name())?;
+    let recorder = Recorder::create(path)?;
+    let questions = Questions { kind, shape: true, conditioning: None };
+    let study = Study::new(&questions, &run.sweep(), progress).map_err(|error| match error {
+        SetError::Cancelled(cancelled) => Failure::from(cancelled),
+        SetError::Size { .. } => Failure::Work(error.to_string()),
+    })?;
+    recorder.record_set(&run, &SetRecording::new(wishes, &run, &study)?, found, progress)?;
+    Ok(())
 }
 
 /// A motion that is followed.
@@ -106,7 +140,7 @@ pub fn record_motion(
     cancelled: impl Fn() -> bool,
 ) -> Result<(), String> {
     let Followed { mechanism, motion_file, manipulator, motion, mode, rate } = *followed;
-    let loaded = loaded(mechanism)?;
+    let loaded = load::attached(mechanism.name, mechanism.name, mechanism.text).map_err(told)?;
     let motion = LoadedMotion {
         label: motion_file.name.to_owned(),
         file_name: motion_file.name.to_owned(),
@@ -118,22 +152,13 @@ pub fn record_motion(
     run.record(path, &AtomicU64::new(0), cancelled).map_err(told)
 }
 
-fn loaded(mechanism: Attached<'_>) -> Result<Loaded, String> {
-    let Attached { name, text } = mechanism;
-    let file = file::read(text).map_err(|errors| errors.in_file(name))?;
-    Ok(Loaded {
-        label: name.to_owned(),
-        file_name: name.to_owned(),
-        path: None,
-        text: text.to_owned(),
-        file,
-    })
-}
-
 /// The message of a failure, with names of options instead of flags.
 fn told(failure: Failure) -> String {
     match failure {
-        Failure::Usage(message) => message.trim_start_matches("--").to_owned(),
+        Failure::Usage(message) => match message.strip_prefix("--output: ") {
+            Some(of_the_path) => of_the_path.replace("--kind", "section"),
+            None => message.replace("--kind", "section").replace("--", ""),
+        },
         Failure::Work(message) | Failure::Interrupted(message) => message,
         Failure::Closed => "nobody reads what is written".to_owned(),
     }

@@ -18,7 +18,7 @@ pub fn run(
     work: &Work<'_>,
 ) -> Result<(), Failure> {
     let outcome = |found, effort| {
-        let outcome = Outcome { run, found, effort, shard: Some(shard) };
+        let outcome = Outcome { run, found, study: None, effort, shard: Some(shard) };
         work.output.print(&outcome.json(), outcome.text())
     };
     if path.is_file() && !force {

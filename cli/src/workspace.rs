@@ -3,6 +3,7 @@
 use crate::args::{Output, WorkspaceArgs};
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
+use crate::kind::{self, Kind, Questions, SetRecording, SetWishes, Study};
 use crate::load::{self, Loaded};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
@@ -15,11 +16,13 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Shard, Sweep, default_grid,
+    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sections, SetError, Shard,
+    Sweep, default_grid,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
@@ -29,12 +32,22 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         "any" => Modes::Any,
         mode => Modes::One(load::mode(&manipulator, mode)?),
     };
-    let limit = limit(args, &manipulator)?;
-    let given = given_grid(&args.grid, &manipulator)?;
-    let wishes = Wishes::new(&args.cloud, &manipulator)?;
+    let kind = args.kind;
+    kind.check_flags(args, &manipulator)?;
+    let length = characteristic_length(args.length, "--length", &manipulator)?;
+    let limit = args.max_condition.map(|most| ConditionLimit { most, length });
+    let given = given_grid(&args.grid, kind, &manipulator)?;
+    let wishes = match kind.is_of_poses() {
+        true => AnyWishes::Poses(Wishes::new(&args.cloud, length, &manipulator)?),
+        false => AnyWishes::Set(SetWishes::new(kind, &args.cloud, &manipulator)?),
+    };
+    wishes.check_length(args)?;
     if let Some(path) = &args.cloud.output {
         loaded.refuse_as_output(path, &[])?;
-        given.as_ref().map_or(Ok(()), Recorder::check)?;
+        match kind.is_of_poses() {
+            true => given.as_ref().map_or(Ok(()), |grid| Recorder::check(path, grid))?,
+            false => Recorder::check_set(path, &kind.name())?,
+        }
     }
     let recorder = match (&args.cloud.output, args.shard) {
         (Some(path), None) => Some(Recorder::create(path)?),
@@ -44,21 +57,41 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let pool = threads(args.threads)?;
     let grid = match given {
         Some(grid) => grid,
-        None => fitted_grid(&manipulator, modes, output, &pool, &progress)?,
+        None => fitted_grid(&manipulator, kind, modes, output, &pool, &progress)?,
     };
-    let run = Run { loaded: &loaded, manipulator: &manipulator, grid: &grid, modes, limit };
+
+    if kind.sections() != Sections::Whole && !manipulator.sections_decide() {
+        output.note(
+            "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
+             be out of reach, which no section alone is asked for: the whole reaches less than both",
+        );
+    }
+    let run = Run { loaded: &loaded, manipulator: &manipulator, kind, grid: &grid, modes, limit };
     let work = Work { output, pool: &pool, progress: &progress };
     if let (Some(shard), Some(path)) = (args.shard, &args.cloud.output) {
         return shard::run(&run, shard, path, args.force, &work);
     }
 
     let sweep = run.sweep();
-    let (found, effort) = work.count(&sweep)?;
+    let (mut found, effort) = work.count(&sweep)?;
+    let conditioning = args.conditioning.then_some(length);
+    let questions = Questions { kind, shape: args.shape || kind != Kind::Grid, conditioning };
+    let study = work.study(&questions, &sweep, &mut found)?;
     work.warn_of_nothing(&run, &found);
     if let Some(recorder) = recorder {
-        work.record(recorder, wishes, &run, &found, &Source::Sweep(sweep))?;
+        match wishes {
+            AnyWishes::Poses(wishes) => {
+                work.record(recorder, wishes, &run, &found, &Source::Sweep(sweep), Some(&study))?;
+            }
+            AnyWishes::Set(wishes) => {
+                let set = SetRecording::new(wishes, &run, &study)?;
+                let path = recorder.record_set(&run, &set, &found, &progress)?;
+                work.tell_recorded(&path, &found);
+            }
+        }
     }
-    let result = Outcome { run: &run, found: &found, effort, shard: None };
+    let study = Some(&study);
+    let result = Outcome { run: &run, found: &found, study, effort, shard: None };
     output.print(&result.json(), result.text())
 }
 
@@ -80,7 +113,30 @@ impl Work<'_> {
             let (done, poses) = (count(self.progress.done() - before), count(poses));
             Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
         })?;
-        Ok((found, Effort::Counted { seconds: start.elapsed().as_secs_f64().max(1e-9) }))
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        Ok((found, Effort::Counted { poses: sweep.poses(), seconds }))
+    }
+
+    /// Finds out what else is asked of the poses; of a set that is not theirs, its points are what
+    /// is found.
+    fn study(
+        &self,
+        questions: &Questions,
+        sweep: &Sweep<'_>,
+        found: &mut Count,
+    ) -> Result<Study, Failure> {
+        let total = questions.passes() * sweep.poses();
+        let job = || Study::new(questions, sweep, self.progress);
+        let study = self.watch("studying", total, job).map_err(|error| match error {
+            SetError::Cancelled(cancelled) => cancelled.into(),
+            SetError::Size { .. } => {
+                Failure::Work(format!("--kind {}: {error}", questions.kind.name()))
+            }
+        })?;
+        if let Some(set) = &study.set {
+            (found.poses, found.reachable) = (set.points(), set.count());
+        }
+        Ok(study)
     }
 
     /// Records every point that was counted.
@@ -91,24 +147,24 @@ impl Work<'_> {
         run: &Run<'_>,
         found: &Count,
         source: &Source<'_>,
+        study: Option<&Study>,
     ) -> Result<(), Failure> {
         let cloud = Cloud::new(wishes, run);
-        let total = cloud.passes() * run.grid.poses();
-        let job = || recorder.record(run, &cloud, source, found, self.progress);
+        let total = recorder.passes(&cloud) * run.grid.poses();
+        let job = || recorder.record(run, &cloud, source, found, study, self.progress);
         let path = self.watch("recording", total, job)?;
-        self.output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
+        self.tell_recorded(&path, found);
         Ok(())
+    }
+
+    fn tell_recorded(&self, path: &Path, found: &Count) {
+        self.output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
     }
 
     /// Says so where there is nothing in reach.
     pub fn warn_of_nothing(&self, run: &Run<'_>, found: &Count) {
         if found.reachable == 0 {
-            self.output.warn(match run.limit {
-                Some(_) => {
-                    "no pose of the grid is in reach, within the limits and well conditioned"
-                }
-                None => "no pose of the grid is in reach and within the limits",
-            });
+            self.output.warn(run.kind.nothing(run.limit.is_some()));
         }
     }
 
@@ -125,29 +181,48 @@ impl Work<'_> {
     }
 }
 
-/// The limit on the condition number that the flags give.
-fn limit(
-    args: &WorkspaceArgs,
-    manipulator: &Manipulator,
-) -> Result<Option<ConditionLimit>, Failure> {
-    let Some(most) = args.max_condition else { return Ok(None) };
-    let length = characteristic_length(args.length, "--length", manipulator)?;
-    Ok(Some(ConditionLimit { most, length }))
+/// What the points of a recording are asked to be made of.
+enum AnyWishes {
+    Poses(Wishes),
+    Set(SetWishes),
+}
+
+impl AnyWishes {
+    /// Refuses a characteristic length of nothing.
+    fn check_length(&self, args: &WorkspaceArgs) -> Result<(), Failure> {
+        let valued = matches!(self, Self::Poses(wishes) if wishes.asks_condition());
+        if args.length.is_none() || valued || args.conditioning || args.max_condition.is_some() {
+            return Ok(());
+        }
+        let problem = "there is no condition number that it would be of; --max-condition, \
+                       --conditioning or --scalars inverse_condition ask for one";
+        Err(Failure::flag("--length", problem))
+    }
 }
 
 /// The grid that the flags give; `None` without flags.
-fn given_grid(given: &[GridAxis], manipulator: &Manipulator) -> Result<Option<Grid>, Failure> {
+fn given_grid(
+    given: &[GridAxis],
+    kind: Kind,
+    manipulator: &Manipulator,
+) -> Result<Option<Grid>, Failure> {
     if given.is_empty() {
         return Ok(None);
     }
+    let sections = kind.sections();
+    let coordinates = sections.coordinates(manipulator);
     let axes: Result<Vec<_>, _> =
-        given.iter().map(|axis| axis.resolve(manipulator.task_coordinates())).collect();
-    Grid::new(manipulator, axes?).map(Some).map_err(|error| Failure::flag("--grid", error))
+        given.iter().map(|axis| axis.resolve(sections, &coordinates)).collect();
+    let grid = Grid::of(sections, manipulator, axes?);
+    let grid = grid.map_err(|error| Failure::flag("--grid", error))?;
+    kind.check(&grid)?;
+    Ok(Some(grid))
 }
 
 /// A grid over the whole workspace.
 fn fitted_grid(
     manipulator: &Manipulator,
+    kind: Kind,
     modes: Modes,
     output: &Output,
     pool: &ThreadPool,
@@ -156,8 +231,9 @@ fn fitted_grid(
     let find = || pool.install(|| default_grid(manipulator, modes, progress));
     let (grid, extents) = watch(output, "fitting a grid", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting a grid".into()))?;
+    let grid = kind.fit(manipulator, grid);
     output.note(format_args!("grid fitted to the workspace: {}", grid_flags(&grid)));
-    for extent in extents.iter().filter(|extent| extent.unbounded) {
+    for extent in extents.iter().filter(|extent| extent.unbounded && kind.asks(extent, &grid)) {
         output.warn(format_args!(
             "the workspace goes on beyond this grid along {}; limit a joint, or give --grid",
             extent.name
@@ -177,6 +253,7 @@ pub fn grid_flags(grid: &Grid) -> String {
     flags.join(" ")
 }
 
+/// A pool of so many threads, or of one a processor.
 pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
     builder.build().map_err(|error| Failure::at("threads", &error))
@@ -186,6 +263,7 @@ pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
 pub struct Run<'a> {
     pub loaded: &'a Loaded,
     pub manipulator: &'a Manipulator,
+    pub kind: Kind,
     pub grid: &'a Grid,
     pub modes: Modes,
     pub limit: Option<ConditionLimit>,
@@ -205,31 +283,21 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The counted share of the grid's box, over the axes with more than one value. (Those of shards
-    /// add up.)
+    /// The counted share of the box of the set's axes, those with more than one value. (Those of
+    /// shards add up.)
     pub fn measure(&self, found: &Count, units: FileUnits) -> (f64, String) {
-        let mut value = found.reachable as f64 / self.grid.poses() as f64;
-        let mut powers = [(Quantity::Length, 0), (Quantity::Angle, 0)];
-        for (axis, coordinate) in self.grid.axes().iter().zip(self.manipulator.task_coordinates()) {
-            if axis.count > 1 {
-                value *= (axis.max - axis.min) / units.factor(coordinate.quantity);
-                powers.iter_mut().filter(|p| p.0 == coordinate.quantity).for_each(|p| p.1 += 1);
-            }
-        }
-        let factors = powers.iter().filter(|p| p.1 > 0).map(|&(quantity, power)| {
-            let symbol = units.symbol(quantity);
-            if power == 1 { symbol.to_owned() } else { format!("{symbol}^{power}") }
-        });
-        let units: Vec<String> = factors.collect();
-        (value, if units.is_empty() { "1".to_owned() } else { units.join(" ") })
+        let Self { kind, grid, .. } = self;
+        let points: u64 = grid.axes()[kind.axes(grid)].iter().map(|axis| axis.count).product();
+        let axes = kind.axes(grid).map(|i| (&grid.axes()[i], grid.coordinates()[i].quantity));
+        kind::measure(found.reachable as f64 / points as f64, axes, units)
     }
 }
 
 /// What it took to count.
 #[derive(Clone, Copy, Debug)]
 pub enum Effort {
-    /// A sweep of so long.
-    Counted { seconds: f64 },
+    /// A sweep of so many poses and so long.
+    Counted { poses: u64, seconds: f64 },
     /// Sweeps of others, whose times nobody added up.
     Merged { shards: u64 },
     /// A sweep some time ago.
@@ -240,6 +308,8 @@ pub enum Effort {
 pub struct Outcome<'a> {
     pub run: &'a Run<'a>,
     pub found: &'a Count,
+    /// What else is known of it.
+    pub study: Option<&'a Study>,
     pub effort: Effort,
     /// The part of the run that this is of, if it is not the whole.
     pub shard: Option<Shard>,
@@ -265,8 +335,12 @@ impl Outcome<'_> {
             "measure": { "value": value, "units": units, "method": "grid" },
             "imaginary_range": ranges,
             "seconds": self.seconds(),
-            "poses_per_second": self.seconds().map(|seconds| found.poses as f64 / seconds),
+            "poses_per_second": self.rate(),
         });
+        json["kind"] = run.kind.name().into();
+        if let Some(study) = self.study {
+            study.json(&mut json);
+        }
         if let Some(shard) = self.shard {
             json["shard"] = shard.to_string().into();
         }
@@ -281,6 +355,9 @@ impl Outcome<'_> {
         let Self { run, found, .. } = self;
         let units = run.loaded.file.units;
         let mut text = run.manipulator.mechanism().name.clone();
+        if run.kind != Kind::Grid {
+            let _ = write!(text, ", {}", run.kind.title());
+        }
         let mode = run.mode();
         if !mode.is_empty() {
             let _ = write!(text, ", mode {mode}");
@@ -289,7 +366,7 @@ impl Outcome<'_> {
             let _ = write!(text, ", shard {shard}");
         }
         let mut axes = Table::new(["grid", ">from", ">to", "unit", ">values"]);
-        for (axis, c) in run.grid.axes().iter().zip(run.manipulator.task_coordinates()) {
+        for (axis, c) in run.grid.axes().iter().zip(run.grid.coordinates()) {
             let end = |value| text::number(value, c.quantity, units);
             let symbol = units.symbol(c.quantity);
             axes.row([&*axis.name, &end(axis.min), &end(axis.max), symbol, &count(axis.count)]);
@@ -302,11 +379,16 @@ impl Outcome<'_> {
 
         let share = 100.0 * found.reachable as f64 / found.poses as f64;
         let (value, measured) = run.measure(found, units);
-        let mut results = Table::new(["poses", &format!(">{}", count(found.poses))]);
-        results.row(["reachable".into(), count(found.reachable), format!("{} %", short(share))]);
+        let points = [run.kind.points(), &format!(">{}", count(found.poses)), ">"];
+        let mut results = Table::new(points);
+        let reached = run.kind.reached().to_owned();
+        results.row([reached, count(found.reachable), format!("{} %", short(share))]);
         let _ = write!(text, "{results}");
         if run.grid.poses() > 1 {
             let _ = writeln!(text, "measure {} {measured}", short(value));
+        }
+        if let Some(study) = self.study {
+            text += &study.text(units);
         }
 
         if found.imaginary.iter().any(Option::is_some) {
@@ -319,8 +401,8 @@ impl Outcome<'_> {
             let _ = write!(text, "\n{ranges}");
         }
         let _ = match self.effort {
-            Effort::Counted { seconds } => {
-                let rate = short(found.poses as f64 / seconds / 1e6);
+            Effort::Counted { poses, seconds } => {
+                let rate = short(poses as f64 / seconds / 1e6);
                 writeln!(text, "\ncounted in {} s, {rate} million poses/s", short(seconds))
             }
             Effort::Merged { shards } => {
@@ -334,7 +416,15 @@ impl Outcome<'_> {
     /// The time of the count; `None` where it was counted elsewhere.
     fn seconds(&self) -> Option<f64> {
         match self.effort {
-            Effort::Counted { seconds } => Some(seconds),
+            Effort::Counted { seconds, .. } => Some(seconds),
+            Effort::Merged { .. } | Effort::Earlier => None,
+        }
+    }
+
+    /// Poses a second.
+    fn rate(&self) -> Option<f64> {
+        match self.effort {
+            Effort::Counted { poses, seconds } => Some(poses as f64 / seconds),
             Effort::Merged { .. } | Effort::Earlier => None,
         }
     }

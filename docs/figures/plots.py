@@ -15,6 +15,11 @@ def draw():
         zeta="-20deg:20deg:41", xi="-20deg:20deg:41", psi="-20deg:20deg:41",
     )  # fmt: skip
     workspace(
+        "plano-spherical-5dof", "plano-spherical-places.png", "--kind=reachable", panels="slices",
+        x="-230mm:230mm:231", y="-150mm:150mm:151",
+        zeta="-40deg:40deg:17", xi="-40deg:40deg:17", psi="-40deg:40deg:17",
+    )  # fmt: skip
+    workspace(
         "translational-helical-3dof", "translational-helical-workspace.png", panels="slices",
         x="-450mm:450mm:451", y="-500mm:620mm:561", phi="0:600deg:6",
     )  # fmt: skip

@@ -12,6 +12,7 @@ mod forward;
 mod html;
 mod interrupt;
 mod manipulator;
+mod measure;
 mod rows;
 mod screws;
 mod solids;
@@ -34,6 +35,8 @@ mod _native {
     use crate::forward::Assembly;
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
+    #[pymodule_export]
+    use crate::measure::{Measure, measure};
     #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]

@@ -4,23 +4,36 @@ use crate::error::{failed, wrong};
 use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
+use crate::measure::{Measure, goal, measured};
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
 use opm_core::manipulator as core;
-use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress};
+use opm_workspace::measure::Over;
+use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Sections, Shard};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
+/// so that all have work to the end and little is lost with one.
+const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
+
+/// Poses of a part at least: fewer are not worth the way to another process.
+const LEAST_PART: u64 = 1 << 15;
+
+/// What a sweep is of.
+const SECTIONS: [(Sections, &str); 3] =
+    [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
 /// A grid of poses, swept.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
-    owner: Py<Manipulator>,
+    of: Py<Manipulator>,
     manipulator: Arc<core::Manipulator>,
     grid: Grid,
     modes: Modes,
@@ -43,15 +56,24 @@ enum CloudAxes {
     Several(Vec<String>),
 }
 
+/// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
+type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
+
 /// Sweeps a grid: `sweep(m, x=(min, max, count), y=value)`. A coordinate that is not given stays at
 /// home.
 #[pyfunction]
-#[pyo3(signature = (manipulator, /, *, mode = "home", threads = None, **axes))]
+#[pyo3(signature = (
+    manipulator, /, *, mode = "home", section = "whole", threads = None, executor = None, shards = None, **axes
+))]
+#[allow(clippy::too_many_arguments)]
 pub fn sweep(
     py: Python<'_>,
-    manipulator: &Bound<'_, Manipulator>,
+    manipulator: Py<Manipulator>,
     mode: &str,
+    section: &str,
     threads: Option<NonZeroUsize>,
+    executor: Option<Bound<'_, PyAny>>,
+    shards: Option<NonZeroU64>,
     axes: Option<BTreeMap<String, Bound<'_, PyAny>>>,
 ) -> PyResult<Sweep> {
     let axes =
@@ -63,23 +85,63 @@ pub fn sweep(
                 range.repr()?
             ))),
         });
-    let owner = manipulator.clone().unbind();
-    let manipulator = manipulator.get();
-    let inner = Arc::clone(&manipulator.inner);
-    let grid = Grid::new(&inner, axes.collect::<PyResult<_>>()?).map_err(|e| failed(&e))?;
-    let modes = match mode {
-        "any" => Modes::Any,
-        mode => Modes::One(manipulator.mode(mode)?),
+    let axes = axes.collect::<PyResult<_>>()?;
+    let sweep = Sweep::planned(manipulator, axes, [mode, section], threads)?;
+    let parts = Parts::new(executor, shards)?;
+    let count = match &parts {
+        None => sweep.counted(py, Shard::WHOLE)?,
+        Some(parts) => {
+            let plan = Py::new(py, sweep.clone(py))?;
+            let counted: Vec<Counted> = parts.run(plan.bind(py), "_count")?.extract()?;
+            let nothing = Count::nothing(&sweep.manipulator);
+            counted.into_iter().fold(nothing, |all, part| all.merge(&count_of(part)))
+        }
     };
-    let progress = Progress::default();
-    let swept = opm_workspace::Sweep::new(&inner, &grid, modes);
-    let count = interrupt::run(py, threads, || swept.count(&progress), || progress.cancel())?;
-    let count = count.map_err(|error| failed(&error))?;
-    Ok(Sweep { owner, manipulator: inner, grid, modes, mode: mode.to_owned(), threads, count })
+    Ok(Sweep { count, ..sweep })
+}
+
+/// Other processes that do the work, and into how many parts it is divided.
+struct Parts<'py> {
+    executor: Bound<'py, PyAny>,
+    shards: NonZeroU64,
+}
+
+impl<'py> Parts<'py> {
+    fn new(
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Option<Self>> {
+        match (executor, shards) {
+            (Some(executor), shards) => {
+                Ok(Some(Self { executor, shards: shards.unwrap_or(SHARDS) }))
+            }
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(wrong("shards are given, but no executor that they are for")),
+        }
+    }
+
+    /// What `task` of the sweep gives for each part, in their order.
+    fn run(&self, plan: &Bound<'py, Sweep>, task: &str) -> PyResult<Bound<'py, PyAny>> {
+        let blocks = plan.get().grid.poses().div_ceil(LEAST_PART);
+        let shards = self.shards.get().min(blocks.max(1));
+        let module = plan.py().import("opm_kinematics._executor")?;
+        module.call_method1("run", (&self.executor, plan, task, shards))
+    }
+}
+
+fn count_of((poses, reachable, imaginary): Counted) -> Count {
+    Count { poses, reachable, imaginary }
 }
 
 #[pymethods]
 impl Sweep {
+    /// What was swept: `"whole"`, `"upper"` or `"lower"`.
+    #[getter]
+    fn section(&self) -> &'static str {
+        let word = SECTIONS.iter().find(|(sections, _)| *sections == self.grid.sections());
+        word.map_or("", |(_, word)| word)
+    }
+
     /// Poses in reach and within all limits.
     #[getter]
     fn count(&self) -> u64 {
@@ -122,58 +184,122 @@ impl Sweep {
 
     /// `m` or `rad` of every coordinate, by name.
     #[getter]
-    fn units(&self) -> BTreeMap<&'static str, &'static str> {
-        let coordinates = self.manipulator.task_coordinates().iter();
-        coordinates.map(|c| (c.name, c.quantity.unit())).collect()
+    fn units(&self) -> BTreeMap<&str, &'static str> {
+        self.grid.coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
     /// Which poses are reachable: an array of bools with an axis a task coordinate.
-    fn mask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let poses = usize::try_from(self.grid.poses()).map_err(|error| failed(&error))?;
-        let mut mask = Vec::new();
-        let short = |_| no_memory(format_args!("a mask of {poses} poses"));
-        mask.try_reserve_exact(poses).map_err(short)?;
-        mask.resize(poses, false);
-        let row = self.grid.axes()[0].count;
-        self.visit(
-            py,
-            |hits, made: &mut Vec<[usize; 2]>| {
-                let first = hits.row * row;
-                made.extend(
-                    hits.runs.iter().map(|r| [first + r.from, first + r.to].map(|i| i as usize)),
-                );
-            },
-            |made| made.into_iter().for_each(|[from, to]| mask[from..to].fill(true)),
-        )?;
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn mask<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        let mask = match Parts::new(executor, shards)? {
+            None => this.masked(py, Shard::WHOLE)?,
+            Some(parts) => {
+                let parts = parts.run(slf, "_mask")?;
+                py.import("numpy")?.call_method1("concatenate", (parts,))?.cast_into()?
+            }
+        };
         // The first coordinate is the fastest: an array in Fortran's order, which numpy sees as such.
-        let shape: Vec<usize> = self.grid.axes().iter().map(|axis| axis.count as usize).collect();
-        let mask = mask.into_pyarray(py).reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?;
-        Ok(mask.into_any())
+        let shape: Vec<usize> = this.grid.axes().iter().map(|axis| axis.count as usize).collect();
+        Ok(mask.reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?.into_any())
     }
 
     /// The reachable poses, `(count, d)`, in the order of the grid, the first coordinate fastest.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let width = self.grid.axes().len();
-        let count = usize::try_from(self.count.reachable).map_err(|error| failed(&error))?;
-        let mut all = Vec::new();
-        let short = |_| no_memory(format_args!("{count} points"));
-        all.try_reserve_exact(count.saturating_mul(width)).map_err(short)?;
-        self.visit(
-            py,
-            |hits, made: &mut Vec<f64>| {
-                for &first in hits.first {
-                    made.push(first);
-                    made.extend(hits.others);
-                }
-            },
-            |made| all.extend(made),
-        )?;
-        all.into_pyarray(py).reshape([count, width])
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn points<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        match Parts::new(executor, shards)? {
+            None => this.pointed(py, Shard::WHOLE, this.count.reachable).map(Bound::into_any),
+            Some(parts) => {
+                let parts = parts.run(slf, "_points")?;
+                py.import("numpy")?.call_method1("concatenate", (parts,))
+            }
+        }
+    }
+
+    /// How much of the box that the grid covers is in reach, between guaranteed bounds.
+    #[pyo3(signature = (*, tolerance = None, budget = None))]
+    fn measure(
+        &self,
+        py: Python<'_>,
+        tolerance: Option<f64>,
+        budget: Option<u64>,
+    ) -> PyResult<Measure> {
+        let axes = self.grid.axes().iter();
+        let over: Vec<_> = axes.map(|a| Over::new(a.name.as_str(), a.min, a.max)).collect();
+        let asked = (self.grid.sections(), self.modes);
+        measured(py, &self.manipulator, asked, &over, goal(tolerance, budget)?, self.threads)
+    }
+
+    /// Pickling: with the manipulator, not with what the grid holds.
+    #[allow(clippy::type_complexity)]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(
+        Bound<'py, PyAny>,
+        (Py<Manipulator>, Vec<(String, f64, f64, u64)>, [String; 2], Option<NonZeroUsize>, Counted),
+    )> {
+        let this = slf.get();
+        let axes = this.grid.axes().iter().map(|a| (a.name.clone(), a.min, a.max, a.count));
+        let Count { poses, reachable, imaginary } = this.count.clone();
+        let count = (poses, reachable, imaginary);
+        let of = this.of.clone_ref(slf.py());
+        let words = [this.mode.clone(), this.section().to_owned()];
+        let spec = (of, axes.collect(), words, this.threads, count);
+        Ok((slf.get_type().getattr("_restored")?, spec))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        manipulator: Py<Manipulator>,
+        axes: Vec<(String, f64, f64, u64)>,
+        words: [String; 2],
+        threads: Option<NonZeroUsize>,
+        count: Counted,
+    ) -> PyResult<Self> {
+        let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
+        let words = words.each_ref().map(String::as_str);
+        let planned = Self::planned(manipulator, axes.collect(), words, threads)?;
+        Ok(Self { count: count_of(count), ..planned })
+    }
+
+    /// The count of one part, number `number` of `of`.
+    fn _count(&self, py: Python<'_>, number: u64, of: u64) -> PyResult<Counted> {
+        let Count { poses, reachable, imaginary } = self.counted(py, shard(number, of)?)?;
+        Ok((poses, reachable, imaginary))
+    }
+
+    /// Of every pose of one part, in their order, whether it is reachable.
+    fn _mask<'py>(
+        &self,
+        py: Python<'py>,
+        number: u64,
+        of: u64,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        self.masked(py, shard(number, of)?)
+    }
+
+    /// The reachable poses of one part.
+    fn _points<'py>(
+        &self,
+        py: Python<'py>,
+        number: u64,
+        of: u64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.pointed(py, shard(number, of)?, 0)
     }
 
     /// Records the points, as `opm workspace -o` does: the same bytes.
     #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
-    fn write_mcap(
+    fn write(
         &self,
         py: Python<'_>,
         path: PathBuf,
@@ -181,10 +307,10 @@ impl Sweep {
         scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
-        let owner = self.owner.get();
-        let name = owner.file_name();
+        let of = self.of.get();
+        let name = of.file_name();
         let swept = Swept {
-            mechanism: Attached { name: &name, text: owner.text() },
+            mechanism: Attached { name: &name, text: of.text() },
             manipulator: &self.manipulator,
             grid: &self.grid,
             modes: self.modes,
@@ -199,6 +325,23 @@ impl Sweep {
         let progress = Progress::default();
         let work = || record_sweep(&swept, shown, &path, &progress);
         interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
+    }
+
+    /// [`Self::write`], of MCAP alone.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write_mcap(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        axes: Option<CloudAxes>,
+        scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            let path = path.display();
+            return Err(wrong(format!("{path}, expected a name that ends in .mcap")));
+        }
+        self.write(py, path, axes, scalars, color)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -225,16 +368,123 @@ impl Sweep {
     }
 }
 
+/// The section of this name, or both.
+pub fn sections(word: &str) -> PyResult<Sections> {
+    let known = SECTIONS.iter().find(|(_, known)| *known == word);
+    let words = || SECTIONS.map(|(_, word)| word).join(", ");
+    let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
+    known.map(|(sections, _)| *sections).ok_or_else(told)
+}
+
+/// The working modes that count: one, or any.
+pub fn modes(manipulator: &Manipulator, mode: &str) -> PyResult<Modes> {
+    match mode {
+        "any" => Ok(Modes::Any),
+        mode => manipulator.mode(mode).map(Modes::One),
+    }
+}
+
+fn shard(number: u64, of: u64) -> PyResult<Shard> {
+    Shard::new(number, of).map_err(|error| failed(&error))
+}
+
 impl Sweep {
+    /// A sweep that is still to be done, in a mode and of a section.
+    fn planned(
+        of: Py<Manipulator>,
+        axes: Vec<Axis>,
+        [mode, section]: [&str; 2],
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Self> {
+        let manipulator = Arc::clone(&of.get().inner);
+        let grid = Grid::of(sections(section)?, &manipulator, axes).map_err(|e| failed(&e))?;
+        let modes = modes(of.get(), mode)?;
+        let count = Count::nothing(&manipulator);
+        Ok(Self { of, manipulator, grid, modes, mode: mode.to_owned(), threads, count })
+    }
+
+    fn clone(&self, py: Python<'_>) -> Self {
+        Self {
+            of: self.of.clone_ref(py),
+            manipulator: Arc::clone(&self.manipulator),
+            grid: self.grid.clone(),
+            mode: self.mode.clone(),
+            count: self.count.clone(),
+            ..*self
+        }
+    }
+
+    fn swept(&self, shard: Shard) -> opm_workspace::Sweep<'_> {
+        opm_workspace::Sweep::new(&self.manipulator, &self.grid, self.modes).shard(shard)
+    }
+
+    fn counted(&self, py: Python<'_>, shard: Shard) -> PyResult<Count> {
+        let progress = Progress::default();
+        let sweep = self.swept(shard);
+        let count =
+            interrupt::run(py, self.threads, || sweep.count(&progress), || progress.cancel())?;
+        count.map_err(|error| failed(&error))
+    }
+
+    fn masked<'py>(&self, py: Python<'py>, shard: Shard) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let sweep = self.swept(shard);
+        let poses = usize::try_from(sweep.poses()).map_err(|error| failed(&error))?;
+        let before = (1..shard.number()).map(|number| Shard::new(number, shard.count()));
+        let before = before.map(|shard| shard.map_or(0, |shard| self.swept(shard).poses()));
+        let before: u64 = before.sum();
+        let mut mask = Vec::new();
+        let short = |_| no_memory(format_args!("a mask of {poses} poses"));
+        mask.try_reserve_exact(poses).map_err(short)?;
+        mask.resize(poses, false);
+        self.visit(
+            py,
+            shard,
+            |hits, made: &mut Vec<Run>| made.extend(hits.numbers(&self.grid)),
+            |made| {
+                for Run { from, to } in made {
+                    mask[(from - before) as usize..(to - before) as usize].fill(true);
+                }
+            },
+        )?;
+        Ok(mask.into_pyarray(py))
+    }
+
+    fn pointed<'py>(
+        &self,
+        py: Python<'py>,
+        shard: Shard,
+        expected: u64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let width = self.grid.axes().len();
+        let expected = usize::try_from(expected).map_err(|error| failed(&error))?;
+        let mut all = Vec::new();
+        let short = |_| no_memory(format_args!("{expected} points"));
+        all.try_reserve_exact(expected.saturating_mul(width)).map_err(short)?;
+        self.visit(
+            py,
+            shard,
+            |hits, made: &mut Vec<f64>| {
+                for &first in hits.first {
+                    made.push(first);
+                    made.extend(hits.others);
+                }
+            },
+            |made| all.extend(made),
+        )?;
+        let count = all.len() / width;
+        all.into_pyarray(py).reshape([count, width])
+    }
+
     /// Sweeps again, for the points: what `make` keeps of the hits goes to `take`, in their order.
     fn visit<T: Default + Send>(
         &self,
         py: Python<'_>,
+        shard: Shard,
         make: impl Fn(&Hits<'_>, &mut T) + Sync,
         mut take: impl FnMut(T) + Send,
     ) -> PyResult<()> {
         let progress = Progress::default();
-        let sweep = opm_workspace::Sweep::new(&self.manipulator, &self.grid, self.modes);
+        let sweep = self.swept(shard);
         let work = || {
             sweep.points(&progress, &make, T::default, |made| {
                 take(made);

@@ -1,13 +1,20 @@
 //! What is known of the points of a recorded workspace.
 
 use super::source::Source;
+use crate::kind::{FLAT, Kind};
 use crate::record::together;
 use opm_core::joint::Quantity;
+use opm_core::manipulator::Manipulator;
 use opm_mcap::cloud::POSITION_FIELDS;
+use opm_mcap::workspace::BOUNDARY_TOPIC;
 use opm_workspace::{Axis, Grid};
 
 /// What a recorded workspace is made of.
 pub struct Layout {
+    /// What the workspace is of.
+    pub kind: Kind,
+    /// The recording shows the boundary.
+    pub bounded: bool,
     /// What can be known of a point: task coordinates, stored values.
     pub coordinates: Vec<Coordinate>,
     /// The whole grid, in the order of the task coordinates.
@@ -65,6 +72,8 @@ impl Layout {
         };
         let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
         let mut layout = Self {
+            kind: run.get("kind").and_then(|name| Kind::named(name)).unwrap_or(Kind::Grid),
+            bounded: source.recording.topic(BOUNDARY_TOPIC).is_some(),
             coordinates: vec![],
             grid: vec![],
             lost: vec![],
@@ -75,7 +84,10 @@ impl Layout {
         };
 
         let manipulator = source.manipulator();
-        let grid = manipulator.and_then(|manipulator| {
+        if let (Some(manipulator), Some(names)) = (manipulator, run.get("set")) {
+            layout.add_set(manipulator, names.split(','), axis, field);
+        }
+        let grid = manipulator.filter(|_| layout.kind.is_of_poses()).and_then(|manipulator| {
             let axes = manipulator.task_coordinates().iter().map(|c| axis(c.name));
             Grid::new(manipulator, axes.collect::<Option<_>>()?).ok()
         });
@@ -109,11 +121,14 @@ impl Layout {
             }
         }
         // The platform's point; or of an unknown mechanism, the axes as they are called.
-        for (name, field) in names.iter().zip(POSITION_FIELDS) {
+        for (name, field) in names.iter().zip(POSITION_FIELDS).filter(|(name, _)| *name != FLAT) {
             if layout.find(name).is_none() {
                 layout.coordinates.push(Coordinate {
                     name: name.clone(),
-                    quantity: name.starts_with("tip.").then_some(Quantity::Length),
+                    quantity: match name.starts_with("tip.") {
+                        true => Some(Quantity::Length),
+                        false => source.joint_quantity(name),
+                    },
                     home: None,
                     axis: axis(name),
                     place: Place::Field(field.to_owned()),
@@ -127,6 +142,35 @@ impl Layout {
             .filter(|name| scalars.contains(name))
             .and_then(|name| Some((name.clone(), [number("color_min")?, number("color_max")?])));
         layout
+    }
+
+    /// Takes the axes of a set that is no set of poses.
+    fn add_set<'a>(
+        &mut self,
+        manipulator: &Manipulator,
+        names: impl Iterator<Item = &'a str>,
+        axis: impl Fn(&str) -> Option<Axis>,
+        field: impl Fn(&str) -> Option<String>,
+    ) {
+        let known = self.kind.sections().coordinates(manipulator);
+        let axes = |c: &opm_workspace::Coordinate| Some((c.quantity, axis(&c.name)?));
+        self.grid = known.iter().filter_map(axes).collect();
+        for name in names {
+            let (Some(c), Some(axis)) = (known.iter().find(|c| c.name == name), axis(name)) else {
+                continue;
+            };
+            match field(name) {
+                Some(field) => self.coordinates.push(Coordinate {
+                    name: name.to_owned(),
+                    quantity: Some(c.quantity),
+                    home: Some(c.home),
+                    axis: Some(axis),
+                    place: Place::Field(field),
+                }),
+                None if axis.count > 1 => self.lost.push(name.to_owned()),
+                None => {}
+            }
+        }
     }
 
     pub fn find(&self, name: &str) -> Option<usize> {

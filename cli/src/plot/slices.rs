@@ -10,6 +10,7 @@ use opm_mcap::Cloud as Points;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
+use opm_workspace::{Axis, rings};
 
 /// Most slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
@@ -55,6 +56,14 @@ impl<'a> Slices<'a> {
         view: Option<[usize; 2]>,
     ) -> Result<Self, Failure> {
         let view = view.unwrap_or_else(|| fast(layout));
+        if view[0] == view[1] {
+            let name = layout.coordinates.get(view[0]).map_or("one coordinate", |c| &*c.name);
+            return Err(Failure::Work(format!(
+                "{}: nothing to draw: its points differ in {name} alone, and a slice shows two \
+                 coordinates; record with --axes or --scalars, and choose with --values",
+                source.label
+            )));
+        }
         let asked = asked(layout, args, view)?;
         let free: Vec<usize> = (0..layout.coordinates.len())
             .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
@@ -233,7 +242,7 @@ impl<'a> Slices<'a> {
     }
 
     /// The finished tiles.
-    pub fn section(self, source: &Source<'_>) -> Section {
+    pub fn section(mut self, source: &Source<'_>) -> Section {
         let coordinates = &self.layout.coordinates;
         let name = |number: usize, value: u64| {
             let c = &coordinates[number];
@@ -241,10 +250,13 @@ impl<'a> Slices<'a> {
             let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
-        let mut title = "Reachable poses".to_owned();
+        let kind = self.layout.kind;
+        let reached = kind.reached();
+        let reached = format!("{}{}", reached[..1].to_uppercase(), &reached[1..]);
+        let mut title = format!("{reached} {}", kind.points());
         if !self.held.is_empty() {
             let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
-            title = format!("Reachable at {}", held.join(", "));
+            title = format!("{reached} at {}", held.join(", "));
         }
         let positions = self.view.iter().all(|seen| coordinates[seen.number].axis.is_some());
         if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
@@ -252,15 +264,24 @@ impl<'a> Slices<'a> {
             title.push_str(&format!(", at any {names}"));
         }
         let [a, b] = &self.view;
-        let columns = columns(self.tiles.len());
+        let columns = self.columns();
         let marks: Vec<Option<[f64; 2]>> =
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
+        let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let tiles = std::mem::take(&mut self.tiles);
         let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
             let content = match content {
-                Content::Cells(cells, Paint::Plain(_)) => {
-                    Content::Cells(cells, Paint::Plain(Map::Viridis.color(share)))
+                Content::Cells(mut cells, paint) => {
+                    if let Some(lines) = self.boundary(&cells) {
+                        cells.surround(lines);
+                    }
+                    let paint = match paint {
+                        Paint::Plain(_) => Paint::Plain(Map::Viridis.color(share)),
+                        values => values,
+                    };
+                    Content::Cells(cells, paint)
                 }
                 other => other,
             };
@@ -278,9 +299,36 @@ impl<'a> Slices<'a> {
             map: Map::Viridis,
             scale: Scale::Linear,
         });
-        let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
-        let tiles = self.tiles.into_iter().zip(marks).map(tile).collect();
+        let tiles = tiles.into_iter().zip(marks).map(tile).collect();
         Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+    }
+
+    /// Tiles in a row: fewer where tiles that are much wider than high would be too small.
+    fn columns(&self) -> usize {
+        /// Room for a row of tiles, and the least height of one, roughly.
+        const ROOM: [f64; 2] = [800.0, 70.0];
+        let most = columns(self.tiles.len());
+        let [a, b] = self.view.each_ref().map(|seen| &self.layout.coordinates[seen.number]);
+        let (Some(x), Some(y)) = (&a.axis, &b.axis) else { return most };
+        if a.quantity != b.quantity {
+            return most;
+        }
+        let steep = (y.max - y.min) / (x.max - x.min).max(f64::MIN_POSITIVE);
+        let fits = |columns: &usize| ROOM[0] / *columns as f64 * steep >= ROOM[1];
+        (1..=most).rfind(fits).unwrap_or(1)
+    }
+
+    /// The boundary of what is in a tile, where the recording has it, too.
+    fn boundary(&self, cells: &Cells) -> Option<Vec<Vec<[f64; 2]>>> {
+        let axis = |seen: &Seen| {
+            let axis = self.layout.coordinates[seen.number].axis.as_ref()?;
+            let [min, max] = [axis.min, axis.max].map(|value| value / seen.factor);
+            (axis.count > 1).then(|| Axis::new(&*axis.name, min, max, axis.count))
+        };
+        let [a, b] = &self.view;
+        let (x, y) = (axis(a)?, axis(b)?);
+        let inside = cells.hits().filter(|_| self.layout.bounded)?;
+        Some(rings(&x, &y, &inside).into_iter().map(|ring| ring.points).collect())
     }
 
     /// The place of home, if it is in the tile of this value.
@@ -309,6 +357,14 @@ impl<'a> Slices<'a> {
                 axis.count,
                 axis.name
             ));
+        }
+        let bounded = |tile: &(u64, Content)| match &tile.1 {
+            Content::Cells(cells, _) => self.boundary(cells).is_some(),
+            _ => false,
+        };
+        if self.tiles.iter().any(bounded) {
+            let line = "The line is the boundary, half-way between values of the grid.";
+            notes.push(line.to_owned());
         }
         let coarse = |tile: &(u64, Content)| match &tile.1 {
             Content::Cells(cells, _) => cells.is_coarse(),

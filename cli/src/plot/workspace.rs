@@ -7,6 +7,7 @@ use super::source::{Rate, Source, Stop};
 use super::{PanelName, drawn};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
+use crate::kind::Kind;
 use crate::text::{count, short};
 use opm_core::joint::Quantity;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
@@ -30,12 +31,15 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     }
     let layout = Layout::new(source);
     let (view, joints) = chosen(&layout, source, args)?;
-    let mut slices = match args.panels.is_empty() || asked(PanelName::Slices) {
+    // What has no axis on a grid has no slices, unless somebody wants to see them.
+    let default = args.panels.is_empty() && layout.kind != Kind::Imaginary;
+    let mut slices = match default || asked(PanelName::Slices) {
         true => Some(Slices::new(&layout, source, args, view)?),
         false => None,
     };
     let mut cloud = JointCloud::new(source, &joints);
-    if cloud.is_none() && (args.panels.is_empty() || asked(PanelName::Imaginary)) {
+    let meant = args.panels.is_empty() && layout.kind.is_of_poses();
+    if cloud.is_none() && (meant || asked(PanelName::Imaginary)) {
         let hint = missing(source);
         if asked(PanelName::Imaginary) && slices.is_none() {
             return Err(Failure::Work(format!("{}: {hint}", source.label)));
@@ -138,11 +142,12 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
         (Some(reachable), Some(poses)) if poses > 0 => {
             let share = value_label(100.0 * reachable as f64 / poses as f64);
             let (reachable, poses) = (count(reachable), count(poses));
-            parts.push(format!("{reachable} of {poses} poses reachable ({share} %)"));
+            let (points, reached) = (layout.kind.points(), layout.kind.reached());
+            parts.push(format!("{reachable} of {poses} {points} {reached} ({share} %)"));
         }
         _ => {
             let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
-            parts.push(format!("{} poses", count(points.unwrap_or(0))));
+            parts.push(format!("{} {}", count(points.unwrap_or(0)), layout.kind.points()));
         }
     }
     let mut lines = vec![format!("{}; {}", parts.join(", "), source.units_line())];
@@ -152,7 +157,8 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
         lines.push(format!("grid (values): {}", grid.join(", ")));
     }
     let mut title = source.title();
-    title.push_str(": workspace");
+    title.push_str(": ");
+    title.push_str(&layout.kind.title());
     Heading { title, lines, notes: vec![] }
 }
 

@@ -217,3 +217,26 @@ fn missing_shards_are_named_with_their_commands() {
     let all: Vec<&str> = all.iter().map(|part| &**part).collect();
     assert!(opm(&[&["merge"], &all[..]].concat()).text().contains("merged from 5 shards"));
 }
+
+/// Tables, too, are those of one run; a name of another kind says what there is.
+#[test]
+fn the_ending_of_a_name_decides_what_points_are_written_as() {
+    let folder = Folder::new();
+    let parts: Vec<String> = (1..=3).map(|i| shard(&folder, i, 3, &GRID)).collect();
+    let parts: Vec<&str> = parts.iter().map(|part| &**part).collect();
+    for ending in ["npy", "ply"] {
+        let [one, joined] = ["one", "joined"].map(|name| folder.arg(&format!("{name}.{ending}")));
+        let flags = ["--scalars", "theta11"];
+        opm(&[&["workspace", PLANO, "-o", &one], &GRID[..], &flags].concat()).text();
+        opm(&[&["merge", "-o", &joined], &parts[..], &flags].concat()).text();
+        let [one, joined] = [one, joined].map(|path| fs::read(path).unwrap());
+        assert!(one.len() > 10_000 && one == joined, "{ending}");
+    }
+    for wrong in ["points.csv", "points", "points.mcap.gz"] {
+        let output = folder.arg(wrong);
+        let parts = [wrong, ".mcap (", ".npy (NumPy)", ".ply (mesh tools)"];
+        opm(&[&["workspace", PLANO, "-o", &output], &SMALL[..]].concat())
+            .fails_with_one_line(2, &parts);
+        assert!(!folder.path(wrong).exists());
+    }
+}

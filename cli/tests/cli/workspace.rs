@@ -60,6 +60,7 @@ fn a_count_is_what_inverse_kinematics_counts() {
             "imaginary_range",
             "seconds",
             "poses_per_second",
+            "kind",
         ];
         assert_eq!(keys(&found), expected);
         let run = opm_reading(&mixed_poses(), &["ik", PLANO, "--poses", "-", "--mode", mode]);

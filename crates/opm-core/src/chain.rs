@@ -9,6 +9,8 @@
 //! * `inverse` followed by `forward` returns the target.
 //! * On the rim of reach, within [`RIM`], the two branches meet and both are given.
 //! * An angle that the target leaves free is given as zero, its home value.
+//! * The general case is straight arithmetic, which a loop over many targets is vectorised with; what is
+//!   rare, and what is out of reach, is told apart after it ([`ClosedForm`]).
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 
@@ -20,6 +22,7 @@ pub mod spherical;
 pub mod surface;
 pub mod translational;
 
+use crate::angle;
 use crate::joint::Quantity;
 use crate::limits::Limits;
 use crate::task::{Displacement, Subspace, SubspaceKind};
@@ -75,10 +78,10 @@ pub enum Amount {
 
 impl Amount {
     /// The amount as a number; of a turn, the one in `(-π, π]`.
-    #[inline]
+    #[inline(always)]
     pub fn value(self) -> f64 {
         match self {
-            Self::Turn(e) => e.im.atan2(e.re),
+            Self::Turn(e) => angle::atan2(e.im, e.re),
             Self::Value(value) => value,
         }
     }
@@ -107,7 +110,7 @@ impl Amount {
     }
 
     /// The opposite displacement.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn inverse(self) -> Self {
         match self {
@@ -117,12 +120,14 @@ impl Amount {
     }
 
     /// The rotation as a unit vector, whichever way it is held.
-    #[inline]
+    #[inline(always)]
     pub fn turn(self) -> Complex<f64> {
         match self {
             Self::Turn(e) => {
                 let square = e.norm_sqr();
-                if square > 0.0 { e / square.sqrt() } else { Complex::new(1.0, 0.0) }
+                let length = if square > 0.0 { square.sqrt() } else { 1.0 };
+                let [re, im] = if square > 0.0 { [e.re, e.im] } else { [1.0, 0.0] };
+                Complex::new(re / length, im / length)
             }
             Self::Value(value) => unit(value),
         }
@@ -175,16 +180,67 @@ pub enum ChainError {
 /// `e(angle)`, the unit vector at an angle.
 #[inline]
 pub(crate) fn unit(angle: f64) -> Complex<f64> {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = angle::sin_cos(angle);
     Complex::new(cos, sin)
 }
 
 /// `z` as a direction: one where it is zero against `size`, which leaves the angle free.
-#[inline]
+#[inline(always)]
 fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
     // `z` is a product of two lengths: each may be as short as RIM.
     let shortest = RIM * RIM * size;
-    if z.norm_sqr() > shortest * shortest { z } else { Complex::new(1.0, 0.0) }
+    let long = z.norm_sqr() > shortest * shortest;
+    Complex::new(if long { z.re } else { 1.0 }, if long { z.im } else { 0.0 })
+}
+
+/// What a closed form makes of a target without asking what kind of target it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Attempt {
+    /// The joints' displacements, base first; not to be read unless `holds`.
+    pub amounts: [Amount; 3],
+    /// The target is in reach, and not one of those that [`ClosedForm::exception`] is for.
+    pub holds: bool,
+    /// The target is out of reach. Where it neither holds nor is beyond, the exception tells.
+    pub beyond: bool,
+}
+
+impl Attempt {
+    /// Of a closed form to which every target in reach is alike.
+    #[inline(always)]
+    fn decided(amounts: [Amount; 3], holds: bool) -> Self {
+        Self { amounts, holds, beyond: !holds }
+    }
+
+    /// Of the same joints from the other end, for the inverse of the target:
+    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, the joints backwards, each amount with the other sign.
+    #[inline(always)]
+    fn backwards(self) -> Self {
+        let [a3, a2, a1] = self.amounts;
+        Self { amounts: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
+    }
+}
+
+/// A chain whose target fixes its joints up to a sign.
+pub(crate) trait ClosedForm {
+    /// A displacement of its subspace.
+    type Target;
+
+    /// The general case: no branch, no call, so that a loop over targets is vectorised. Which of an
+    /// amount's two kinds it gives depends on the joint alone.
+    fn attempt(&self, target: &Self::Target, branch: Branch) -> Attempt;
+
+    /// What an attempt that does not hold leaves open: by how much the target is out of reach, and the
+    /// targets that are unlike the rest. Not asked for where all attempts hold.
+    fn exception(&self, target: &Self::Target, branch: Branch) -> Result<[Amount; 3], Gap> {
+        Ok(self.attempt(target, branch).amounts)
+    }
+
+    /// The joints' displacements that move the outer link by `target`.
+    #[inline(always)]
+    fn solve(&self, target: &Self::Target, branch: Branch) -> Result<[Amount; 3], Gap> {
+        let Attempt { amounts, holds, .. } = self.attempt(target, branch);
+        if holds { Ok(amounts) } else { self.exception(target, branch) }
+    }
 }
 
 /// The closed form of one section of a leg.
@@ -281,7 +337,7 @@ impl Chain {
     pub fn first(&self, target: &Displacement, branch: Branch) -> Result<Amount, Gap> {
         match (self, target) {
             (Self::Spherical(chain), Displacement::Spherical(r)) => {
-                chain.first(&(r * chain.third_axis()), branch).map(Amount::Turn)
+                chain.first(&chain.third_axis(r), branch).map(Amount::Turn)
             }
             _ => self.inverse(target, branch).map(|amounts| amounts[0]),
         }

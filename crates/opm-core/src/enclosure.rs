@@ -57,9 +57,9 @@ impl Piece {
         Self { number: (angle / PI).floor() as i64 }
     }
 
-    /// What stands for an angle of this piece.
-    pub fn from_angle(self, angle: f64) -> f64 {
-        -(angle - self.start()).cos()
+    /// How far an angle is from the beginning: from zero to π in this piece.
+    pub fn within(self, angle: f64) -> f64 {
+        (angle - self.start()).clamp(0.0, PI)
     }
 
     /// The angle that a number from -1 to 1 stands for.

@@ -40,6 +40,7 @@
 //! * Out of reach is an answer, not an error; an error means that it cannot be computed. On the rim
 //!   of reach, and on a limit, counts as inside.
 
+mod angle;
 pub mod chain;
 pub mod decomposition;
 pub mod enclosure;

@@ -58,12 +58,12 @@ impl Limits {
 
     /// Whether a displacement from home is allowed. A turn is, when it is at any whole number of
     /// turns.
-    #[inline]
+    #[inline(always)]
     pub fn admits(&self, amount: Amount) -> bool {
         match (self, amount) {
             (Self::Free, _) | (Self::Range { arc: None, .. }, Amount::Turn(_)) => true,
             (Self::Range { low, high, .. }, Amount::Value(value)) => {
-                (*low..=*high).contains(&value)
+                (value >= *low) & (value <= *high)
             }
             (Self::Range { arc: Some(arc), .. }, Amount::Turn(e)) => arc.contains(e),
         }
@@ -71,27 +71,19 @@ impl Limits {
 
     /// The value to report for an amount, a displacement from home: the turn nearest to home, but one
     /// within the limits where there is one.
-    #[inline]
+    #[inline(always)]
     pub fn report(&self, amount: Amount) -> f64 {
         let nearest = amount.value();
-        let (Self::Range { low, high, .. }, Amount::Turn(_)) = (self, amount) else {
-            return nearest;
-        };
-        if nearest < *low {
-            let up = nearest + TAU * ((low - nearest) / TAU).ceil();
-            return if up <= *high { up } else { nearest };
+        match (self, amount) {
+            (Self::Range { low, high, .. }, Amount::Turn(_)) => turned(nearest, *low, *high),
+            _ => nearest,
         }
-        if nearest > *high {
-            let down = nearest - TAU * ((nearest - high) / TAU).ceil();
-            return if down >= *low { down } else { nearest };
-        }
-        nearest
     }
 
     /// The value to report for an amount and whether it is allowed, displacements from home: as
     /// [`Limits::report`] and [`Limits::admits`] say, or (`held`) at the turn nearest to a value that
     /// a motion comes from, wherever the limits are.
-    #[inline]
+    #[inline(always)]
     pub fn place(&self, amount: Amount, held: Option<f64>) -> (f64, bool) {
         match held {
             None => (self.report(amount), self.admits(amount)),
@@ -135,12 +127,23 @@ impl Limits {
 
 impl Arc {
     /// Left of the first end and right of the second; of a wide arc either is enough.
-    #[inline]
+    #[inline(always)]
     fn contains(&self, e: Complex<f64>) -> bool {
         let cross = |a: Complex<f64>, b: Complex<f64>| a.re * b.im - a.im * b.re;
         let (after, before) = (cross(self.from, e) >= 0.0, cross(e, self.to) >= 0.0);
-        if self.wide { after || before } else { after && before }
+        if self.wide { after | before } else { after & before }
     }
+}
+
+/// The angle, whole turns added that bring it from outside of a range into it where any do.
+#[inline(always)]
+fn turned(angle: f64, low: f64, high: f64) -> f64 {
+    let (below, above) = (angle < low, angle > high);
+    let past = if below { low - angle } else { angle - high };
+    let turns = TAU * (past / TAU).ceil();
+    let moved = if below { angle + turns } else { angle - turns };
+    let within = (moved >= low) & (moved <= high);
+    if (below | above) & within { moved } else { angle }
 }
 
 #[cfg(test)]

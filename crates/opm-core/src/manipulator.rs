@@ -11,6 +11,7 @@
 //! Either way both sections have as many freedoms as their subspace, and each is one
 //! [`Chain`].
 
+mod batch;
 mod breaks;
 mod inverse;
 mod leg;
@@ -18,6 +19,7 @@ mod locate;
 mod mode;
 mod reach;
 
+pub use batch::{Answers, Batch, RowError};
 pub use breaks::Breaks;
 pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};

@@ -12,7 +12,7 @@ pub use singular::HomeSingularity;
 
 use crate::mechanism::Mechanism;
 use crate::subspace::{Basis, Frame, SubspaceClass, TOLERANCE, fit};
-use crate::svd::Svd;
+use crate::svd::{Svd, singular_values};
 use nalgebra::{DMatrix, Vector6};
 use thiserror::Error;
 
@@ -128,7 +128,7 @@ fn redundant(mechanism: &Mechanism, linkage: &Linkage, kernel: &DMatrix<f64>) ->
 
 /// Rank of rows taken from orthonormal columns, whose natural size is one.
 fn absolute_rank(matrix: DMatrix<f64>) -> usize {
-    Svd::new(matrix).values.iter().filter(|&&value| value > TOLERANCE).count()
+    singular_values(matrix).iter().filter(|&&value| value > TOLERANCE).count()
 }
 
 /// Motions of the platform with every actuator locked.

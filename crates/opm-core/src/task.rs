@@ -48,9 +48,9 @@ mod subspace;
 pub use displacement::{Cut, Displacement};
 pub use subspace::{Subspace, SubspaceKind};
 
+use crate::angle::sin_cos;
 use crate::chain::cylindrical::CylindricalDisplacement;
 use crate::chain::surface::Path;
-use crate::chain::unit;
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::joint::Quantity;
 use crate::leg::{Leg, Section};
@@ -332,17 +332,8 @@ impl Task {
     /// `v` for the first [`Task::lower_count`] coordinates of a pose.
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
-        let q = |i: usize| pose[i] - self.coordinates[i].home;
-        match (self.lower.kind, self.lower_cut) {
-            (SubspaceKind::Planar, Cut::Turn) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
-            (SubspaceKind::Planar, _) => planar(unit(q(2)), q(0), q(1)),
-            (SubspaceKind::Spherical, _) => Displacement::Spherical(tilt(q(0), q(1))),
-            (SubspaceKind::Cylindrical, Cut::Turn) => cylindrical(0.0, q(0)),
-            (SubspaceKind::Cylindrical, _) => cylindrical(q(0), q(1)),
-            (SubspaceKind::TranslationalPlane, _) => {
-                Displacement::Translational(Complex::new(q(0), q(1)))
-            }
-        }
+        let (at, home) = self.section_of(&pose[..self.lower_count], 0);
+        lower_displacement(self.form(Section::Lower), at, home, sin_cos)
     }
 
     /// How `v`, or `v` with a cut after it, moves as the first coordinate grows from home, where it is
@@ -363,23 +354,35 @@ impl Task {
     /// `b` for the remaining coordinates of a pose (the slice starts with `b`'s first).
     #[inline]
     pub fn upper(&self, pose: &[f64]) -> Displacement {
-        let q = |i: usize| pose[i] - self.coordinates[self.lower_count + i].home;
-        match (self.upper.kind, self.upper_cut) {
-            (SubspaceKind::Spherical, _) => {
-                let absolute = euler(pose[0], pose[1], pose[2]);
-                Displacement::Spherical(match &self.home_orientation_inverse {
-                    Some(inverse) => absolute * inverse,
-                    None => absolute,
-                })
+        let (at, home) = self.section_of(pose, self.lower_count);
+        let displacement = upper_displacement(self.form(Section::Upper), at, home, sin_cos);
+        match (displacement, &self.home_orientation_inverse) {
+            (Displacement::Spherical(absolute), Some(inverse)) => {
+                Displacement::Spherical(absolute * inverse)
             }
-            (SubspaceKind::Planar, Cut::Turn) => planar(unit(q(2)), q(0), q(1)),
-            (SubspaceKind::Planar, _) => planar(unit(q(1)), 0.0, q(0)),
-            (SubspaceKind::Cylindrical, Cut::Turn) => cylindrical(q(0), q(1)),
-            (SubspaceKind::Cylindrical, _) => cylindrical(q(0), 0.0),
-            (SubspaceKind::TranslationalPlane, _) => {
-                Displacement::Translational(Complex::new(0.0, q(0)))
-            }
+            (displacement, _) => displacement,
         }
+    }
+
+    /// What decides which coordinates a section has.
+    #[inline]
+    pub(crate) fn form(&self, section: Section) -> Form {
+        let turn = self.cut_point.is_some();
+        match section {
+            Section::Lower => Form { kind: self.lower.kind, turn },
+            Section::Upper => Form { kind: self.upper.kind, turn },
+        }
+    }
+
+    /// A section's coordinates, and their values at home, those past its number zero.
+    #[inline]
+    fn section_of(&self, pose: &[f64], first: usize) -> ([f64; 3], [f64; 3]) {
+        let (mut at, mut home) = ([0.0; 3], [0.0; 3]);
+        let of_section = pose.iter().zip(&self.coordinates[first..]);
+        for ((at, home), (&value, coordinate)) in at.iter_mut().zip(&mut home).zip(of_section) {
+            (*at, *home) = (value, coordinate.home);
+        }
+        (at, home)
     }
 
     /// The platform's displacement from home at a pose, `g = v · b`, base coordinates.
@@ -414,18 +417,81 @@ impl Task {
     }
 }
 
-/// `Rx(mu) Ry(nu)`.
-#[inline]
-fn tilt(mu: f64, nu: f64) -> Matrix3<f64> {
-    let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), mu)
-        * Rotation3::from_axis_angle(&Vector3::y_axis(), nu);
-    tilt.into_inner()
+/// Which coordinates a section has: its subspace, and whether the intersection motion is a rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Form {
+    pub kind: SubspaceKind,
+    pub turn: bool,
+}
+
+/// `v` for its coordinates and their values at home: straight arithmetic where `form` is a constant.
+#[inline(always)]
+pub(crate) fn lower_displacement(
+    form: Form,
+    at: [f64; 3],
+    home: [f64; 3],
+    sin_cos: impl Fn(f64) -> (f64, f64),
+) -> Displacement {
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.turn) {
+        (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
+        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
+        (SubspaceKind::Spherical, _) => {
+            Displacement::Spherical(tilt([sin_cos(q(0)), sin_cos(q(1))]))
+        }
+        (SubspaceKind::Cylindrical, true) => cylindrical(0.0, q(0)),
+        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), q(1)),
+        (SubspaceKind::TranslationalPlane, _) => {
+            Displacement::Translational(Complex::new(q(0), q(1)))
+        }
+    }
+}
+
+/// As [`lower_displacement`], `b`; of a sphere, of which the coordinates are absolute, the orientation.
+#[inline(always)]
+pub(crate) fn upper_displacement(
+    form: Form,
+    at: [f64; 3],
+    home: [f64; 3],
+    sin_cos: impl Fn(f64) -> (f64, f64),
+) -> Displacement {
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.turn) {
+        (SubspaceKind::Spherical, _) => {
+            // Three calls, where a map would not be inlined.
+            let [zeta, xi, psi] = at;
+            Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
+        }
+        (SubspaceKind::Planar, true) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
+        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(1))), 0.0, q(0)),
+        (SubspaceKind::Cylindrical, true) => cylindrical(q(0), q(1)),
+        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), 0.0),
+        (SubspaceKind::TranslationalPlane, _) => {
+            Displacement::Translational(Complex::new(0.0, q(0)))
+        }
+    }
+}
+
+#[inline(always)]
+fn unit_of((sin, cos): (f64, f64)) -> Complex<f64> {
+    Complex::new(cos, sin)
+}
+
+/// `Rx(mu) Ry(nu)`, of the angles' sines and cosines.
+#[inline(always)]
+fn tilt([(sm, cm), (sn, cn)]: [(f64, f64); 2]) -> Matrix3<f64> {
+    Matrix3::new(cn, 0.0, sn, sm * sn, cm, -sm * cn, -cm * sn, sm, cm * cn)
 }
 
 /// `Rz(zeta) Ry(xi) Rz(psi)`.
 #[inline]
 pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
-    let ((sz, cz), (sx, cx), (sp, cp)) = (zeta.sin_cos(), xi.sin_cos(), psi.sin_cos());
+    euler_of([zeta, xi, psi].map(sin_cos))
+}
+
+/// The same, of the angles' sines and cosines.
+#[inline(always)]
+fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
     Matrix3::new(
         cz * cx * cp - sz * sp,
         -cz * cx * sp - sz * cp,

@@ -93,12 +93,10 @@ impl CloudLayout {
     }
 }
 
-/// Turns rows into encoded messages, one cloud at a time, in one buffer.
-///
-/// The buffer holds the message as it goes to the file, so that no cloud is ever in memory twice:
-/// the points are packed behind room for the message's other fields, which are put right in front of
-/// them once their length is known.
-pub(crate) struct CloudEncoder {
+/// Packs points as they stand in a cloud. Recorders do it themselves; this is for who makes points on
+/// many threads, and has them packed there.
+#[derive(Debug, Clone)]
+pub struct Packer {
     columns: Vec<String>,
     floats: usize,
     stride: usize,
@@ -106,32 +104,19 @@ pub(crate) struct CloudEncoder {
     color_low: f64,
     color_scale: f64,
     shades: Vec<[u8; 4]>,
-    /// Everything but timestamp and points.
-    template: PointCloud,
-    /// Where the points start in `buffer`.
-    head_room: usize,
-    buffer: Vec<u8>,
 }
 
-impl CloudEncoder {
-    /// `capacity`: points of the largest cloud to come.
-    pub fn new(layout: &CloudLayout, capacity: usize) -> Result<Self, RecordError> {
+impl Packer {
+    /// For the points of this layout.
+    ///
+    /// # Errors
+    /// A layout that contradicts itself.
+    pub fn new(layout: &CloudLayout) -> Result<Self, RecordError> {
         layout.check()?;
         let columns: Vec<String> = layout.columns().into_iter().map(String::from).collect();
         let color_column =
             columns.iter().position(|name| *name == layout.color).unwrap_or(columns.len() - 1);
         let [low, high] = layout.color_range;
-        let template = PointCloud {
-            timestamp: None,
-            frame_id: layout.frame_id.clone(),
-            pose: Some(identity()),
-            point_stride: layout.stride() as u32,
-            fields: layout.fields(),
-            data: Default::default(),
-        };
-        let head_room = template.encoded_len().unwrap_or(0) + STAMP_BYTES;
-        let mut buffer = Vec::with_capacity(head_room + capacity * layout.stride());
-        buffer.resize(head_room, 0);
         Ok(Self {
             columns,
             floats: 3 + layout.scalars.len(),
@@ -141,9 +126,6 @@ impl CloudEncoder {
             // A range of one value has one colour, the lowest.
             color_scale: if high > low { SHADES as f64 / (high - low) } else { 0.0 },
             shades: (0..SHADES).map(shade).collect(),
-            template,
-            head_room,
-            buffer,
         })
     }
 
@@ -152,22 +134,25 @@ impl CloudEncoder {
         self.columns.len()
     }
 
-    /// Points in the cloud so far.
-    pub fn len(&self) -> usize {
-        (self.buffer.len() - self.head_room) / self.stride
+    /// Bytes of a point.
+    pub fn stride(&self) -> usize {
+        self.stride
     }
 
-    /// Adds points, row by row.
-    pub fn push(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+    /// Adds points, as rows of [`CloudLayout::columns`], to those in `points`.
+    ///
+    /// # Errors
+    /// No whole number of rows, or a value that is no finite float32.
+    pub fn pack(&self, rows: &[f64], points: &mut Vec<u8>) -> Result<(), RecordError> {
         let columns = self.columns.len();
         if !rows.len().is_multiple_of(columns) {
             return Err(RecordError::Row { values: rows.len(), columns });
         }
-        let first = self.buffer.len();
-        self.buffer.resize(first + rows.len() / columns * self.stride, 0);
+        let first = points.len();
+        points.resize(first + rows.len() / columns * self.stride, 0);
         let mut finite = true;
-        let points = self.buffer[first..].chunks_exact_mut(self.stride);
-        for (row, point) in rows.chunks_exact(columns).zip(points) {
+        let packed = points[first..].chunks_exact_mut(self.stride);
+        for (row, point) in rows.chunks_exact(columns).zip(packed) {
             let (packed, rgba) = point.split_at_mut(4 * self.floats);
             for (value, bytes) in row.iter().zip(packed.as_chunks_mut().0) {
                 let value = *value as f32;
@@ -180,20 +165,123 @@ impl CloudEncoder {
             let level = ((value - self.color_low) * self.color_scale) as usize;
             rgba.copy_from_slice(&self.shades[level.min(SHADES - 1)]);
         }
-        if finite { Ok(()) } else { Err(self.non_finite(rows)) }
+        if finite { Ok(()) } else { Err(self.non_finite(rows, first / self.stride)) }
     }
 
-    /// Names the first value that is not a finite float32.
-    fn non_finite(&self, rows: &[f64]) -> RecordError {
+    /// Adds a point for each of `values`: all of them as `row` has it, but for the value of one column,
+    /// if of any. The same as packing them row by row, and faster.
+    ///
+    /// # Errors
+    /// As [`Packer::pack`].
+    pub fn pack_line(
+        &self,
+        row: &[f64],
+        column: Option<usize>,
+        values: &[f64],
+        points: &mut Vec<u8>,
+    ) -> Result<(), RecordError> {
+        let mut row = row.to_vec();
+        if column == Some(self.color_column) {
+            return values.iter().try_for_each(|&value| {
+                row[self.color_column] = value;
+                self.pack(&row, points)
+            });
+        }
+        let Some(count) = values.len().checked_sub(1) else { return Ok(()) };
+        let (start, end) = (points.len(), points.len() + values.len() * self.stride);
+        points.reserve(end - start);
+        self.pack(&row, points)?;
+        // What is there is copied behind itself, twice as much every time.
+        let mut there = 1;
+        while there <= count {
+            let more = there.min(count + 1 - there);
+            points.extend_from_within(start..start + more * self.stride);
+            there += more;
+        }
+        let Some(column) = column.filter(|&column| column < self.floats) else { return Ok(()) };
+        let mut finite = true;
+        for (value, point) in values.iter().zip(points[start..].chunks_exact_mut(self.stride)) {
+            let single = *value as f32;
+            finite &= single.is_finite();
+            point[4 * column..4 * column + 4].copy_from_slice(&single.to_le_bytes());
+        }
+        if finite {
+            return Ok(());
+        }
+        let bad = values.iter().find(|value| !(**value as f32).is_finite());
+        row[column] = bad.copied().unwrap_or_default();
+        Err(self.non_finite(&row, start / self.stride))
+    }
+
+    /// Names the first value that is not a finite float32, in rows behind so many points.
+    fn non_finite(&self, rows: &[f64], before: usize) -> RecordError {
         let columns = self.columns.len();
         let bad = |value: &f64| !(*value as f32).is_finite();
         let at = rows.iter().position(bad).unwrap_or(0);
-        let before = self.len() - rows.len() / columns;
         RecordError::NonFinite {
             column: self.columns[at % columns].clone(),
             point: before + at / columns,
             value: rows[at],
         }
+    }
+}
+
+/// Turns points into encoded messages, one cloud at a time, in one buffer.
+///
+/// The buffer holds the message as it goes to the file, so that no cloud is ever in memory twice:
+/// the points are packed behind room for the message's other fields, which are put right in front of
+/// them once their length is known.
+pub(crate) struct CloudEncoder {
+    packer: Packer,
+    /// Everything but timestamp and points.
+    template: PointCloud,
+    /// Where the points start in `buffer`.
+    head_room: usize,
+    buffer: Vec<u8>,
+}
+
+impl CloudEncoder {
+    /// `capacity`: points of the largest cloud to come.
+    pub fn new(layout: &CloudLayout, capacity: usize) -> Result<Self, RecordError> {
+        let packer = Packer::new(layout)?;
+        let template = PointCloud {
+            timestamp: None,
+            frame_id: layout.frame_id.clone(),
+            pose: Some(identity()),
+            point_stride: layout.stride() as u32,
+            fields: layout.fields(),
+            data: Default::default(),
+        };
+        let head_room = template.encoded_len().unwrap_or(0) + STAMP_BYTES;
+        let mut buffer = Vec::with_capacity(head_room + capacity * layout.stride());
+        buffer.resize(head_room, 0);
+        Ok(Self { packer, template, head_room, buffer })
+    }
+
+    /// What packs its points.
+    pub fn packer(&self) -> &Packer {
+        &self.packer
+    }
+
+    /// Points in the cloud so far.
+    pub fn len(&self) -> usize {
+        (self.buffer.len() - self.head_room) / self.packer.stride
+    }
+
+    /// Adds points, row by row.
+    pub fn push(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+        let head = self.head_room / self.packer.stride;
+        self.packer.pack(rows, &mut self.buffer).map_err(|error| match error {
+            RecordError::NonFinite { column, point, value } => {
+                RecordError::NonFinite { column, point: point - head, value }
+            }
+            other => other,
+        })
+    }
+
+    /// Adds points that are packed.
+    pub fn push_packed(&mut self, points: &[u8]) {
+        self.buffer.extend_from_slice(points);
     }
 
     /// The cloud as an encoded message stamped with `time`, in nanoseconds.
@@ -275,4 +363,45 @@ fn identity() -> Pose {
 fn shade(i: usize) -> [u8; 4] {
     let color = VIRIDIS.eval_rational(i, SHADES);
     [color.r, color.g, color.b, u8::MAX]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line is its points one by one, whichever column differs, whichever decides the colour.
+    #[test]
+    fn a_line_is_packed_like_its_points() {
+        for color in ["x", "xi", "S1", "other"] {
+            let layout = CloudLayout {
+                axes: ["x", "y", "xi"].map(String::from),
+                scalars: vec!["S1".into()],
+                color: color.into(),
+                color_range: [0.0, 5.0],
+                frame_id: "base".into(),
+            };
+            let packer = Packer::new(&layout).unwrap();
+            let row: Vec<f64> = (0..packer.columns()).map(|i| 0.3 + i as f64).collect();
+            for column in (0..packer.columns()).map(Some).chain([None]) {
+                for count in [0, 1, 2, 3, 7, 64, 100] {
+                    let values: Vec<f64> = (0..count).map(|i| f64::from(i) * 0.07).collect();
+                    let (mut line, mut points) = (vec![], vec![]);
+                    for packed in [&mut line, &mut points] {
+                        packer.pack(&row, packed).unwrap();
+                    }
+                    packer.pack_line(&row, column, &values, &mut line).unwrap();
+                    for &value in &values {
+                        let mut row = row.clone();
+                        if let Some(column) = column {
+                            row[column] = value;
+                        }
+                        packer.pack(&row, &mut points).unwrap();
+                    }
+                    assert!(line == points, "{color} {column:?} {count}");
+                }
+            }
+            let values = [1.0, f64::NAN];
+            assert!(packer.pack_line(&row, Some(0), &values, &mut vec![]).is_err(), "{color}");
+        }
+    }
 }

@@ -3,7 +3,8 @@
 //! A recording opens in Foxglove, Lichtblick and Rerun. Its messages are of well-known schemas
 //! (`foxglove.PointCloud`), or flat ones that carry their own ([`joints`]), in chunks of about 1 MiB
 //! compressed with zstd on one thread. What is in a recording is said in [`workspace`] and
-//! [`trajectory`], what in a part of a sweep in [`shard`].
+//! [`trajectory`], what in a part of a sweep in [`shard`], and
+//! as what else points can be written in [`table`].
 //!
 //! * Numbers are SI and radians.
 //! * No clock is read: the same calls write the same bytes.
@@ -21,16 +22,19 @@ mod log;
 mod reader;
 pub mod scene;
 pub mod shard;
+pub mod table;
 pub mod trajectory;
 pub mod workspace;
 
-pub use cloud::CloudLayout;
+pub use cloud::{CloudLayout, Packer};
 pub use decode::{Cloud, Column};
 pub use error::{ReadError, RecordError};
 pub use file::{PartialFile, Sink};
 pub use flat::Flat;
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use scene::ClosedLine;
 pub use shard::{Shard, ShardRecorder};
+pub use table::{TableFormat, TableRecorder, table_columns};
 pub use trajectory::{Trajectory, TrajectoryRecorder};
 pub use workspace::{MAX_SLICES, Workspace, WorkspaceRecorder};

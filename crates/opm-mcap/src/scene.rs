@@ -1,9 +1,10 @@
 //! Bodies made of simple solids: what a scene shows, and points on their surfaces for viewers that
 //! show points only.
 
+use foxglove::messages::line_primitive::Type as LineType;
 use foxglove::messages::{
-    Color, CubePrimitive, CylinderPrimitive, KeyValuePair, Pose, Quaternion, SceneEntity,
-    SceneUpdate, SpherePrimitive, Timestamp, Vector3,
+    Color, CubePrimitive, CylinderPrimitive, KeyValuePair, LinePrimitive, Point3, Pose, Quaternion,
+    SceneEntity, SceneUpdate, SpherePrimitive, Timestamp, Vector3,
 };
 
 use crate::RecordError;
@@ -134,6 +135,36 @@ pub(crate) fn update(bodies: &[Body], time: Timestamp) -> SceneUpdate {
         entity
     });
     SceneUpdate { deletions: Vec::new(), entities: entities.collect() }
+}
+
+/// A line whose last point is joined to its first.
+pub type ClosedLine = Vec<[f64; 3]>;
+
+/// Width of a line, in pixels of a screen.
+const LINE_PIXELS: f64 = 2.5;
+/// Seen on the dark ground of viewers, and on every colour of points.
+const LINE_COLOR: [f64; 4] = [1.0, 1.0, 1.0, 1.0];
+
+/// The boundary of a set, which takes the place of the one before.
+pub(crate) fn lines(frame_id: &str, time: Timestamp, rings: &[ClosedLine]) -> SceneUpdate {
+    let ring = |ring: &ClosedLine| LinePrimitive {
+        r#type: LineType::LineLoop as i32,
+        pose: Some(along([0.0; 3], [0.0, 0.0, 1.0])),
+        thickness: LINE_PIXELS,
+        scale_invariant: true,
+        points: ring.iter().map(|&[x, y, z]| Point3 { x, y, z }).collect(),
+        color: color(LINE_COLOR),
+        colors: vec![],
+        indices: vec![],
+    };
+    let entity = SceneEntity {
+        timestamp: Some(time),
+        frame_id: frame_id.to_owned(),
+        id: "boundary".to_owned(),
+        lines: rings.iter().map(ring).collect(),
+        ..SceneEntity::default()
+    };
+    SceneUpdate { deletions: Vec::new(), entities: vec![entity] }
 }
 
 /// A body's surface as an encoded `foxglove.PointCloud`.

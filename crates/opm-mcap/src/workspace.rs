@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
 //! | `/workspace/slices` | one a slice, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/boundary` | `foxglove.SceneUpdate`, where the boundary is known: its closed lines, with the slice |
 //!
 //! A viewer shows the newest message of a topic. So the overview, which comes first, is always in
 //! view, and moving the playhead walks through the slices; a slice without points has its message
@@ -16,16 +17,20 @@
 
 use std::path::Path;
 
-use foxglove::messages::{PointCloud, Timestamp};
+use foxglove::Encode;
+use foxglove::messages::{PointCloud, SceneUpdate, Timestamp};
 
 use crate::cloud::CloudEncoder;
 use crate::log::{Log, Topic};
+use crate::scene::{ClosedLine, lines};
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
 /// Topic of the overview.
 pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
 /// Topic of the slices.
 pub const SLICES_TOPIC: &str = "/workspace/slices";
+/// Topic of the boundary.
+pub const BOUNDARY_TOPIC: &str = "/workspace/boundary";
 /// Time of the first message, in nanoseconds: one second. Not zero, which viewers take for unset.
 pub const START: u64 = 1_000_000_000;
 /// Time between slices, in nanoseconds.
@@ -98,6 +103,12 @@ impl Plan {
     }
 }
 
+/// Boundaries that are still to be written.
+struct Boundary {
+    topic: Topic,
+    left: std::vec::IntoIter<(u64, Vec<ClosedLine>)>,
+}
+
 /// The slice that points go to.
 #[derive(Debug, Clone, Copy)]
 struct Open {
@@ -118,6 +129,8 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     plan: Plan,
     overview: Topic,
     slices: Topic,
+    frame_id: String,
+    boundary: Option<Boundary>,
     /// None while the overview is being gathered.
     open: Option<Open>,
     pushed: u64,
@@ -152,12 +165,24 @@ impl<W: Sink> WorkspaceRecorder<W> {
         log.metadata("clouds", &describe(layout, &plan))?;
         let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
         let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
-        Ok(Self { log, encoder, plan, overview, slices, open: None, pushed: 0 })
+        let frame_id = layout.frame_id.clone();
+        let (boundary, open) = (None, None);
+        Ok(Self { log, encoder, plan, overview, slices, frame_id, boundary, open, pushed: 0 })
     }
 
     /// The k of the overview's every k-th point: points number 0, k, 2k, ... belong to it.
     pub fn overview_every(&self) -> u64 {
         self.plan.overview_every
+    }
+
+    /// Records the boundary, too, in the cloud's axes: closed lines, each with the number of the slice
+    /// that they are shown from, ascending. Before any points.
+    ///
+    /// # Errors
+    /// After the first slice, lines out of order or beyond the last slice, or a failed write.
+    pub fn boundary(&mut self, lines: Vec<(u64, Vec<ClosedLine>)>) -> Result<(), RecordError> {
+        let result = self.try_boundary(lines);
+        self.settle(result)
     }
 
     /// Adds points of the overview, as rows of [`CloudLayout::columns`].
@@ -177,6 +202,24 @@ impl<W: Sink> WorkspaceRecorder<W> {
     /// too few points, or a failed write.
     pub fn push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
         let result = self.try_push(slice, rows);
+        self.settle(result)
+    }
+
+    /// As [`overview`](Self::overview), of points that a [`Packer`](crate::Packer) of the layout packed.
+    ///
+    /// # Errors
+    /// No whole number of points, too many, or after the first slice.
+    pub fn overview_packed(&mut self, points: &[u8]) -> Result<(), RecordError> {
+        let result = self.try_overview_packed(points);
+        self.settle(result)
+    }
+
+    /// As [`push`](Self::push), of points that a [`Packer`](crate::Packer) of the layout packed.
+    ///
+    /// # Errors
+    /// No whole number of points, and as [`push`](Self::push).
+    pub fn push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
+        let result = self.try_push_packed(slice, points);
         self.settle(result)
     }
 
@@ -206,19 +249,80 @@ impl<W: Sink> WorkspaceRecorder<W> {
         result
     }
 
-    fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+    fn try_boundary(&mut self, lines: Vec<(u64, Vec<ClosedLine>)>) -> Result<(), RecordError> {
         if self.open.is_some() {
             return Err(RecordError::OverviewClosed);
         }
-        let found = (self.encoder.len() + rows.len() / self.encoder.columns()) as u64;
-        let expected = self.plan.overview_points;
-        if found > expected {
-            return Err(RecordError::Count { what: "overview", found, expected });
+        let mut first = 0;
+        for &(slice, _) in &lines {
+            if slice < first || slice >= self.plan.slices {
+                return Err(RecordError::Slice { slice, first, end: self.plan.slices });
+            }
+            first = slice + 1;
         }
+        let topic = self.log.topic::<SceneUpdate>(BOUNDARY_TOPIC)?;
+        self.boundary = Some(Boundary { topic, left: lines.into_iter() });
+        Ok(())
+    }
+
+    fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+        self.announce((rows.len() / self.encoder.packer().columns()) as u64)?;
         self.encoder.push(rows)
     }
 
+    fn try_overview_packed(&mut self, points: &[u8]) -> Result<(), RecordError> {
+        let more = self.whole_points(points)?;
+        self.announce(more)?;
+        self.encoder.push_packed(points);
+        Ok(())
+    }
+
+    /// Checks that so many more points belong to the overview.
+    fn announce(&self, more: u64) -> Result<(), RecordError> {
+        if self.open.is_some() {
+            return Err(RecordError::OverviewClosed);
+        }
+        let (found, expected) = (self.encoder.len() as u64 + more, self.plan.overview_points);
+        if found > expected {
+            return Err(RecordError::Count { what: "overview", found, expected });
+        }
+        Ok(())
+    }
+
+    /// How many points are in so many bytes.
+    fn whole_points(&self, points: &[u8]) -> Result<u64, RecordError> {
+        let stride = self.encoder.packer().stride();
+        if points.len().is_multiple_of(stride) {
+            return Ok((points.len() / stride) as u64);
+        }
+        let bytes = points.len();
+        Err(RecordError::Layout(format!("{bytes} bytes are no whole number of points of {stride}")))
+    }
+
     fn try_push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
+        let columns = self.encoder.packer().columns();
+        let more = (rows.len() / columns) as u64;
+        self.push_parts(slice, more, columns, rows, CloudEncoder::push)
+    }
+
+    fn try_push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
+        let more = self.whole_points(points)?;
+        let stride = self.encoder.packer().stride();
+        self.push_parts(slice, more, stride, points, |encoder, points| {
+            encoder.push_packed(points);
+            Ok(())
+        })
+    }
+
+    /// Adds so many points of a slice, of which each is `width` of `points`, as long as messages allow.
+    fn push_parts<T>(
+        &mut self,
+        slice: u64,
+        more: u64,
+        width: usize,
+        points: &[T],
+        push: impl Fn(&mut CloudEncoder, &[T]) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
         let mut open = self.open_slices()?;
         if slice < open.slice || slice >= self.plan.slices {
             let (first, end) = (open.slice, self.plan.slices);
@@ -227,16 +331,15 @@ impl<W: Sink> WorkspaceRecorder<W> {
         if slice > open.slice {
             open = self.close_until(open, slice)?;
         }
-        let columns = self.encoder.columns();
-        self.pushed += (rows.len() / columns) as u64;
-        let mut rest = rows;
+        self.pushed += more;
+        let mut rest = points;
         while !rest.is_empty() {
             if self.encoder.len() == self.plan.message_points {
                 open = self.write_part(open)?;
             }
-            let room = (self.plan.message_points - self.encoder.len()) * columns;
+            let room = (self.plan.message_points - self.encoder.len()) * width;
             let (now, later) = rest.split_at(room.min(rest.len()));
-            self.encoder.push(now)?;
+            push(&mut self.encoder, now)?;
             rest = later;
         }
         Ok(())
@@ -269,6 +372,17 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(open)
     }
 
+    /// Writes the boundary that goes with a slice, if there is one still to be written.
+    fn write_boundary(&mut self, slice: u64, time: u64) -> Result<(), RecordError> {
+        let Some(boundary) = &mut self.boundary else { return Ok(()) };
+        let Some(rings) = boundary.at(slice) else { return Ok(()) };
+        let mut message = Vec::new();
+        lines(&self.frame_id, stamp(time)?, &rings)
+            .encode(&mut message)
+            .map_err(|reason| RecordError::Layout(format!("the boundary: {reason}")))?;
+        self.log.message(&mut boundary.topic, time, &message)
+    }
+
     /// Writes the gathered points as the open slice's next message.
     fn write_part(&mut self, open: Open) -> Result<Open, RecordError> {
         const LIMIT: u64 = SLICE_STEP / PART_STEP;
@@ -277,9 +391,18 @@ impl<W: Sink> WorkspaceRecorder<W> {
             return Err(RecordError::SliceTooLarge { slice, limit: LIMIT });
         }
         let time = START + slice * SLICE_STEP + parts * PART_STEP;
+        self.write_boundary(slice, time)?;
         self.log.message(&mut self.slices, time, self.encoder.message(stamp(time)?)?)?;
         self.encoder.clear();
         Ok(*self.open.insert(Open { slice, parts: parts + 1 }))
+    }
+}
+
+impl Boundary {
+    /// The lines that are shown from this slice on, if they are others than before.
+    fn at(&mut self, slice: u64) -> Option<Vec<ClosedLine>> {
+        let next = self.left.as_slice().first()?;
+        (next.0 <= slice).then(|| self.left.next())?.map(|(_, lines)| lines)
     }
 }
 

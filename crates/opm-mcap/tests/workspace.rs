@@ -3,9 +3,11 @@
 mod common;
 
 use common::{Seen, bare_layout, clouds, file, layout, record, recorded, row, rows, workspace};
-use opm_mcap::workspace::{MAX_MESSAGE_POINTS, OVERVIEW_TOPIC, PART_STEP, SLICE_STEP};
-use opm_mcap::workspace::{SLICES_TOPIC, START};
-use opm_mcap::{RecordError, WorkspaceRecorder};
+use foxglove::Decode;
+use foxglove::messages::{LinePrimitive, SceneUpdate};
+use opm_mcap::workspace::{BOUNDARY_TOPIC, MAX_MESSAGE_POINTS, OVERVIEW_TOPIC, PART_STEP};
+use opm_mcap::workspace::{SLICE_STEP, SLICES_TOPIC, START, slice_at};
+use opm_mcap::{ReadError, RecordError, WorkspaceRecorder};
 use std::io::Cursor;
 
 /// Ends of the viridis map as published (matplotlib's `_viridis_data`, first and last entry).
@@ -278,4 +280,40 @@ fn slices_are_limited() {
     let mut bytes = Vec::new();
     let result = WorkspaceRecorder::new(Cursor::new(&mut bytes), &workspace(layout(), 0, u64::MAX));
     assert!(matches!(result, Err(RecordError::TooManySlices { .. })));
+}
+
+/// Boundaries come with their slices, whether these have points or not, and the last stays in view.
+#[test]
+fn boundaries_are_shown_from_their_slices_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bounded.mcap");
+    let square = |side: f64| vec![[0.0, 0.0, 1.0], [side, 0.0, 1.0], [side, side, 1.0]];
+    let lines = vec![(0, vec![square(1.0)]), (2, vec![square(2.0), square(3.0)]), (3, vec![])];
+    let mut recorder = WorkspaceRecorder::create(&path, &workspace(layout(), 2, 5)).unwrap();
+    recorder.boundary(lines.clone()).unwrap();
+    recorder.overview(&rows(0..2)).unwrap();
+    recorder.push(2, &rows(0..2)).unwrap();
+    recorder.finish(&record([])).unwrap();
+    let mut seen: Vec<(u64, Vec<opm_mcap::ClosedLine>)> = vec![];
+    opm_mcap::read::<ReadError>(&path, |message| {
+        if message.topic == BOUNDARY_TOPIC {
+            let scene = SceneUpdate::decode(message.data).unwrap();
+            let [entity] = &scene.entities[..] else { panic!("{scene:?}") };
+            assert_eq!((&*entity.id, &*entity.frame_id), ("boundary", "base"));
+            let line = |line: &LinePrimitive| -> Vec<[f64; 3]> {
+                line.points.iter().map(|p| [p.x, p.y, p.z]).collect()
+            };
+            seen.push((slice_at(message.time).unwrap(), entity.lines.iter().map(line).collect()));
+        }
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!(seen, lines);
+
+    for wrong in [vec![(1, vec![]), (1, vec![])], vec![(5, vec![])], vec![(2, vec![]), (0, vec![])]]
+    {
+        let mut recorder =
+            WorkspaceRecorder::new(Cursor::new(Vec::new()), &workspace(layout(), 0, 5)).unwrap();
+        assert!(matches!(recorder.boundary(wrong), Err(RecordError::Slice { .. })));
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! A line runs half-way between a point that is in and its neighbour that is out. Where two points that
 //! are in meet at a corner alone, they are kept apart, as [`components`](crate::components) does. Where
-//! the set goes up to the edge of the grid, so does the line: what is beyond is not known. W. E.
+//! the set goes up to the edge of the grid, so does the line: what is beyond is not known, and an angle
+//! that comes full circle is cut open there. W. E.
 //! Lorensen, H. E. Cline, *Marching cubes*, SIGGRAPH 1987, in the plane.
 
 use crate::grid::Axis;

@@ -59,7 +59,12 @@ impl<'a> Conditioned<'a> {
     /// there is no such mode.
     pub fn local_index(&mut self, pose: &[f64], modes: Modes) -> Option<f64> {
         self.first(pose, modes)?;
-        Some(self.condition.recip())
+        Some(self.index())
+    }
+
+    /// The local conditioning index of the solution that was admitted last.
+    pub fn index(&self) -> f64 {
+        self.condition.recip()
     }
 
     /// The joints in the first working mode, all-plus first, in which a pose is in reach, within all

@@ -123,7 +123,7 @@ pub enum Sections {
 
 impl Sections {
     /// What its coordinates are called.
-    pub(crate) fn coordinate(self) -> &'static str {
+    pub fn coordinate(self) -> &'static str {
         match self {
             Self::Whole => "task coordinate",
             Self::Upper => "task coordinate of the upper section",

@@ -26,7 +26,7 @@ const ROUND: usize = 256;
 /// The share of the undecided boxes that a round splits.
 const SHARE: usize = 4;
 
-/// Rounding of a sum of shares, each of a few numbers, as a share of the whole.
+/// Rounding of a compensated sum of products of a few numbers, as a share of the whole.
 const ROUNDING: f64 = 1e-14;
 
 /// When a measure is good enough.
@@ -34,7 +34,7 @@ const ROUNDING: f64 = 1e-14;
 pub struct Goal {
     /// How far the true measure may be from the value, as a share of the value.
     pub tolerance: f64,
-    /// Most boxes to look at. Some 50 bytes of memory each.
+    /// Most boxes to look at, some 100 bytes of memory each; the first ones are looked at in any case.
     pub budget: u64,
 }
 
@@ -146,13 +146,34 @@ impl Asker<'_> {
     }
 }
 
+/// A sum whose rounding does not grow with the number of its terms (A. Neumaier, 1974); of numbers that are
+/// not negative.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    sum: f64,
+    rest: f64,
+}
+
+impl Sum {
+    fn add(&mut self, term: f64) {
+        let sum = self.sum + term;
+        let (large, small) = if self.sum >= term { (self.sum, term) } else { (term, self.sum) };
+        self.rest += (large - sum) + small;
+        self.sum = sum;
+    }
+
+    fn value(self) -> f64 {
+        self.sum + self.rest
+    }
+}
+
 /// The boxes of a domain, as far as they are decided.
 struct Search<'a> {
     asker: Asker<'a>,
     /// Those that are worth splitting.
     open: Vec<Bounds>,
-    /// Sums over the others.
-    settled: [f64; 2],
+    /// Sums of the bounds of the others.
+    settled: [Sum; 2],
     /// The best bounds so far.
     bounds: [f64; 2],
     boxes: u64,
@@ -161,8 +182,13 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(asker: Asker<'a>) -> Self {
         let whole = asker.domain.whole();
-        let mut search =
-            Self { asker, open: Vec::new(), settled: [0.0; 2], bounds: [0.0, whole], boxes: 0 };
+        let mut search = Self {
+            asker,
+            open: Vec::new(),
+            settled: [Sum::default(); 2],
+            bounds: [0.0, whole],
+            boxes: 0,
+        };
         for cell in asker.domain.cells() {
             search.boxes += 1;
             search.open.push(asker.ask(cell));
@@ -173,21 +199,26 @@ impl<'a> Search<'a> {
 
     /// Takes those boxes away that no split makes better known, and sums up.
     fn settle(&mut self) {
-        let (settled, whole) = (&mut self.settled, self.asker.domain.whole());
+        let settled = &mut self.settled;
         self.open.retain(|bounds| {
             if bounds.split.is_none() {
-                settled[0] += bounds.lower;
-                settled[1] += bounds.upper;
+                settled[0].add(bounds.lower);
+                settled[1].add(bounds.upper);
             }
             bounds.split.is_some()
         });
-        let sum = |of: fn(&Bounds) -> f64| self.open.iter().map(of).sum::<f64>();
-        let [lower, upper] = [sum(|b| b.lower) + settled[0], sum(|b| b.upper) + settled[1]];
-        let rounding = ROUNDING * whole * (1.0 + self.boxes as f64).log2();
-        self.bounds = [
-            self.bounds[0].max(lower - rounding * f64::from(u8::from(lower > 0.0))),
-            self.bounds[1].min(upper + rounding * f64::from(u8::from(upper > 0.0))),
-        ];
+        let [mut lower, mut upper] = self.settled;
+        for bounds in &self.open {
+            lower.add(bounds.lower);
+            upper.add(bounds.upper);
+        }
+        // Of nothing there is nothing to round.
+        let rounded = |sum: Sum, sign: f64| match sum.value() {
+            0.0 => 0.0,
+            value => value + sign * ROUNDING * self.asker.domain.whole(),
+        };
+        self.bounds[0] = self.bounds[0].max(rounded(lower, -1.0));
+        self.bounds[1] = self.bounds[1].min(rounded(upper, 1.0));
     }
 
     fn found(&self) -> Measured {

@@ -57,7 +57,7 @@ pub struct Count {
     /// Poses in reach and within all limits.
     pub reachable: u64,
     /// Lowest and highest value of every imaginary joint over the reachable poses; `None` where
-    /// there is no such pose, and in a grid of the lower section alone, which has them as axes.
+    /// there is no such pose.
     pub imaginary: Vec<Option<[f64; 2]>>,
 }
 

@@ -1,4 +1,5 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from os import PathLike
 from typing import TypeAlias, final
 
@@ -11,6 +12,7 @@ __all__ = [
     "Intersection",
     "LegSplit",
     "Manipulator",
+    "Measure",
     "Motion",
     "OpmError",
     "Singularity",
@@ -24,6 +26,7 @@ __all__ = [
     "command",
     "example",
     "examples",
+    "measure",
     "sweep",
     "trajectory",
 ]
@@ -34,6 +37,8 @@ class OpmError(ValueError):
     """A mechanism, a pose or an option that cannot be computed with."""
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
+
+_Executor: TypeAlias = Executor | Callable[[], Executor]
 
 @final
 class Decomposition:
@@ -489,9 +494,49 @@ class Solutions:
     def _repr_html_(self) -> str: ...
 
 @final
+class Measure:
+    """How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+
+    In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
+    orientations is Haar's.
+    """
+
+    @property
+    def value(self) -> float:
+        """The middle of the bounds."""
+    @property
+    def lower(self) -> float:
+        """The measure is not less."""
+    @property
+    def upper(self) -> float:
+        """The measure is not more."""
+    @property
+    def whole(self) -> float:
+        """The measure of the whole box."""
+    @property
+    def fraction(self) -> float:
+        """``value / whole``."""
+    @property
+    def units(self) -> str:
+        """What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``."""
+    @property
+    def boxes(self) -> int:
+        """Boxes that were looked at."""
+    @property
+    def stop(self) -> str:
+        """Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+        the bounds no closer."""
+    @property
+    def over(self) -> dict[str, tuple[float, float]]:
+        """Lowest and highest value of every coordinate."""
+
+@final
 class Sweep:
     """A grid of poses, swept."""
 
+    @property
+    def section(self) -> str:
+        """``"whole"``, or the one section that it is of."""
     @property
     def mode(self) -> str:
         """The working mode, as it was asked for."""
@@ -514,9 +559,19 @@ class Sweep:
     @property
     def units(self) -> dict[str, str]:
         """``"m"`` or ``"rad"`` of every task coordinate, by name."""
-    def mask(self) -> NDArray[np.bool_]:
-        """Which poses are reachable: an axis a task coordinate, as many values as the grid has."""
-    def write_mcap(
+    def mask(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.bool_]:
+        """Which poses are reachable: an axis a task coordinate, as many values as the grid has.
+
+        `executor` and `shards` are those of :func:`sweep`.
+        """
+    def points(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
+        """(count, d): the reachable poses in the order of the grid, the first coordinate fastest.
+
+        `executor` and `shards` are those of :func:`sweep`.
+        """
+    def measure(self, *, tolerance: float | None = None, budget: int | None = None) -> Measure:
+        """How much of the box that the grid covers is in reach: :func:`measure` over it."""
+    def write(
         self,
         path: str | PathLike[str],
         *,
@@ -524,16 +579,19 @@ class Sweep:
         scalars: Sequence[str] | None = None,
         color: str | None = None,
     ) -> None:
-        """Record the points as ``opm workspace -o`` does, byte for byte: for Foxglove, Lichtblick and Rerun.
+        """Record the points as ``opm workspace -o`` does, byte for byte.
+
+        Of a section alone, as ``--kind upper`` or ``lower`` does: MCAP only.
 
         Parameters
         ----------
         path : path
-            The file appears when it is whole.
+            Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
+            when it is whole.
         axes : sequence of three str, or "tip", optional
             The task coordinates that are x, y and z of the cloud, or the platform's point.
         scalars : sequence of str, optional
-            Values stored with every point: task coordinates, imaginary joints, actuated joints.
+            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``.
         color : str, optional
             The one of them that the colour shows.
 
@@ -542,15 +600,25 @@ class Sweep:
         OpmError
             A name that is none, a file that cannot be written.
         """
-    def points(self) -> NDArray[np.float64]:
-        """(count, d): the reachable poses in the order of the grid, the first coordinate fastest."""
+    def write_mcap(
+        self,
+        path: str | PathLike[str],
+        *,
+        axes: Sequence[str] | None = None,
+        scalars: Sequence[str] | None = None,
+        color: str | None = None,
+    ) -> None:
+        """:meth:`write`, of a name that ends in ``.mcap``."""
 
 def sweep(
     manipulator: Manipulator,
     /,
     *,
     mode: str = "home",
+    section: str = "whole",
     threads: int | None = None,
+    executor: _Executor | None = None,
+    shards: int | None = None,
     **axes: float | tuple[float, float, int],
 ) -> Sweep:
     """Find which poses of a grid are reachable and within all limits.
@@ -560,16 +628,62 @@ def sweep(
     manipulator : Manipulator
     mode : str
         ``"home"``, ``"any"``, or a sign for every two-valued choice.
+    section : str
+        ``"whole"``: poses of the platform. ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the
+        imaginary joints that it needs. ``"lower"``: the lower section alone, by its task coordinates and the imaginary joints.
     threads : int, optional
-        How many; the result does not depend on it. A processor each if not given.
+        How many, here or in each worker; the result does not depend on it. A processor each if not given.
+    executor : concurrent.futures.Executor or callable, optional
+        Who does the work: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
+        ``mpi4py.futures``. What is sent is the manipulator, the grid and the number of a shard; the result is that of one
+        process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
+        takes no more work: give a function that makes one, and the shards that are missing go to a new one.
+    shards : int, optional
+        How many parts the executor gets: 64 if not given, fewer for small grids.
     **axes
-        Of each task coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
+        Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
         is not given stays at home.
 
     Raises
     ------
     OpmError
-        An axis that is none, ends that are not numbers or reversed, an unknown mode.
+        An axis that is none, ends that are not numbers or reversed, an unknown mode; shards that were lost again and again.
+    """
+
+def measure(
+    manipulator: Manipulator,
+    /,
+    *,
+    over: Mapping[str, float | tuple[float, float]] | None = None,
+    section: str = "whole",
+    mode: str = "home",
+    tolerance: float | None = None,
+    budget: int | None = None,
+    threads: int | None = None,
+) -> Measure:
+    """Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    over : mapping, optional
+        Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
+        workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+    section : str
+        ``"whole"``, ``"upper"`` or ``"lower"``, as for :func:`sweep`.
+    mode : str
+        ``"home"``, ``"any"``, or a sign for every two-valued choice.
+    tolerance : float, optional
+        How far the true measure may be from the value, as a share of it: 0.01 if not given.
+    budget : int, optional
+        Boxes to look at, at most: 2**22 if not given.
+    threads : int, optional
+        How many; the result does not depend on it. A processor each if not given.
+
+    Raises
+    ------
+    OpmError
+        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode.
     """
 
 @final

@@ -2,7 +2,9 @@
 //! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
 
 use super::surface::Surface;
-use super::{Amount, ChainError, DEGENERATE, unit};
+use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap};
+use crate::angle::{MOST_REDUCED, sin_cos_reduced};
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// A displacement about and along one axis.
@@ -26,11 +28,6 @@ pub struct CoaxialJoint {
 impl CoaxialJoint {
     fn is_revolute(&self) -> bool {
         self.turn != 0.0 && self.advance == 0.0
-    }
-
-    #[inline]
-    fn amount(&self, value: f64) -> Amount {
-        if self.is_revolute() { Amount::Turn(unit(value)) } else { Amount::Value(value) }
     }
 }
 
@@ -66,6 +63,12 @@ impl CylindricalChain {
         !self.joints.iter().any(CoaxialJoint::is_revolute)
     }
 
+    /// Which joint does not count whole turns; two do not, or the chain is none.
+    #[inline]
+    pub(crate) fn revolute(&self) -> Option<usize> {
+        self.joints.iter().position(CoaxialJoint::is_revolute)
+    }
+
     /// Whether an amount of a joint is a turn.
     pub(super) fn turns(&self, joint: usize) -> bool {
         self.joints[joint].is_revolute()
@@ -82,10 +85,20 @@ impl CylindricalChain {
     /// The joints' amounts that displace the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: &CylindricalDisplacement) -> [Amount; 2] {
+        let mut amounts = self.coordinates(target).map(Amount::Value);
+        if let Some(revolute) = self.revolute() {
+            amounts[revolute] = Amount::Turn(amounts[revolute].turn());
+        }
+        amounts
+    }
+
+    /// The joints' coordinates, those of revolute joints too with whole turns.
+    #[inline(always)]
+    fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
         let [p, q] = self.joints;
         let first = (target.angle * q.advance - q.turn * target.advance) / self.determinant;
         let second = (p.turn * target.advance - target.angle * p.advance) / self.determinant;
-        [p.amount(first), q.amount(second)]
+        [first, second]
     }
 
     /// The displacement of the outer link; its whole turns are those that the amounts hold.
@@ -96,5 +109,33 @@ impl CylindricalChain {
             angle: p.turn * a + q.turn * b,
             advance: p.advance * a + q.advance * b,
         }
+    }
+}
+
+/// The closed form with the revolute joint's number as a constant, past the last one where none is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WithRevolute<const NUMBER: usize>(pub CylindricalChain);
+
+impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
+    type Target = CylindricalDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &CylindricalDisplacement, _: Branch) -> Attempt {
+        let [first, second] = self.0.coordinates(target);
+        let mut amounts = [first, second, 0.0].map(Amount::Value);
+        let mut reduced = true;
+        if NUMBER < 2 {
+            let angle = if NUMBER == 0 { first } else { second };
+            let (sin, cos) = sin_cos_reduced(angle);
+            amounts[NUMBER] = Amount::Turn(Complex::new(cos, sin));
+            reduced = angle.abs() <= MOST_REDUCED;
+        }
+        Attempt { amounts, holds: reduced, beyond: false }
+    }
+
+    #[cold]
+    fn exception(&self, target: &CylindricalDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+        let [first, second] = self.0.inverse(target);
+        Ok([first, second, Amount::Value(0.0)])
     }
 }

@@ -21,7 +21,7 @@ pub use rrp::Rrp;
 pub use rrr::Rrr;
 
 use super::region::Region;
-use super::{Amount, Branch, ChainError, Gap};
+use super::{Amount, Branch, ChainError, ClosedForm, Gap};
 use crate::limits::Limits;
 use nalgebra::Complex;
 
@@ -111,9 +111,9 @@ impl Pivot {
     }
 
     /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
-    #[inline]
+    #[inline(always)]
     fn amount(&self, r: Complex<f64>) -> Amount {
-        Amount::Turn(if self.reversed { r.conj() } else { r })
+        Amount::Turn(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
     }
 }
 
@@ -205,13 +205,13 @@ impl PlanarChain {
     #[inline]
     pub fn inverse(&self, target: &PlanarDisplacement, branch: Branch) -> Result<[Amount; 3], Gap> {
         match self {
-            Self::Rrr(chain) => chain.inverse(target, branch),
-            Self::Prr(chain) => chain.inverse(target, branch),
-            Self::Rrp(chain) => chain.inverse(target, branch),
-            Self::Rpr(chain) => chain.inverse(target, branch),
-            Self::Rpp(chain) => Ok(chain.inverse(target)),
-            Self::Ppr(chain) => Ok(chain.inverse(target)),
-            Self::Prp(chain) => chain.inverse(target),
+            Self::Rrr(chain) => chain.solve(target, branch),
+            Self::Prr(chain) => chain.solve(target, branch),
+            Self::Rrp(chain) => chain.solve(target, branch),
+            Self::Rpr(chain) => chain.solve(target, branch),
+            Self::Rpp(chain) => chain.solve(target, branch),
+            Self::Ppr(chain) => chain.solve(target, branch),
+            Self::Prp(chain) => chain.solve(target, branch),
         }
     }
 
@@ -240,11 +240,11 @@ impl PlanarChain {
             Self::Rpr(chain) if free(&[0, 2]) => chain.region(rotation, branch, range(1)),
             Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_) => return None,
             Self::Rpp(chain) => if_within(
-                within(0, chain.inverse(&target)),
+                within(0, chain.attempt(&target, branch).amounts),
                 chain.region(rotation, [range(1), range(2)]),
             ),
             Self::Ppr(chain) => if_within(
-                within(2, chain.inverse(&target)),
+                within(2, chain.attempt(&target, branch).amounts),
                 chain.region(rotation, [range(0), range(1)]),
             ),
             Self::Prp(chain) => {
@@ -263,14 +263,14 @@ pub fn forward(joints: &[PlanarJoint; 3], amounts: &[Amount; 3]) -> PlanarDispla
 }
 
 /// `a × b`, the third component of the cross product.
-#[inline]
+#[inline(always)]
 pub(super) fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.im - a.im * b.re
 }
 
 /// `z = m u + n v`: the coordinates of `z` along two unit directions that are not parallel. The first
 /// makes up for the rounding of the second, so that the sum is `z` however near to parallel they are.
-#[inline]
+#[inline(always)]
 pub(super) fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
     let n = cross(u, z) / cross(u, v);
     let rest = z - v * n;

@@ -1,8 +1,9 @@
 //! Chains inside a sphere: three revolutes through its centre, with any axes, and the ball.
 
 use super::surface::Surface;
-use super::{Amount, Branch, ChainError, DEGENERATE, Gap, RIM};
-use nalgebra::{Complex, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
+use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap, RIM};
+use crate::angle::atan2;
+use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 
 /// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. `+` where the triple product
 /// `a₁ · (a₂ × a₃)` of the axes, as they have moved, is positive.
@@ -51,32 +52,45 @@ impl SphericalChain {
     /// Out of reach: by which angle `w` is too near to the first axis or too far from it.
     #[inline]
     pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, Gap> {
-        let a = self.second_on_first[0].dot(w);
-        let b = self.second_on_first[1].dot(w);
-        let d = self.cosines[1] - self.cosines[0] * self.axes[0].dot(w);
-        let square = a * a + b * b;
-        let below_rim = square - d * d;
-        if below_rim > 0.0 && square > RIM * RIM {
-            let root = branch.sign() * below_rim.sqrt();
-            return Ok(Complex::new(a * d + b * root, b * d - a * root) / square);
-        }
-        self.first_at_rim(w, Complex::new(a, b), d)
+        let equation = self.equation(w);
+        if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_rim(w) }
+    }
+
+    #[inline(always)]
+    fn equation(&self, w: &Vector3<f64>) -> Equation {
+        let a = dot(&self.second_on_first[0], w);
+        let b = dot(&self.second_on_first[1], w);
+        let d = self.cosines[1] - self.cosines[0] * dot(&self.axes[0], w);
+        Equation { a, b, d, square: a * a + b * b }
     }
 
     /// On the rim, or out of reach. Where `w` lies on the first axis, in reach only because the
     /// links' arcs are equal or supplementary, the angle is free.
     #[cold]
-    fn first_at_rim(
-        &self,
-        w: &Vector3<f64>,
-        ab: Complex<f64>,
-        d: f64,
-    ) -> Result<Complex<f64>, Gap> {
-        let length = ab.norm();
-        if d.is_nan() || d.abs() > length + RIM {
+    fn first_at_rim(&self, w: &Vector3<f64>) -> Result<Complex<f64>, Gap> {
+        let equation = self.equation(w);
+        if equation.d.is_nan() || equation.has_none() {
             return Err(self.gap(w));
         }
-        Ok(if length <= RIM { Complex::new(1.0, 0.0) } else { ab * (d.signum() / length) })
+        let Equation { a, b, d, square } = equation;
+        let length = square.sqrt();
+        let on_axis = length <= RIM;
+        Ok(if on_axis {
+            Complex::new(1.0, 0.0)
+        } else {
+            Complex::new(a, b) * (d.signum() / length)
+        })
+    }
+
+    /// The joints' rotations with the first one's given.
+    #[inline(always)]
+    fn with_first(&self, target: &Matrix3<f64>, q1: Complex<f64>) -> [Amount; 3] {
+        let w1 = rotate_back(&self.axes[0], q1, &apply(target, &self.axes[2]));
+        let q2 = angle(&self.third_on_second, &w1);
+        let beside1 = rotate_back(&self.axes[0], q1, &apply(target, &self.beside_third[0]));
+        let beside2 = rotate_back(&self.axes[1], q2, &beside1);
+        let q3 = angle(&self.beside_third, &beside2);
+        [Amount::Turn(q1), Amount::Turn(q2), Amount::Turn(q3)]
     }
 
     /// The joints' rotations that turn the outer link by `target`.
@@ -85,21 +99,13 @@ impl SphericalChain {
     /// Out of reach: by which angle.
     #[inline]
     pub fn inverse(&self, target: &Matrix3<f64>, branch: Branch) -> Result<[Amount; 3], Gap> {
-        let w = target * self.axes[2];
-        let q1 = self.first(&w, branch)?;
-        let w1 = rotate_back(&self.axes[0], q1, &w);
-        let q2 = angle(&self.third_on_second, &w1);
-        let beside = target * self.beside_third[0];
-        let beside1 = rotate_back(&self.axes[0], q1, &beside);
-        let beside2 = rotate_back(&self.axes[1], q2, &beside1);
-        let q3 = angle(&self.beside_third, &beside2);
-        Ok([Amount::Turn(q1), Amount::Turn(q2), Amount::Turn(q3)])
+        self.solve(target, branch)
     }
 
-    /// The third axis at home: what [`SphericalChain::first`] needs of a target.
-    #[inline]
-    pub fn third_axis(&self) -> &Vector3<f64> {
-        &self.axes[2]
+    /// The direction that a target turns the third axis to: what [`SphericalChain::first`] needs of it.
+    #[inline(always)]
+    pub fn third_axis(&self, target: &Matrix3<f64>) -> Vector3<f64> {
+        apply(target, &self.axes[2])
     }
 
     /// The targets on which the chain closes with joint number `joint` at `amount`: two axes are left.
@@ -148,6 +154,52 @@ impl SphericalChain {
     }
 }
 
+impl ClosedForm for SphericalChain {
+    type Target = Matrix3<f64>;
+
+    #[inline(always)]
+    fn attempt(&self, target: &Matrix3<f64>, branch: Branch) -> Attempt {
+        let equation = self.equation(&self.third_axis(target));
+        let amounts = self.with_first(target, equation.solve(branch));
+        Attempt { amounts, holds: equation.has_two(), beyond: equation.has_none() }
+    }
+
+    #[cold]
+    fn exception(&self, target: &Matrix3<f64>, _: Branch) -> Result<[Amount; 3], Gap> {
+        let q1 = self.first_at_rim(&self.third_axis(target))?;
+        Ok(self.with_first(target, q1))
+    }
+}
+
+/// `a cos q + b sin q = d`, with `square = a² + b²`.
+struct Equation {
+    a: f64,
+    b: f64,
+    d: f64,
+    square: f64,
+}
+
+impl Equation {
+    #[inline(always)]
+    fn has_two(&self) -> bool {
+        (self.square > self.d * self.d) & (self.square > RIM * RIM)
+    }
+
+    /// For certain: not even on the rim.
+    #[inline(always)]
+    fn has_none(&self) -> bool {
+        self.d.abs() > self.square.sqrt() + RIM
+    }
+
+    /// One of the two.
+    #[inline(always)]
+    fn solve(&self, branch: Branch) -> Complex<f64> {
+        let Self { a, b, d, square } = *self;
+        let root = branch.sign() * (square - d * d).max(0.0).sqrt();
+        Complex::new((a * d + b * root) / square, (b * d - a * root) / square)
+    }
+}
+
 /// A spherical joint: any rotation, as a rotation vector in base coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
@@ -159,9 +211,7 @@ impl Ball {
     /// The three components of the rotation vector of `target`, at most half a turn.
     #[inline]
     pub fn inverse(&self, target: &Matrix3<f64>) -> [Amount; 3] {
-        let rotation = Rotation3::from_matrix_unchecked(*target);
-        let vector = self.axes * UnitQuaternion::from_rotation_matrix(&rotation).scaled_axis();
-        [0, 1, 2].map(|i| Amount::Value(vector[i]))
+        self.attempt(target, Branch::Plus).amounts
     }
 
     /// The rotation with this rotation vector.
@@ -171,14 +221,62 @@ impl Ball {
     }
 }
 
+impl ClosedForm for Ball {
+    type Target = Matrix3<f64>;
+
+    #[inline(always)]
+    fn attempt(&self, target: &Matrix3<f64>, _: Branch) -> Attempt {
+        let vector = apply(&self.axes, &rotation_vector(target));
+        let amounts = [Amount::Value(vector.x), Amount::Value(vector.y), Amount::Value(vector.z)];
+        Attempt::decided(amounts, true)
+    }
+}
+
+/// The rotation vector of `r`, at most half a turn, by its quaternion: of the four multiples of it that
+/// the entries of `r` give, the longest one.
+#[inline(always)]
+fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
+    let [xx, yy, zz] = [r[(0, 0)], r[(1, 1)], r[(2, 2)]];
+    // Four times the products of two components, w being the scalar one, and their squares.
+    let (wx, wy, wz) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
+    let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
+    let (ww, xx, yy, zz) =
+        (1.0 + (xx + yy + zz), 1.0 + (xx - yy - zz), 1.0 + (yy - xx - zz), 1.0 + (zz - xx - yy));
+    let (mut square, mut w, mut vector) = (ww, ww, [wx, wy, wz]);
+    for (other, scalar, axis) in
+        [(xx, wx, [xx, xy, xz]), (yy, wy, [xy, yy, yz]), (zz, wz, [xz, yz, zz])]
+    {
+        let longer = other > square;
+        square = if longer { other } else { square };
+        w = if longer { scalar } else { w };
+        vector = [0, 1, 2].map(|i| if longer { axis[i] } else { vector[i] });
+    }
+    let [x, y, z] = vector;
+    let length = (x * x + y * y + z * z).sqrt();
+    let angle = 2.0 * atan2(length, w.abs());
+    let scale = angle / if length > 0.0 { length } else { 1.0 };
+    Vector3::new(x, y, z) * if w < 0.0 { -scale } else { scale }
+}
+
+/// `r v`.
+#[inline(always)]
+fn apply(r: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    r.column(0) * v.x + r.column(1) * v.y + r.column(2) * v.z
+}
+
+#[inline(always)]
+fn dot(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
 /// `exp(-axis q) v`, with `q` as a unit vector.
-#[inline]
+#[inline(always)]
 fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
-    v * q.re - axis.cross(v) * q.im + axis * (axis.dot(v) * (1.0 - q.re))
+    v * q.re - axis.cross(v) * q.im + axis * (dot(axis, v) * (1.0 - q.re))
 }
 
 /// The rotation, as a unit vector, that takes the first of two perpendicular directions to `v`.
-#[inline]
+#[inline(always)]
 fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
-    Complex::new(directions[0].dot(v), directions[1].dot(v))
+    Complex::new(dot(&directions[0], v), dot(&directions[1], v))
 }

@@ -123,9 +123,9 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Gives the intervals of `t` in which the target may be on the surface. The surface is that of a
-    /// chain with no number larger than `size`, and a joint held to within `blur`, radians or lengths
-    /// over `size`.
+    /// Gives the intervals of `t` in which the target may be on the surface. No number of the chain and
+    /// of the path ([`Path::size`]) together is larger than `size`, and its joint is held to within
+    /// `blur`, radians or lengths over `size`.
     ///
     /// # Panics
     /// If the path is one of another kind of subspace.
@@ -136,7 +136,6 @@ impl Surface {
         [size, blur]: [f64; 2],
         found: &mut impl FnMut([f64; 2]),
     ) {
-        let size = size + path.reach(span);
         let scale = match *self {
             Self::Circle { .. } => size * size,
             Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } => size,
@@ -211,7 +210,7 @@ impl Surface {
 
 impl Path {
     /// The largest number of a target on it.
-    fn reach(&self, span: &Span) -> f64 {
+    pub fn size(&self, span: &Span) -> f64 {
         let far = |start: f64, rate: f64| start + rate * span.reach();
         match self {
             Self::Slide { start, rate } => far(start.translation.norm(), rate.norm()),

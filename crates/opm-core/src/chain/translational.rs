@@ -3,7 +3,7 @@
 use super::planar::{along, cross};
 use super::region::{Region, parallelogram};
 use super::surface::Surface;
-use super::{Amount, ChainError, DEGENERATE};
+use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
 use nalgebra::Complex;
 
 /// Two sliders, each a unit direction of the plane: one solution.
@@ -43,7 +43,7 @@ impl TranslationalChain {
     }
 
     /// The sliders' amounts that translate the outer link by `target`.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [Amount; 2] {
         let (first, second) = along(self.slides[0], self.slides[1], target);
         [Amount::Value(first), Amount::Value(second)]
@@ -52,5 +52,15 @@ impl TranslationalChain {
     /// The translation of the outer link.
     pub fn forward(&self, amounts: &[Amount; 2]) -> Complex<f64> {
         self.slides[0] * amounts[0].value() + self.slides[1] * amounts[1].value()
+    }
+}
+
+impl ClosedForm for TranslationalChain {
+    type Target = Complex<f64>;
+
+    #[inline(always)]
+    fn attempt(&self, target: &Complex<f64>, _: Branch) -> Attempt {
+        let [first, second] = self.inverse(*target);
+        Attempt::decided([first, second, Amount::Value(0.0)], true)
     }
 }

@@ -1,7 +1,7 @@
 //! Which legs get an imaginary joint: the upper section as a mechanism of its own.
 
 use crate::subspace::{Basis, TOLERANCE};
-use crate::svd::Svd;
+use crate::svd::{self, Svd};
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// The upper parts of all legs between the lower section and the platform, in normalised screws.
@@ -90,7 +90,7 @@ impl UpperSection<'_> {
 
     fn mobility(&self, imaginary: &[usize]) -> usize {
         let closure = self.closure(imaginary);
-        closure.ncols() - Svd::new(closure).rank(TOLERANCE)
+        closure.ncols() - svd::rank(closure, TOLERANCE)
     }
 
     /// The closure of the section within its subgroup: as many rows a leg as that has dimensions, a

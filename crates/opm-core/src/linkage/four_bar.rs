@@ -109,7 +109,7 @@ impl DrivenFourBar {
     /// Whether the loop closes at this input.
     #[inline]
     pub fn closes(&self, input: Complex<f64>) -> bool {
-        let w = self.target(input) * self.chain.third_axis();
+        let w = self.chain.third_axis(&self.target(input));
         self.chain.first(&w, Branch::Plus).is_ok()
     }
 

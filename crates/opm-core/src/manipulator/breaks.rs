@@ -89,11 +89,12 @@ impl Manipulator {
             let amount = if turns { Amount::Turn(unit(at)) } else { Amount::Value(at) };
             leg.lower.chain.held(last, amount)
         };
+        let size = breaks.size;
         let cuts = &mut breaks.cuts;
         for surface in leg.upper.surfaces(&self.limits)? {
-            surface.meet(&path, &span, [breaks.size, 0.0], &mut |[from, to]| {
+            surface.meet(&path, &span, [size, 0.0], &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
-                let share = if turns { blur } else { blur / breaks.size };
+                let share = if turns { blur } else { blur / size };
                 cuts.extend(hold(0.5 * (from + to)).map(|surface| (surface, share)));
             });
         }
@@ -128,8 +129,9 @@ impl Manipulator {
             None => at(home),
         };
         let path = self.task.row(&start);
+        let size = breaks.size + path.size(&moved);
         for surface in &breaks.surfaces {
-            surface.meet(&path, &moved, [breaks.size, 0.0], &mut found);
+            surface.meet(&path, &moved, [size, 0.0], &mut found);
         }
         // A cut that slides farther than the leg is long is linear along the row: most at one of its ends.
         let beyond = |most: f64| {
@@ -143,7 +145,7 @@ impl Manipulator {
             found([moved.from, moved.to]);
         }
         for (surface, blur) in &breaks.cuts {
-            surface.meet(&path, &moved, [breaks.size, *blur], &mut found);
+            surface.meet(&path, &moved, [size, *blur], &mut found);
         }
     }
 }

@@ -353,11 +353,10 @@ impl Manipulator {
         turns: Turns,
     ) {
         let home = |coordinate: usize| self.coordinates[coordinate].home;
-        if matches!(section.chain, Chain::Ball(_)) {
+        // At most half a turn, a rotation vector is the nearest to none.
+        if matches!(section.chain, Chain::Ball(_)) && turns == Turns::NearHeld {
             let first = section.slots[0].map_or(0, |slot| slot.coordinate);
-            let near = Vector3::from_fn(|i, _| {
-                turns.near(out.joints[first + i], home(first + i)) - home(first + i)
-            });
+            let near = Vector3::from_fn(|i, _| out.joints[first + i] - home(first + i));
             let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
             for i in 0..3 {
                 out.within_limits &= self.limits[first + i].admits(Amount::Value(vector[i]));

@@ -4,7 +4,7 @@ use super::{MAX_FREEDOMS, MobilityError, frame};
 use crate::mechanism::Mechanism;
 use crate::screw::Screw;
 use crate::subspace::Frame;
-use crate::svd::Svd;
+use crate::svd;
 use nalgebra::{DMatrix, Isometry3, Vector6};
 
 /// A mechanism as screws: one freedom after the other, leg by leg, in its normalised frame.
@@ -133,7 +133,7 @@ impl Linkage {
         let nullity = |legs: &[Vec<Vector6<f64>>]| {
             let closure = loop_closure(legs);
             let columns = closure.ncols();
-            columns - Svd::new(closure).rank(tolerance)
+            columns - svd::rank(closure, tolerance)
         };
         Ranks {
             lambda: rank(&units.concat(), tolerance),
@@ -145,7 +145,7 @@ impl Linkage {
 }
 
 fn rank(vectors: &[Vector6<f64>], tolerance: f64) -> usize {
-    Svd::new(DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j])).rank(tolerance)
+    svd::rank(DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]), tolerance)
 }
 
 impl Pose {

@@ -11,7 +11,7 @@ use crate::mechanism::Mechanism;
 use crate::screw::Screw;
 use crate::subspace::TOLERANCE;
 use crate::svd::Svd;
-use nalgebra::{DVector, Isometry3, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Vector6};
 use std::fmt;
 
 /// Sizes of the motion to a nearby pose, tried in this order: radians, and shares of the
@@ -140,20 +140,21 @@ fn generic_ranks(linkage: &Linkage) -> Option<Ranks> {
         locked: a.locked.min(b.locked),
         legs: a.legs.iter().zip(&b.legs).map(|(x, y)| *x.max(y)).collect(),
     };
+    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
     (0..SAMPLES)
-        .filter_map(|sample| nearby(linkage, sample))
+        .filter_map(|sample| nearby(linkage, &kernel, sample))
         .map(|pose| linkage.ranks(&pose, CLEARLY_NONZERO))
         .reduce(regular)
 }
 
-/// An assembled pose at a distance from home, another one for every sample.
-fn nearby(linkage: &Linkage, sample: usize) -> Option<Pose> {
-    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+/// An assembled pose at a distance from home, another one for every sample, by the first-order motions
+/// in `kernel`.
+fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<Pose> {
     // Fixed coefficients without a pattern: multiples of the golden ratio, modulo one.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let coefficient =
         |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
-    let motion = &kernel * DVector::from_fn(kernel.ncols(), coefficient);
+    let motion = kernel * DVector::from_fn(kernel.ncols(), coefficient);
     NEARBY.iter().find_map(|size| project(linkage, &(&motion * (size / motion.amax()))))
 }
 
@@ -171,10 +172,11 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
         if gap <= CLOSED {
             break;
         }
-        let svd = Svd::new(pose.derivative());
-        let along = svd.image.tr_mul(&gaps);
-        let damped = DVector::from_fn(n + 6, |i, _| along[i] / (svd.values[i].powi(2) + gap));
-        let step = -(&svd.right * damped);
+        let derivative = pose.derivative();
+        let mut normal = derivative.tr_mul(&derivative);
+        (0..n + 6).for_each(|i| normal[(i, i)] += gap);
+        let Some(factors) = normal.cholesky() else { break };
+        let step = -factors.solve(&derivative.tr_mul(&gaps));
         q += step.rows(0, n);
         platform = displacement(&step.rows(n, 6).into_owned()) * platform;
         pose = linkage.pose(q.as_slice());

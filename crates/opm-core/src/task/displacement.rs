@@ -44,7 +44,7 @@ pub enum Cut {
 
 impl Cut {
     /// `v · exp(I τ)`.
-    #[inline]
+    #[inline(always)]
     pub fn after(&self, v: &Displacement, tau: Amount) -> Displacement {
         match (self, v) {
             (Self::Turn, Displacement::Planar(v)) => Displacement::Planar(PlanarDisplacement {
@@ -66,7 +66,7 @@ impl Cut {
     }
 
     /// `exp(I τ) · b`.
-    #[inline]
+    #[inline(always)]
     pub fn before(&self, b: &Displacement, tau: Amount) -> Displacement {
         match (self, b) {
             (Self::Turn, Displacement::Planar(b)) => {
@@ -120,7 +120,7 @@ impl Cut {
     }
 
     /// The pairs for which the order does not matter, and `v · exp(I τ)` in a plane.
-    #[inline]
+    #[inline(always)]
     fn commuting(&self, g: &Displacement, tau: Amount) -> Displacement {
         match (self, g) {
             (Self::Turn, Displacement::Cylindrical(g)) => {

@@ -1,6 +1,7 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
 use super::{Cut, Displacement, SubspaceKind, Task};
+use crate::angle::sin_cos;
 use crate::chain::Amount;
 use crate::chain::planar::PlanarDisplacement;
 use crate::joint::Quantity;
@@ -96,7 +97,7 @@ impl Task {
             Displacement::Spherical(r) => {
                 // Rx(mu) Ry(nu) without the rest: R = tilt · Rz.
                 let [mu, nu] = tilt_angles(r);
-                let rest = super::tilt(mu, nu).tr_mul(r);
+                let rest = super::tilt([mu, nu].map(sin_cos)).tr_mul(r);
                 Amount::Turn(nalgebra::Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
             Displacement::Cylindrical(g) => Amount::Value(g.angle),

@@ -1,8 +1,8 @@
 //! Which cells of a plane grid have something in them.
 
 use crate::MOST_SHAPES;
-use crate::color::{Color, Map};
-use crate::drawing::{Image, Path, Rect, Shape};
+use crate::color::{Color, INK, Map, WHITE};
+use crate::drawing::{Image, Path, Pen, Rect, Shape, Step};
 use crate::frame::Frame;
 
 /// Most cells in a row or column; on a finer grid, several values share a cell.
@@ -53,6 +53,8 @@ pub struct Cells {
     counts: Vec<u32>,
     /// Sums of the values that colour the cells.
     sums: Option<Vec<f64>>,
+    /// Closed lines around them.
+    lines: Vec<Vec<[f64; 2]>>,
 }
 
 /// What the cells' colours say.
@@ -71,7 +73,8 @@ impl Cells {
         let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
         let all = cells[0] * cells[1];
         let sums = values.map(|()| vec![0.0; all]);
-        Self { spacing: [x, y], together, cells, counts: vec![0; all], sums }
+        let counts = vec![0; all];
+        Self { spacing: [x, y], together, cells, counts, sums, lines: vec![] }
     }
 
     /// Hits the cell of the nearest grid values.
@@ -89,6 +92,16 @@ impl Cells {
     /// Whether several values of the grid share a cell.
     pub fn is_coarse(&self) -> bool {
         self.together != [1, 1]
+    }
+
+    /// Which values of the grid were hit, row by row; `None` where several share a cell.
+    pub fn hits(&self) -> Option<Vec<bool>> {
+        (!self.is_coarse()).then(|| self.counts.iter().map(|&count| count > 0).collect())
+    }
+
+    /// Draws closed lines over the cells: the boundary of what was hit.
+    pub fn surround(&mut self, lines: Vec<Vec<[f64; 2]>>) {
+        self.lines = lines;
     }
 
     /// The edges of the cells that were hit: left and right, lower and upper.
@@ -118,13 +131,24 @@ impl Cells {
     /// The cells that were hit.
     pub(crate) fn draw(&self, frame: &Frame<'_>, paint: Paint) -> Vec<Shape> {
         let Some(hit) = self.hit() else { return vec![] };
-        match paint {
+        let mut shapes = match paint {
             Paint::Plain(color) => match self.outline(frame) {
                 Some(path) => vec![Shape::Area(path, color)],
                 None => vec![self.image(frame, hit, paint)],
             },
             Paint::Values(..) => vec![self.image(frame, hit, paint)],
+        };
+        let mut path = Path::default();
+        for line in &self.lines {
+            path.0.extend(Path::through(line.iter().map(|&[x, y]| frame.at(x, y))).0);
+            path.0.push(Step::Close);
         }
+        if !self.lines.is_empty() {
+            // Seen on any ground.
+            shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, 2.6)));
+            shapes.push(Shape::Line(path, Pen::new(INK, 1.1)));
+        }
+        shapes
     }
 
     /// The cells as boxes, one for neighbours in a row; `None` if there are too many.

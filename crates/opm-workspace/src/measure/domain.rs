@@ -87,10 +87,15 @@ impl DomainAxis {
         (first..=last)
             .map(|number| {
                 let piece = Piece { number };
-                let low = if number == first { piece.from_angle(from) } else { -1.0 };
-                let high = if number == last { piece.from_angle(to) } else { 1.0 };
-                let half = 0.5 * (high - low);
-                Side { middle: 0.5 * (low + high), half, piece: Some(piece) }
+                let low = if number == first { piece.within(from) } else { 0.0 };
+                let high = if number == last { piece.within(to) } else { PI };
+                // The middle and half the width of -cos, which a narrow range would lose its digits in.
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+                Side {
+                    middle: -middle.cos() * half.cos(),
+                    half: middle.sin() * half.sin(),
+                    piece: Some(piece),
+                }
             })
             .filter(|side| side.half > 0.0)
             .collect()
@@ -133,6 +138,9 @@ pub enum DomainError {
         /// As given.
         max: f64,
     },
+    /// Ranges whose product is no number of double precision.
+    #[error("the ranges have the measure {0:e}, out of the range of double precision")]
+    Measure(f64),
     /// Too many coordinates with a range.
     #[error("{0} coordinates have a range, expected at most {MOST}, and one value for the others")]
     Axes(usize),
@@ -154,7 +162,8 @@ impl Domain {
     /// A domain over these ranges; a coordinate without one stays at its home value.
     ///
     /// # Errors
-    /// Unknown or repeated coordinates, ends that are not numbers or reversed, more than [`MOST`] ranges.
+    /// Unknown or repeated coordinates, ends that are not numbers or reversed, more than [`MOST`] ranges,
+    /// or ranges whose product is no number of double precision.
     pub fn new(
         manipulator: &Manipulator,
         sections: Sections,
@@ -196,6 +205,9 @@ impl Domain {
                 .iter()
                 .flat_map(|sides| parts.iter().map(move |part| [&sides[..], &[*part]].concat()))
                 .collect();
+        }
+        if !whole.is_normal() {
+            return Err(DomainError::Measure(whole));
         }
         Ok(Self { sections, axes, wide, first, whole })
     }

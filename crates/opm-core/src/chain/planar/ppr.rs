@@ -1,7 +1,8 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
-use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
+use super::{Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
 use crate::chain::region::Region;
+use crate::chain::{Attempt, ClosedForm};
 use nalgebra::Complex;
 
 /// Two sliders, then a pivot: one solution.
@@ -28,11 +29,13 @@ impl Ppr {
         let region = self.0.region(rotation.conj(), [backwards(second), backwards(first)]);
         region.turned(-rotation)
     }
+}
 
-    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.
-    #[inline]
-    pub(super) fn inverse(&self, target: &PlanarDisplacement) -> [Amount; 3] {
-        let [a3, a2, a1] = self.0.inverse(&target.inverse());
-        [a1.inverse(), a2.inverse(), a3.inverse()]
+impl ClosedForm for Ppr {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
+        self.0.attempt(&target.inverse(), branch).backwards()
     }
 }

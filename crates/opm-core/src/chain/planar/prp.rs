@@ -1,8 +1,8 @@
 //! PRP: a pivot between two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, Gap, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
+use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::region::{Region, parallelogram};
-use crate::chain::{DEGENERATE, RIM};
+use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM};
 use nalgebra::Complex;
 
 /// A slider, a pivot and a slider: one solution, none where the two slides come to be parallel.
@@ -35,22 +35,36 @@ impl Prp {
         self.pivot.amount(rotation)
     }
 
-    #[inline]
-    pub(super) fn inverse(&self, target: &PlanarDisplacement) -> Result<[Amount; 3], Gap> {
+    /// What the sliders have to make up for: the way of the pivot's own point of the outer link.
+    #[inline(always)]
+    fn moved(&self, target: &PlanarDisplacement) -> Complex<f64> {
+        target.apply(self.pivot.at) - self.pivot.at
+    }
+}
+
+impl ClosedForm for Prp {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
         let turned = target.rotation * self.slides[1];
-        let moved = target.apply(self.pivot.at) - self.pivot.at;
-        // With the slides parallel only one line is in reach, and on it the sliders are free: they
-        // are then given as the inner one alone.
-        if cross(self.slides[0], turned).abs() <= RIM {
-            let aside = cross(self.slides[0], moved).abs();
-            if aside.is_nan() || aside > RIM * moved.norm() {
-                return Err(Gap::length(aside));
-            }
-            let along = (moved * self.slides[0].conj()).re;
-            let values = [Amount::Value(along), Amount::Value(0.0)];
-            return Ok([values[0], self.pivot.amount(target.rotation), values[1]]);
+        let (s1, s3) = along(self.slides[0], turned, self.moved(target));
+        let turn = self.pivot.amount(target.rotation);
+        let crossing = cross(self.slides[0], turned).abs() > RIM;
+        let amounts = [Amount::Value(s1), turn, Amount::Value(s3)];
+        Attempt { amounts, holds: crossing, beyond: false }
+    }
+
+    /// With the slides parallel only one line is in reach, and on it the sliders are free: they are then
+    /// given as the inner one alone.
+    #[cold]
+    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+        let moved = self.moved(target);
+        let aside = cross(self.slides[0], moved).abs();
+        if aside.is_nan() || aside > RIM * moved.norm() {
+            return Err(Gap::length(aside));
         }
-        let (s1, s3) = along(self.slides[0], turned, moved);
-        Ok([Amount::Value(s1), self.pivot.amount(target.rotation), Amount::Value(s3)])
+        let along = Amount::Value((moved * self.slides[0].conj()).re);
+        Ok([along, self.pivot.amount(target.rotation), Amount::Value(0.0)])
     }
 }

@@ -2,8 +2,8 @@
 //! Eq. 16 lacks).
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
-use crate::chain::RIM;
 use crate::chain::region::{Band, Convex, Region, Stadium};
+use crate::chain::{Attempt, ClosedForm, RIM};
 use nalgebra::Complex;
 
 /// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
@@ -76,28 +76,26 @@ impl Prr {
         };
         Region { whole, hole: (end < f64::INFINITY).then(|| Convex::Stadium(stadium(end))) }
     }
+}
 
-    #[inline]
-    pub(super) fn inverse(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
+impl ClosedForm for Prr {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
         let outer = target.apply(self.outer());
         let (along, square) = self.triangle(outer);
-        if !self.closes(square) {
-            return Err(self.gap(outer));
-        }
         let slider = along + branch.sign() * square.max(0.0).sqrt();
         let link = outer - self.pivots[0].at - self.slide * slider;
         let r2 = link * self.link.conj();
         let r3 = target.rotation * r2.conj();
-        Ok([Amount::Value(slider), self.pivots[0].amount(r2), self.pivots[1].amount(r3)])
+        let amounts = [Amount::Value(slider), self.pivots[0].amount(r2), self.pivots[1].amount(r3)];
+        Attempt::decided(amounts, self.closes(square))
     }
 
     #[cold]
-    fn gap(&self, outer: Complex<f64>) -> Gap {
-        let local = (outer - self.pivots[0].at) * self.slide.conj();
-        Gap::length(local.im.abs() - self.link.norm())
+    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+        let local = (target.apply(self.outer()) - self.pivots[0].at) * self.slide.conj();
+        Err(Gap::length(local.im.abs() - self.link.norm()))
     }
 }

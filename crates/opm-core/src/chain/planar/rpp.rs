@@ -1,8 +1,8 @@
 //! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
-use crate::chain::DEGENERATE;
+use super::{Amount, Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::region::{Region, parallelogram};
+use crate::chain::{Attempt, ClosedForm, DEGENERATE};
 use nalgebra::Complex;
 
 /// A pivot, then two sliders: one solution.
@@ -34,12 +34,17 @@ impl Rpp {
         let offset = rotation * self.pivot.at - self.pivot.at;
         parallelogram(self.slides.map(|slide| rotation * slide), offset, ranges)
     }
+}
 
-    #[inline]
-    pub(super) fn inverse(&self, target: &PlanarDisplacement) -> [Amount; 3] {
+impl ClosedForm for Rpp {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
         // The pivot's own point of the outer link, turned back to home.
         let moved = target.apply(self.pivot.at) - self.pivot.at;
         let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
-        [self.pivot.amount(target.rotation), Amount::Value(s2), Amount::Value(s3)]
+        let turn = self.pivot.amount(target.rotation);
+        Attempt::decided([turn, Amount::Value(s2), Amount::Value(s3)], true)
     }
 }

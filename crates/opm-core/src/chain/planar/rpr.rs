@@ -2,7 +2,7 @@
 
 use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
-use crate::chain::{RIM, direction};
+use crate::chain::{Attempt, ClosedForm, RIM, direction};
 use nalgebra::Complex;
 
 /// A pivot, a slider and a pivot. `+` where the slider's root has the plus sign: the outer pivot is
@@ -47,26 +47,35 @@ impl Rpr {
         Region { whole: disc(aside + high * high), hole: (inner > 0.0).then(|| disc(inner)) }
     }
 
-    #[inline]
-    pub(super) fn inverse(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
-        let reach = target.apply(self.pivots[1].at) - self.pivots[0].at;
+    /// From the inner pivot to the outer one.
+    #[inline(always)]
+    fn reach(&self, target: &PlanarDisplacement) -> Complex<f64> {
+        target.apply(self.pivots[1].at) - self.pivots[0].at
+    }
+}
+
+impl ClosedForm for Rpr {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
+        let reach = self.reach(target);
         let aside = self.offset.im * self.offset.im;
         let square = reach.norm_sqr() - aside;
-        if square.is_nan() || square < -2.0 * RIM * aside {
-            return Err(Gap::length(self.offset.im.abs() - reach.norm()));
-        }
         let ahead = branch.sign() * square.max(0.0).sqrt();
         let telescope = Complex::new(ahead, self.offset.im) * self.slide;
         let r1 = direction(reach * telescope.conj(), self.offset.norm_sqr());
         let r3 = target.rotation * r1.conj();
-        Ok([
+        let amounts = [
             self.pivots[0].amount(r1),
             Amount::Value(ahead - self.offset.re),
             self.pivots[1].amount(r3),
-        ])
+        ];
+        Attempt::decided(amounts, square >= -2.0 * RIM * aside)
+    }
+
+    #[cold]
+    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+        Err(Gap::length(self.offset.im.abs() - self.reach(target).norm()))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint, Prr};
 use crate::chain::region::Region;
+use crate::chain::{Attempt, ClosedForm};
 use nalgebra::Complex;
 
 /// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
@@ -28,15 +29,18 @@ impl Rrp {
         let backwards = self.0.region(rotation.conj(), branch, [-high, -low]);
         backwards.turned(-rotation)
     }
+}
 
-    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`: the joints backwards, each amount with the other sign.
-    #[inline]
-    pub(super) fn inverse(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
-        let [a3, a2, a1] = self.0.inverse(&target.inverse(), branch)?;
-        Ok([a1.inverse(), a2.inverse(), a3.inverse()])
+impl ClosedForm for Rrp {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
+        self.0.attempt(&target.inverse(), branch).backwards()
+    }
+
+    #[cold]
+    fn exception(&self, target: &PlanarDisplacement, branch: Branch) -> Result<[Amount; 3], Gap> {
+        self.0.exception(&target.inverse(), branch)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
-use crate::chain::{DEGENERATE, RIM, direction};
+use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM, direction};
 use nalgebra::Complex;
 
 /// Two links between three pivots. `+` where the second link turns counter-clockwise from the first.
@@ -67,18 +67,16 @@ impl Rrr {
     pub(super) fn joints(&self) -> [PlanarJoint; 3] {
         self.pivots.map(|pivot| pivot.joint())
     }
+}
 
-    #[inline]
-    pub(super) fn inverse(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
+impl ClosedForm for Rrr {
+    type Target = PlanarDisplacement;
+
+    #[inline(always)]
+    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
         let wrist = target.apply(self.wrist());
         let cosine = self.elbow_cosine(wrist);
-        if !Self::closes(cosine) {
-            return Err(self.gap(wrist));
-        }
+        let closes = Self::closes(cosine);
         let cosine = cosine.clamp(-1.0, 1.0);
         let elbow = Complex::new(cosine, branch.sign() * (1.0 - cosine * cosine).sqrt());
         let r2 = elbow * self.straighten;
@@ -87,13 +85,14 @@ impl Rrr {
         let reach = wrist - self.pivots[0].at;
         let r1 = direction(reach * bent.conj(), self.mean_square);
         let r3 = target.rotation * (r1 * r2).conj();
-        Ok([self.pivots[0].amount(r1), self.pivots[1].amount(r2), self.pivots[2].amount(r3)])
+        let [p1, p2, p3] = self.pivots;
+        Attempt::decided([p1.amount(r1), p2.amount(r2), p3.amount(r3)], closes)
     }
 
     #[cold]
-    fn gap(&self, wrist: Complex<f64>) -> Gap {
-        let distance = (wrist - self.pivots[0].at).norm();
+    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+        let distance = (target.apply(self.wrist()) - self.pivots[0].at).norm();
         let (a, b) = (self.first.norm(), self.second.norm());
-        Gap::length((distance - (a + b)).max((a - b).abs() - distance))
+        Err(Gap::length((distance - (a + b)).max((a - b).abs() - distance)))
     }
 }

@@ -1,0 +1,216 @@
+//! `opm measure`: areas, volumes and shares of all orientations, with bounds that are guaranteed.
+
+use crate::args::{MeasureArgs, Output, SectionName};
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::progress::{interruptible, watch, watch_boxes};
+use crate::text::{self, Table, count, short};
+use crate::workspace::threads;
+use opm_core::joint::Quantity;
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::FileUnits;
+use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, Over, Stop, measure, ranges};
+use opm_workspace::{Cancelled, Modes, Progress};
+use rayon::ThreadPool;
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Digits of a double.
+const MOST_DIGITS: i32 = 15;
+
+pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
+    let loaded = load::open(&args.file)?;
+    let manipulator = loaded.compile()?;
+    let modes = match &*args.mode {
+        "any" => Modes::Any,
+        mode => Modes::One(load::mode(&manipulator, mode)?),
+    };
+    let progress = interruptible()?;
+    let pool = threads(args.threads)?;
+    let domain = domain(args, output, &manipulator, modes, &pool, &progress)?;
+    let goal = Goal { tolerance: args.tolerance, budget: args.budget };
+    let before = progress.done();
+    let start = Instant::now();
+    let job = || pool.install(|| measure(&manipulator, &domain, modes, &goal, &progress));
+    let found = watch_boxes(output, "measuring", || progress.done() - before, job);
+    let seconds = start.elapsed().as_secs_f64();
+    let run = Run { loaded: &loaded, manipulator: &manipulator, domain: &domain, modes, args };
+    output.print(&run.json(&found, seconds), run.text(&found, seconds))?;
+    match found.stop {
+        Stop::Tolerance => {}
+        Stop::Budget => output.warn(
+            "the budget is spent before --tolerance is met; the bounds hold, a larger --budget brings \
+             them closer",
+        ),
+        Stop::Exhausted => {
+            output.warn("the bounds hold, but what is between them is on the rim: no split decides it");
+        }
+        Stop::Cancelled => {
+            return Err(Failure::Interrupted("interrupted; the bounds hold".into()));
+        }
+    }
+    Ok(())
+}
+
+/// What is measured: as the flags say, or fitted to the workspace.
+fn domain(
+    args: &MeasureArgs,
+    output: &Output,
+    manipulator: &Manipulator,
+    modes: Modes,
+    pool: &ThreadPool,
+    progress: &Progress,
+) -> Result<Domain, Failure> {
+    let sections = args.section.sections();
+    let coordinates = sections.coordinates(manipulator);
+    let given: Result<Vec<Over>, _> =
+        args.over.iter().map(|axis| axis.resolve(&coordinates)).collect();
+    let given = given.map_err(|error| Failure::flag("--over", error))?;
+    // The flags are wrong or right before any work is done.
+    let checked = |over: &[Over]| {
+        Domain::new(manipulator, sections, over).map_err(|error| Failure::flag("--over", error))
+    };
+    checked(&given)?;
+    let find = || pool.install(|| ranges(manipulator, sections, modes, &given, progress));
+    let (over, beyond) = watch(output, "fitting ranges", None, || progress.done(), find)
+        .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting ranges".into()))?;
+    if over.len() > given.len() {
+        // As flags in SI, so that the same run can be asked for again.
+        let flags = over.iter().map(|Over { name, min, max }| format!("--over {name}={min}:{max}"));
+        output.note(format_args!("measured over {}", flags.collect::<Vec<_>>().join(" ")));
+    }
+    for name in beyond {
+        output.warn(format_args!(
+            "the workspace goes on beyond this range along {name}; limit a joint, or give --over"
+        ));
+    }
+    checked(&over)
+}
+
+/// What was measured.
+struct Run<'a> {
+    loaded: &'a Loaded,
+    manipulator: &'a Manipulator,
+    domain: &'a Domain,
+    modes: Modes,
+    args: &'a MeasureArgs,
+}
+
+impl Run<'_> {
+    /// `any`, or the signs of the mode.
+    fn mode(&self) -> String {
+        match self.modes {
+            Modes::Any => "any".to_owned(),
+            Modes::One(mode) => self.manipulator.format_mode(mode),
+        }
+    }
+
+    /// The unit of the measure, and how many of SI's that is: lengths in the unit of `units`, angles
+    /// always in radians, since a tilt is weighed by its sine.
+    fn unit(&self, units: FileUnits) -> (String, f64) {
+        let mut factor = 1.0;
+        let mut symbols = Vec::new();
+        for (quantity, power) in self.domain.powers().into_iter().filter(|p| p.1 > 0) {
+            let symbol = match quantity {
+                Quantity::Length => units.symbol(quantity),
+                Quantity::Angle => FileUnits::SI.symbol(quantity),
+            };
+            if quantity == Quantity::Length {
+                factor *= units.factor(quantity).powi(power as i32);
+            }
+            symbols.push(if power == 1 { symbol.into() } else { format!("{symbol}^{power}") });
+        }
+        let symbol = if symbols.is_empty() { "1".into() } else { symbols.join(" ") };
+        (symbol, factor)
+    }
+
+    fn json(&self, found: &Measured, seconds: f64) -> Value {
+        let over: Map<String, Value> = (self.domain.axes().iter())
+            .map(|axis| (axis.name.clone(), json!({ "min": axis.min, "max": axis.max })))
+            .collect();
+        let weights: Vec<&str> = self.domain.axes().iter().filter_map(DomainAxis::weight).collect();
+        json!({
+            "value": found.value(),
+            "lower": found.lower,
+            "upper": found.upper,
+            "units": self.unit(FileUnits::SI).0,
+            "fraction": found.fraction(),
+            "boxes": found.boxes,
+            "seconds": seconds,
+            "whole": found.whole,
+            "section": self.args.section.name(),
+            "mode": self.mode(),
+            "over": over,
+            "weights": weights,
+            "tolerance": self.args.tolerance,
+            "reached": found.stop == Stop::Tolerance,
+        })
+    }
+
+    fn text(&self, found: &Measured, seconds: f64) -> String {
+        let units = self.loaded.file.units;
+        let mut text = self.manipulator.mechanism().name.clone();
+        if self.args.section != SectionName::Whole {
+            let _ = write!(text, ", {} section", self.args.section.name());
+        }
+        let mode = self.mode();
+        if !mode.is_empty() {
+            let _ = write!(text, ", mode {mode}");
+        }
+        let mut axes = Table::new(["over", ">from", ">to", "unit", "weighed by"]);
+        for axis in self.domain.axes() {
+            let end = |value| text::number(value, axis.quantity, units);
+            let (from, to) = (end(axis.min), end(axis.max));
+            let to = if axis.min < axis.max { to } else { String::new() };
+            let symbol = units.symbol(axis.quantity);
+            axes.row([&*axis.name, &from, &to, symbol, axis.weight().unwrap_or("")]);
+        }
+        let _ = writeln!(text, "\n\n{axes}");
+
+        let (symbol, factor) = self.unit(units);
+        let ends = [found.value(), found.lower, found.upper];
+        let decimals = |ends: [f64; 3]| resolving(ends[2] - ends[1], ends[2]);
+        let measures = ends.map(|end| end / factor);
+        let shares = ends.map(|end| 100.0 * end / found.whole);
+        let mut results = Table::new(["", ">value", ">at least", ">at most", "unit"]);
+        for (name, ends, unit) in [("measure", measures, &*symbol), ("share", shares, "%")] {
+            let [value, lower, upper] = rounded(ends, decimals(ends));
+            results.row([name, &value, &lower, &upper, unit]);
+        }
+        let _ = write!(text, "{results}");
+        let _ = writeln!(text, "\n{} boxes in {} s", count(found.boxes), short(seconds));
+        text
+    }
+}
+
+/// Decimals that tell two bounds so far apart from one another, and do not pretend more.
+fn resolving(gap: f64, size: f64) -> i32 {
+    let exponent = |x: f64| x.log10().floor() as i32;
+    if size <= 0.0 {
+        return 0;
+    }
+    let most = MOST_DIGITS - 1 - exponent(size);
+    if gap > 0.0 { (1 - exponent(gap)).min(most) } else { most }
+}
+
+/// Value and bounds with so many decimals, the bounds away from the value.
+fn rounded([value, lower, upper]: [f64; 3], decimals: i32) -> [String; 3] {
+    let power = 10_f64.powi(decimals);
+    let shown = |x: f64| format!("{:.*}", decimals.max(0) as usize, x / power);
+    [shown((value * power).round()), shown((lower * power).floor()), shown((upper * power).ceil())]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_rounded_away_from_the_value() {
+        let shown = |ends: [f64; 3]| rounded(ends, resolving(ends[2] - ends[1], ends[2]));
+        assert_eq!(shown([63.094, 63.0349, 63.1541]), ["63.094", "63.034", "63.155"]);
+        assert_eq!(shown([5560.0, 5101.0, 6019.0]), ["5560", "5100", "6020"]);
+        assert_eq!(shown([0.0, 0.0, 0.0]), ["0", "0", "0"]);
+        assert_eq!(shown([1.0, 1.0, 1.0])[1], "1.00000000000000");
+    }
+}

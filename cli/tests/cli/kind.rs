@@ -1,0 +1,228 @@
+//! `opm workspace --kind`: sets other than that of poses, their boundaries and components.
+
+use crate::run::{Folder, number, opm};
+use crate::{HELICAL, PLANO};
+use foxglove::Decode;
+use foxglove::messages::SceneUpdate;
+use opm_mcap::workspace::{BOUNDARY_TOPIC, SLICES_TOPIC};
+use opm_mcap::{ReadError, read};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+fn workspace(args: &[&str]) -> Value {
+    opm(&[&["workspace"], args, &["--format", "json", "--quiet"]].concat()).json()
+}
+
+/// Areas inside the boundary, slice by slice.
+fn areas(found: &Value) -> Vec<f64> {
+    let slices = found["boundary"]["slices"].as_array().unwrap();
+    slices.iter().map(|slice| number(&slice["area"])).collect()
+}
+
+/// Twice the area inside closed lines, from their points alone.
+fn shoelace(rings: &Value) -> f64 {
+    let mut sum = 0.0;
+    for ring in rings.as_array().unwrap() {
+        let points: Vec<[f64; 2]> = serde_json::from_value(ring.clone()).unwrap();
+        let next = points.iter().cycle().skip(1);
+        sum += points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>();
+    }
+    sum
+}
+
+/// A grid of places and orientations that are reached in part.
+const GRID: [&str; 6] = [
+    "--grid=x=-250mm:250mm:26",
+    "--grid=y=-200mm:200mm:21",
+    "--grid=xi=-30deg:30deg:7",
+    "--grid=zeta=0:1:3",
+    "--grid=psi=0.1",
+    "--mode=any",
+];
+
+#[test]
+fn reachable_and_dexterous_places_are_those_of_the_poses() {
+    let folder = Folder::new();
+    let cloud = folder.arg("poses.mcap");
+    opm(&[&["workspace", PLANO, "-o", &cloud, "--quiet"], &GRID[..]].concat()).text();
+    // How many poses the recording has at each place.
+    let mut visits: BTreeMap<[u32; 2], u64> = BTreeMap::new();
+    read::<ReadError>(cloud.as_ref(), |message| {
+        if message.topic == SLICES_TOPIC {
+            let cloud = message.cloud()?.unwrap();
+            let (x, y) = (cloud.column("x").unwrap(), cloud.column("y").unwrap());
+            for (x, y) in x.zip(y) {
+                *visits.entry([x, y].map(|value| (value as f32).to_bits())).or_default() += 1;
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+    let orientations = 21;
+    for (kind, least) in [("reachable", 1), ("dexterous", orientations)] {
+        let places = folder.arg("places.mcap");
+        let run = [&[PLANO, "--kind", kind, "-o", &places], &GRID[..]].concat();
+        let found = workspace(&run);
+        let expected = visits.values().filter(|&&n| n >= least).count();
+        assert!(expected > 0 && expected < 26 * 21, "{kind}: {expected}, a poor test");
+        assert_eq!(found["kind"], kind);
+        assert_eq!(found["orientations"], orientations);
+        assert_eq!(found["poses"], 26 * 21);
+        assert_eq!(found["reachable"], expected);
+        let sizes: Vec<u64> = serde_json::from_value(found["components"]["sizes"].clone()).unwrap();
+        assert_eq!(sizes.iter().sum::<u64>() as usize, expected);
+        let [area] = areas(&found)[..] else { panic!("{:?}", found["boundary"]) };
+        let rings = &found["boundary"]["slices"][0]["rings"];
+        assert!((2.0 * area - shoelace(rings)).abs() < 1e-12, "{area}");
+        // Of the share of the box to which the lines run, one step less across than there are values.
+        assert!((area / number(&found["measure"]["value"]) - 1.0).abs() < 0.15, "{area}");
+
+        let mut seen = 0;
+        read::<ReadError>(places.as_ref(), |message| {
+            if message.topic == SLICES_TOPIC {
+                let cloud = message.cloud()?.unwrap();
+                let column = |name| cloud.column(name).unwrap();
+                for ((x, y), share) in column("x").zip(column("y")).zip(column("share")) {
+                    let found = visits[&[x, y].map(|value| (value as f32).to_bits())];
+                    assert!((share - found as f64 / orientations as f64).abs() < 1e-6);
+                    seen += 1;
+                }
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(seen, expected);
+    }
+}
+
+/// The lines of the recording are those of the JSON output, and a picture is made of them.
+#[test]
+fn boundaries_are_recorded_with_their_slices() {
+    let folder = Folder::new();
+    let cloud = folder.arg("cloud.mcap");
+    let axes = ["--grid=x=-400mm:400mm:81", "--grid=y=-400mm:400mm:81", "--grid=phi=-2:2:5"];
+    let run = [&[HELICAL, "--shape", "--axes", "phi,y,x", "-o", &cloud], &axes[..]].concat();
+    let found = workspace(&run);
+    let slices = found["boundary"]["slices"].as_array().unwrap();
+    assert_eq!(slices.len(), 5);
+    assert_eq!(found["boundary"]["axes"], serde_json::json!(["x", "y"]));
+    let mut lines = vec![];
+    read::<ReadError>(cloud.as_ref(), |message| {
+        if message.topic == BOUNDARY_TOPIC {
+            let scene = SceneUpdate::decode(message.data).unwrap();
+            assert_eq!(scene.entities.len(), 1);
+            lines.push((message.time, scene.entities[0].lines.clone()));
+        }
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!(lines.len(), 5);
+    for (number, ((time, lines), slice)) in lines.iter().zip(slices).enumerate() {
+        assert_eq!(opm_mcap::workspace::slice_at(*time), Some(number as u64));
+        let rings: Vec<Vec<[f64; 2]>> = serde_json::from_value(slice["rings"].clone()).unwrap();
+        assert_eq!(lines.len(), rings.len());
+        for (line, ring) in lines.iter().zip(&rings) {
+            let at = slice["at"]["phi"].as_f64().unwrap();
+            let expected: Vec<[f64; 3]> = ring.iter().map(|&[x, y]| [at, y, x]).collect();
+            let found: Vec<[f64; 3]> = line.points.iter().map(|p| [p.x, p.y, p.z]).collect();
+            // Reading JSON may round.
+            let near = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-12);
+            assert!(found.len() == expected.len() && found.iter().zip(&expected).all(near));
+        }
+    }
+    let picture = folder.arg("cloud.svg");
+    opm(&["plot", &cloud, "-o", &picture, "--quiet"]).text();
+    let svg = std::fs::read_to_string(picture).unwrap();
+    assert!(svg.contains("The line is the boundary"), "{svg:.300}");
+}
+
+#[test]
+fn sections_alone_are_counted_recorded_and_drawn() {
+    let folder = Folder::new();
+    let cloud = folder.arg("set.mcap");
+    let upper = ["--grid=zeta=-1:1:9", "--grid=xi=0:180deg:13", "--grid=psi=-1:1:7"];
+    let lower = ["--grid=x=-0.3:0.3:31", "--grid=y=-0.3:0.3:31", "--grid=theta11=-0.7:0.9:5"];
+    for (kind, axes, poses) in
+        [("upper", upper, 9 * 13 * 7), ("lower", lower, 31 * 31 * 5), ("imaginary", upper, 819)]
+    {
+        let found = workspace(&[&[PLANO, "--kind", kind, "-o", &cloud], &axes[..]].concat());
+        assert_eq!(found["kind"], kind);
+        assert_eq!(found["poses"], poses, "{kind}");
+        let reachable = found["reachable"].as_u64().unwrap();
+        assert!(reachable > 0 && reachable < poses, "{kind}: {reachable}");
+        assert_eq!(found["boundary"].is_null(), kind == "imaginary");
+        let mut points = 0;
+        read::<ReadError>(cloud.as_ref(), |message| {
+            if message.topic == SLICES_TOPIC {
+                points += message.cloud()?.unwrap().len() as u64;
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(points, reachable, "{kind}");
+        let picture = folder.arg(&format!("{kind}.svg"));
+        opm(&["plot", &cloud, "-o", &picture, "--quiet"]).text();
+    }
+}
+
+#[test]
+fn what_a_kind_cannot_do_is_refused() {
+    let cases: [(&[&str], &[&str]); 10] = [
+        (
+            &["--kind", "constant-orientation", "--grid", "xi=0:1:3"],
+            &["--grid", "xi has 3 values", "upper section", "xi=VALUE"],
+        ),
+        (&["--kind", "orientation", "--grid", "x=0:1:3"], &["--grid", "x has 3 values"]),
+        (&["--kind", "upper", "--grid", "x=0:1:3"], &["--grid", "upper section", "zeta, xi, psi"]),
+        (&["--kind", "lower", "--grid", "xi=1"], &["--grid", "imaginary joint", "theta11"]),
+        (&["--kind", "lower", "--max-condition", "9"], &["--max-condition", "--kind lower"]),
+        (&["--kind", "reachable", "--conditioning"], &["--conditioning", "--kind reachable"]),
+        (&["--kind", "imaginary", "--mode", "any"], &["--mode", "--kind imaginary"]),
+        (&["--kind", "upper", "--length", "1"], &["--length", "condition number"]),
+        (&["--kind", "dexterous", "-o", "a.mcap", "--color", "S1"], &["--color", "S1", "share"]),
+        (&["--kind", "upper", "-o", "a.mcap", "--axes", "tip"], &["--axes", "tip"]),
+    ];
+    for (args, words) in cases {
+        opm(&[&["workspace", PLANO], args].concat()).fails_with_one_line(2, words);
+    }
+}
+
+/// The global conditioning index is the mean of the values stored with the points.
+#[test]
+fn the_global_index_is_the_mean_of_the_recorded_ones() {
+    let folder = Folder::new();
+    let cloud = folder.arg("cloud.mcap");
+    for more in [&["--mode", "home"][..], &["--mode", "any", "--max-condition", "30"]] {
+        let flags = [
+            PLANO,
+            "--kind",
+            "constant-orientation",
+            "--grid=x=-0.2:0.2:21",
+            "--grid=y=-0.2:0.2:21",
+            "--grid=xi=20deg",
+            "--conditioning",
+            "--length=80mm",
+            "--scalars=inverse_condition",
+            "--color=inverse_condition",
+            "-o",
+            &cloud,
+        ];
+        let found = workspace(&[&flags[..], more].concat());
+        let mut all: Vec<f64> = vec![];
+        read::<ReadError>(cloud.as_ref(), |message| {
+            if message.topic == SLICES_TOPIC {
+                all.extend(message.cloud()?.unwrap().column("inverse_condition").unwrap());
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(found["reachable"], all.len());
+        assert!(all.len() > 30);
+        let index = &found["conditioning"];
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        assert!((number(&index["global"]) - mean).abs() < 1e-6, "{index} {mean}");
+        assert!((number(&index["characteristic_length"]) - 0.08).abs() < 1e-15);
+        let least = all.iter().copied().fold(f64::MAX, f64::min);
+        assert!((number(&index["local_min"]) - least).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,113 @@
+//! Numbers of many poses side by side, so that one loop works on all of them.
+
+use crate::chain::Amount;
+use crate::chain::cylindrical::CylindricalDisplacement;
+use crate::chain::planar::PlanarDisplacement;
+use nalgebra::{Complex, Matrix3};
+
+/// Poses that are solved together.
+pub const LANES: usize = 64;
+
+/// A number of each.
+pub type Column = [f64; LANES];
+
+/// Zero or one for each: as wide as the numbers that decide it, so that the loop needs no packing.
+pub type Mask = [u64; LANES];
+
+/// A displacement of each, as many of the columns as it has numbers.
+pub type Displacements = [Column; 9];
+
+/// A displacement that columns hold.
+pub trait Lane {
+    fn load(from: &Displacements, lane: usize) -> Self;
+    fn store(&self, to: &mut Displacements, lane: usize);
+}
+
+impl Lane for Complex<f64> {
+    #[inline(always)]
+    fn load(from: &Displacements, lane: usize) -> Self {
+        Self::new(from[0][lane], from[1][lane])
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut Displacements, lane: usize) {
+        (to[0][lane], to[1][lane]) = (self.re, self.im);
+    }
+}
+
+impl Lane for PlanarDisplacement {
+    #[inline(always)]
+    fn load(from: &Displacements, lane: usize) -> Self {
+        Self {
+            rotation: Complex::new(from[0][lane], from[1][lane]),
+            translation: Complex::new(from[2][lane], from[3][lane]),
+        }
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut Displacements, lane: usize) {
+        (to[0][lane], to[1][lane]) = (self.rotation.re, self.rotation.im);
+        (to[2][lane], to[3][lane]) = (self.translation.re, self.translation.im);
+    }
+}
+
+impl Lane for CylindricalDisplacement {
+    #[inline(always)]
+    fn load(from: &Displacements, lane: usize) -> Self {
+        Self { angle: from[0][lane], advance: from[1][lane] }
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut Displacements, lane: usize) {
+        (to[0][lane], to[1][lane]) = (self.angle, self.advance);
+    }
+}
+
+impl Lane for Matrix3<f64> {
+    #[inline(always)]
+    fn load(from: &Displacements, lane: usize) -> Self {
+        let at = |number: usize| from[number][lane];
+        Self::new(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8))
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut Displacements, lane: usize) {
+        (to[0][lane], to[1][lane], to[2][lane]) = (self.m11, self.m12, self.m13);
+        (to[3][lane], to[4][lane], to[5][lane]) = (self.m21, self.m22, self.m23);
+        (to[6][lane], to[7][lane], to[8][lane]) = (self.m31, self.m32, self.m33);
+    }
+}
+
+/// An amount of each, all of one kind.
+#[derive(Clone, Debug)]
+pub struct Amounts {
+    /// They are turns, else values.
+    pub turns: bool,
+    /// Of turns the two components; of values, which are the first, the second is not to be read.
+    columns: [Column; 2],
+}
+
+impl Amounts {
+    pub fn new() -> Self {
+        Self { turns: false, columns: [[0.0; LANES]; 2] }
+    }
+
+    #[inline(always)]
+    pub fn turn(&self, lane: usize) -> Amount {
+        Amount::Turn(Complex::new(self.columns[0][lane], self.columns[1][lane]))
+    }
+
+    #[inline(always)]
+    pub fn value(&self, lane: usize) -> Amount {
+        Amount::Value(self.columns[0][lane])
+    }
+
+    /// Of the kind that `turns` says.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, amount: Amount) {
+        match amount {
+            Amount::Turn(e) => (self.columns[0][lane], self.columns[1][lane]) = (e.re, e.im),
+            Amount::Value(value) => self.columns[0][lane] = value,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Points as one flat table: NPY for NumPy, PLY for mesh tools.
+//!
+//! | ending | what it is | a point |
+//! |---|---|---|
+//! | `.npy` | a structured array of one axis, memory-mappable (`numpy.load(..., mmap_mode="r")`) | a float64 a column, by its name |
+//! | `.ply` | binary, little-endian; one element, `vertex` | x y z and the scalars as float32, red green blue alpha as bytes |
+//!
+//! Values are SI and radians. The number of points is in front of them, so it has to be known first. As
+//! with recordings, a table has its name once it is whole.
+
+use std::fmt::Write as _;
+
+use crate::cloud::{COLOR_FIELDS, POSITION_FIELDS};
+use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
+
+/// Bytes that the array of an NPY file is aligned to.
+const ALIGNMENT: usize = 64;
+
+/// A kind of table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableFormat {
+    /// NumPy's own.
+    Npy,
+    /// Stanford's polygon file format.
+    Ply,
+}
+
+/// Writes a table of points. Any error is final.
+pub struct TableRecorder<W: Sink = PartialFile> {
+    /// `None` after an error.
+    sink: Option<W>,
+    stride: usize,
+    announced: u64,
+    pushed: u64,
+}
+
+impl<W: Sink> TableRecorder<W> {
+    /// Starts a table of so many points that goes to `sink`. `run` is told in comments, where the format
+    /// has any.
+    ///
+    /// # Errors
+    /// A failed write.
+    pub fn new(
+        mut sink: W,
+        format: TableFormat,
+        layout: &CloudLayout,
+        points: u64,
+        run: &Metadata,
+    ) -> Result<Self, RecordError> {
+        let (header, stride) = match format {
+            TableFormat::Npy => {
+                let columns = table_columns(layout);
+                (npy(&columns, points), 8 * columns.len())
+            }
+            TableFormat::Ply => (ply(layout, points, run), layout.stride()),
+        };
+        sink.write_all(&header).map_err(RecordError::Io)?;
+        Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0 })
+    }
+
+    /// Adds points, packed: rows of [`table_columns`] as little-endian doubles, or what a
+    /// [`Packer`](crate::Packer) makes.
+    ///
+    /// # Errors
+    /// No whole number of points, more than announced, or a failed write.
+    pub fn push(&mut self, points: &[u8]) -> Result<(), RecordError> {
+        let Some(mut sink) = self.sink.take() else { return Err(RecordError::AfterFailure) };
+        if !points.len().is_multiple_of(self.stride) {
+            let (bytes, stride) = (points.len(), self.stride);
+            let problem = format!("{bytes} bytes are no whole number of points of {stride}");
+            return Err(RecordError::Layout(problem));
+        }
+        self.pushed += (points.len() / self.stride) as u64;
+        sink.write_all(points).map_err(RecordError::Io)?;
+        self.sink = Some(sink);
+        Ok(())
+    }
+
+    /// Completes the table. Only now does the file get its name.
+    ///
+    /// # Errors
+    /// Fewer or more points than announced, or a failed write.
+    pub fn finish(self) -> Result<(), RecordError> {
+        let (found, expected) = (self.pushed, self.announced);
+        if found != expected {
+            return Err(RecordError::Count { what: "table", found, expected });
+        }
+        let sink = self.sink.ok_or(RecordError::AfterFailure)?;
+        sink.commit().map_err(RecordError::Io)
+    }
+}
+
+/// The columns of a layout, each of them once.
+pub fn table_columns(layout: &CloudLayout) -> Vec<&str> {
+    let mut columns: Vec<&str> = Vec::new();
+    for name in layout.columns() {
+        if !columns.contains(&name) {
+            columns.push(name);
+        }
+    }
+    columns
+}
+
+/// The header of an NPY file, version 1.0, or 3.0 for names that are not ASCII: see `numpy.lib.format`.
+fn npy(columns: &[&str], points: u64) -> Vec<u8> {
+    let mut fields = String::new();
+    for name in columns {
+        let quoted = name.replace('\\', "\\\\").replace('\'', "\\'");
+        let _ = write!(fields, "('{quoted}', '<f8'), ");
+    }
+    let mut text =
+        format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({points},), }}");
+    let wide = !text.is_ascii() || text.len() + ALIGNMENT > usize::from(u16::MAX);
+    let head = 8 + if wide { 4 } else { 2 };
+    // Spaces up to a newline, behind which the array begins.
+    let end = (head + text.len() + 1).next_multiple_of(ALIGNMENT);
+    text.extend(std::iter::repeat_n(' ', end - 1 - head - text.len()));
+    text.push('\n');
+    let mut header = b"\x93NUMPY".to_vec();
+    if wide {
+        header.extend([3, 0]);
+        header.extend((text.len() as u32).to_le_bytes());
+    } else {
+        header.extend([1, 0]);
+        header.extend((text.len() as u16).to_le_bytes());
+    }
+    header.extend(text.as_bytes());
+    header
+}
+
+/// The header of a PLY file.
+fn ply(layout: &CloudLayout, points: u64, run: &Metadata) -> Vec<u8> {
+    // Lines of printable characters, names of one word.
+    let line = |text: &str| text.replace(char::is_control, " ");
+    let word = |text: &str| text.replace(|c: char| c.is_control() || c.is_whitespace(), "_");
+    let mut text = "ply\nformat binary_little_endian 1.0\n".to_owned();
+    for (key, value) in run {
+        let _ = writeln!(text, "comment {}: {}", line(key), line(value));
+    }
+    let [x, y, z] = &layout.axes;
+    let _ =
+        writeln!(text, "comment x, y, z: {}, {}, {}; SI and radians", line(x), line(y), line(z));
+    let _ = writeln!(text, "comment color: {}", line(&layout.color));
+    let _ = writeln!(text, "element vertex {points}");
+    let scalars = layout.scalars.iter().map(|name| &**name);
+    for name in POSITION_FIELDS.into_iter().chain(scalars) {
+        let _ = writeln!(text, "property float {}", word(name));
+    }
+    for name in COLOR_FIELDS {
+        let _ = writeln!(text, "property uchar {name}");
+    }
+    text.push_str("end_header\n");
+    text.into_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_array_of_an_npy_file_is_aligned() {
+        for columns in [&["x"][..], &["x", "it's", "tip.x"], &["φ"], &["a"; 9000]] {
+            let header = npy(columns, 12);
+            assert!(header.len().is_multiple_of(ALIGNMENT));
+            assert_eq!(header.last(), Some(&b'\n'));
+        }
+    }
+}

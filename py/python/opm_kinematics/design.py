@@ -1,0 +1,283 @@
+"""Design by decomposition: the dimensions of one section after the other, instead of all at once.
+
+The imaginary joints cut a mechanism in two, and its parameters with it (Selvi, section 3.1: 25 parameters into 9 and 16). The
+upper section is optimised first, for a set of orientations; what it asks of the imaginary joints, a range of each, is its outcome.
+Then the lower section is optimised to reach as many places as it can *with every value in these ranges*. A place that it
+reaches so is dexterous: the whole mechanism gets there in every orientation that was asked for.
+
+The optimiser is CMA-ES, of the package ``cma``: ``pip install 'opm-kinematics[design]'``. SI units and radians.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import Manipulator, OpmError, Sweep, sweep
+
+__all__ = ["LOWER", "UPPER", "Design", "Found", "Variables", "dexterous", "minimise", "sections", "undivided"]
+
+Axes: TypeAlias = Mapping[str, float | tuple[float, float, int]]
+Bounds: TypeAlias = tuple[float, float]
+Vector: TypeAlias = NDArray[np.float64]
+
+#: The parameters of the plano-spherical family's upper section: both arcs and the platform axis's angle of each slider leg. The
+#: paper does not list its nine; what is left of the upper section is where the axes point about the platform's normal, eta.
+UPPER = tuple(f"leg{leg}.{name}" for leg in (1, 2, 3) for name in ("alpha1", "alpha2", "beta"))
+#: Those of its lower section: the direction, place and links of each slider, the arm's foot and links; sixteen numbers.
+LOWER = (*(f"leg{leg}.{name}" for leg in (1, 2, 3) for name in ("alpha", "h", "a1", "a2")), "leg4.base", "leg4.b1", "leg4.b2")
+
+#: What a design costs that does not assemble: more than one that assembles and reaches nothing.
+UNASSEMBLED = 2.0
+
+
+@dataclass(frozen=True)
+class Variables:
+    """Parameters that may vary, each between two bounds.
+
+    Parameters
+    ----------
+    bounds : mapping
+        Lowest and highest value by the name of the parameter, as in ``Manipulator.parameters``; of a point, a pair of bounds.
+
+    Examples
+    --------
+    >>> from opm_kinematics.design import Variables
+    >>> variables = Variables({"h": (0.1, 0.2), "leg4.base": ((-0.1, 0.1), (0.0, 0.1))})
+    >>> len(variables)
+    3
+    >>> variables.parameters([0.5, 0.0, 1.0])
+    {'h': 0.15000000000000002, 'leg4.base': (-0.1, 0.1)}
+    """
+
+    bounds: Mapping[str, Bounds | tuple[Bounds, Bounds]]
+    _ends: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        ends = [np.reshape(np.asarray(bounds, dtype=np.float64), (-1, 2)) for bounds in self.bounds.values()]
+        stacked = np.concatenate(ends) if ends else np.empty((0, 2))
+        if not (np.isfinite(stacked).all() and (stacked[:, 0] < stacked[:, 1]).all()):
+            raise OpmError("bounds of variables are finite, the lower one first")
+        object.__setattr__(self, "_ends", stacked)
+
+    def __len__(self) -> int:
+        """How many numbers they are."""
+        return len(self._ends)
+
+    def parameters(self, shares: Iterable[float]) -> dict[str, float | tuple[float, float]]:
+        """Their values at these shares of the way between the bounds, (len,) from 0 to 1."""
+        low, high = self._ends.T
+        values = iter((low + (high - low) * np.fromiter(shares, np.float64, len(self))).tolist())
+        return {
+            name: next(values) if np.ndim(bounds) == 1 else (next(values), next(values)) for name, bounds in self.bounds.items()
+        }
+
+    def __or__(self, other: "Variables") -> "Variables":
+        """These and others together."""
+        return Variables({**self.bounds, **other.bounds})
+
+
+@dataclass(frozen=True)
+class Found:
+    """The best that an optimiser found."""
+
+    #: (len,): shares of the way between the bounds.
+    shares: Vector
+    cost: float
+    #: How often the cost was asked for.
+    evaluations: int
+    #: (evaluations,): the least cost so far.
+    history: Vector
+
+
+@dataclass(frozen=True)
+class Design:
+    """A mechanism that was designed."""
+
+    manipulator: Manipulator
+    #: Share of the places that are dexterous: see :func:`dexterous`.
+    dexterous: float
+    #: Ranges of the imaginary joints that the lower section was made for; empty where it was not designed by itself.
+    imaginary_range: dict[str, tuple[float, float]]
+    #: What was found for the sections, one after the other; or for all at once.
+    found: tuple[Found, ...]
+
+    @property
+    def evaluations(self) -> int:
+        """How many designs were looked at."""
+        return sum(found.evaluations for found in self.found)
+
+
+def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, seed: int, step: float = 0.25) -> Found:
+    """Minimise over the unit cube with CMA-ES, from a random place.
+
+    Parameters
+    ----------
+    cost : callable
+        Of a vector (dimension,) of numbers from 0 to 1.
+    dimension : int
+        At least 2.
+    budget : int
+        How often `cost` is asked for, at most.
+    seed : int
+        Of all chance: the same seed finds the same.
+    step : float
+        Standard deviation of the first generation.
+    """
+    try:
+        import cma  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    except ImportError as error:
+        raise OpmError("designs need the package cma: pip install 'opm-kinematics[design]'") from error
+    if dimension < 2:
+        raise OpmError(f"{dimension} variables, expected at least 2: for one, scan it")
+    rng = np.random.default_rng(seed)
+    asked: list[float] = []
+    best, least = np.full(dimension, 0.5), np.inf
+
+    def look(shares: Vector) -> float:
+        nonlocal best, least
+        asked.append(float(cost(shares)))
+        if asked[-1] < least:
+            best, least = np.array(shares), asked[-1]
+        return asked[-1]
+
+    options = {"bounds": [0.0, 1.0], "verbose": -9, "tolfun": 0, "tolflatfitness": 10**9, "tolstagnation": 10**9}
+    while len(asked) < budget:  # once more from elsewhere where it has converged early
+        options["seed"] = int(rng.integers(1, 2**31))
+        evolution = cma.CMAEvolutionStrategy(rng.uniform(0.25, 0.75, dimension).tolist(), step, options)
+        while len(asked) < budget and not evolution.stop():
+            generation = evolution.ask()
+            if len(asked) + len(generation) > budget:
+                for shares in generation[: budget - len(asked)]:
+                    look(np.asarray(shares))
+                break
+            evolution.tell(generation, [look(np.asarray(shares)) for shares in generation])
+    return Found(best, float(least), len(asked), np.minimum.accumulate(asked))
+
+
+def dexterous(manipulator: Manipulator, *, places: Axes, orientations: Axes, mode: str = "home") -> float:
+    """The share of the places that are reached in every orientation.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    places, orientations : mapping
+        Axes of a grid as for :func:`~opm_kinematics.sweep`: of the lower section's task coordinates, and of the upper one's.
+    mode : str
+    """
+    return _everywhere(_swept(manipulator, mode, places, orientations), places)[0]
+
+
+def sections(
+    manipulator: Manipulator,
+    upper: Variables,
+    lower: Variables,
+    *,
+    places: Axes,
+    orientations: Axes,
+    budget: int,
+    seed: int = 0,
+    values: int = 5,
+    mode: str = "home",
+) -> Design:
+    """Design the upper section first, then the lower one for the imaginary joints that the upper one asks for.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+        Of a family; what is not among the variables stays as it is.
+    upper, lower : Variables
+        Of the sections; for the plano-spherical family :data:`UPPER` and :data:`LOWER` name them.
+    places, orientations : mapping
+        Grids as for :func:`dexterous`.
+    budget : int
+        Designs to look at, shared out by the number of variables.
+    seed : int
+    values : int
+        Of each imaginary joint in its range, both ends among them: what the lower section is tried with.
+    mode : str
+    """
+    share = round(budget * len(upper) / (len(upper) + len(lower)))
+    above = minimise(_cost(manipulator, upper, lambda m: _upper_cost(m, orientations, mode)), len(upper), budget=share, seed=seed)
+    chosen = manipulator.with_parameters(upper.parameters(above.shares))
+    asked = _swept(chosen, mode, orientations, section="upper").imaginary_range
+    ranges = {name: found for name, found in asked.items() if found is not None}
+    if len(ranges) < len(asked):
+        raise OpmError("the upper section reaches none of the orientations; give it a larger budget or other bounds")
+    cuts: Axes = {name: (low, high, values) if low < high else low for name, (low, high) in ranges.items()}
+
+    def cost(m: Manipulator) -> float:
+        return _whole_cost(_swept(m, mode, places, cuts, section="lower"), places)
+
+    below = minimise(_cost(chosen, lower, cost), len(lower), budget=budget - share, seed=seed)
+    whole = chosen.with_parameters(lower.parameters(below.shares))
+    return Design(whole, dexterous(whole, places=places, orientations=orientations, mode=mode), ranges, (above, below))
+
+
+def undivided(
+    manipulator: Manipulator,
+    variables: Variables,
+    *,
+    places: Axes,
+    orientations: Axes,
+    budget: int,
+    seed: int = 0,
+    mode: str = "home",
+) -> Design:
+    """Design all at once: the same question as :func:`sections`, asked of the whole mechanism."""
+
+    def cost(m: Manipulator) -> float:
+        return _whole_cost(_swept(m, mode, places, orientations), places)
+
+    found = minimise(_cost(manipulator, variables, cost), len(variables), budget=budget, seed=seed)
+    whole = manipulator.with_parameters(variables.parameters(found.shares))
+    return Design(whole, dexterous(whole, places=places, orientations=orientations, mode=mode), {}, (found,))
+
+
+#: How much it counts to reach a place in some orientations, of what it counts in all: what leads to the first dexterous place.
+SOME = 0.01
+#: How much a radian of the imaginary joints' ranges costs, of what an orientation costs that is out of reach.
+WIDTH = 0.01
+
+
+def _swept(manipulator: Manipulator, mode: str, *grids: Axes, section: str = "whole") -> Sweep:
+    axes: dict[str, Any] = {name: axis for grid in grids for name, axis in grid.items()}
+    return sweep(manipulator, mode=mode, section=section, **axes)
+
+
+def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipulator], float]) -> Callable[[Vector], float]:
+    """The cost of shares: that of the mechanism, if it assembles."""
+
+    def of(shares: Vector) -> float:
+        try:
+            changed = manipulator.with_parameters(variables.parameters(shares))
+        except OpmError:
+            return UNASSEMBLED
+        return cost(changed)
+
+    known = manipulator.parameters
+    for name in variables.bounds:
+        if not any(full == name or full.endswith(f".{name}") for full in known):
+            manipulator.with_parameters({name: 0.0})  # tells that there is none, and what there is
+    return of
+
+
+def _upper_cost(manipulator: Manipulator, orientations: Axes, mode: str) -> float:
+    """Orientations out of reach, then how wide the imaginary joints range."""
+    swept = _swept(manipulator, mode, orientations, section="upper")
+    widths = [found[1] - found[0] for found in swept.imaginary_range.values() if found is not None]
+    return 1.0 - swept.fraction + (WIDTH * float(np.mean(widths)) if widths else 0.0)
+
+
+def _whole_cost(swept: Sweep, places: Axes) -> float:
+    """Places that are not reached in all that is asked for."""
+    every, some = _everywhere(swept, places)
+    return 1.0 - every - SOME * some
+
+
+def _everywhere(swept: Sweep, places: Axes) -> tuple[float, float]:
+    """The share of places that are reached with all values of the other coordinates, and the share of the grid."""
+    others = tuple(number for number, name in enumerate(swept.axes) if name not in places)
+    return float(swept.mask().all(axis=others).mean()), swept.fraction

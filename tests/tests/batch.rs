@@ -1,0 +1,142 @@
+//! Inverse kinematics of many poses at once, held against one at a time: the same to the bit.
+
+use fastrand::Rng;
+use opm_core::manipulator::{Answers, Manipulator, Mode, PoseError};
+use opm_core::mechanism::{examples, file};
+use opm_tests::random::{Options, PAIRS, mechanism};
+
+const OPTIONS: Options = Options { limited: 0.3, balls: true };
+
+/// What one at a time gives, and how many poses were solved, out of reach, and outside of limits.
+#[derive(Default)]
+struct Tally {
+    reached: usize,
+    beyond: usize,
+    outside: usize,
+}
+
+/// Compares the two on these poses.
+fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut Tally) {
+    let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
+    // What is not written must not pass for an answer.
+    let mut joints = vec![1e99; poses.len() * widths[0]];
+    let mut imaginary = vec![1e99; poses.len() * widths[1]];
+    let (mut reachable, mut within) = (vec![false; poses.len()], vec![true; poses.len()]);
+    let mut out = Answers {
+        joints: &mut joints,
+        imaginary: &mut imaginary,
+        reachable: &mut reachable,
+        within_limits: &mut within,
+    };
+    manipulator.inverse_many(&poses.concat(), mode, &mut manipulator.batch(), &mut out).unwrap();
+    let mut solution = manipulator.solution();
+    for (row, pose) in poses.iter().enumerate() {
+        let reached = manipulator.inverse(pose, mode, &mut solution).unwrap();
+        let name = &manipulator.mechanism().name;
+        assert_eq!(reachable[row], reached, "{name}: {pose:?}");
+        assert_eq!(within[row], reached && solution.within_limits, "{name}: {pose:?}");
+        let joints = &joints[row * widths[0]..][..widths[0]];
+        let imaginary = &imaginary[row * widths[1]..][..widths[1]];
+        if reached {
+            // No tolerance: it is the same arithmetic.
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(joints), bits(&solution.joints), "{name}: {pose:?}");
+            assert_eq!(bits(imaginary), bits(&solution.imaginary), "{name}: {pose:?}");
+        } else {
+            assert!(joints.iter().chain(imaginary).all(|v| v.is_nan()), "{name}: {pose:?}");
+        }
+        tally.reached += usize::from(reached);
+        tally.beyond += usize::from(!reached);
+        tally.outside += usize::from(reached && !solution.within_limits);
+    }
+}
+
+/// Near home and far from it, on the axes of the sections' chains and on the grid of quarter turns, where
+/// sliders come to be parallel and arms straight; a few that count a million turns.
+fn poses(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<Vec<f64>> {
+    let home = manipulator.task().home();
+    (0..count)
+        .map(|_| {
+            let kind = rng.u32(..20);
+            let reach = 2.5 * rng.f64() * rng.f64();
+            let mut number = |home: f64| match kind {
+                0 => home,
+                1 => home + f64::from(rng.i32(-4..=4)) * std::f64::consts::FRAC_PI_2,
+                2 => f64::from(rng.i32(-2..=2)),
+                3 => 1e9 * (rng.f64() - 0.5),
+                4 => home + 100.0 * (rng.f64() - 0.5),
+                _ => home + reach * (rng.f64() * 2.0 - 1.0),
+            };
+            home.iter().map(|&home| number(home)).collect()
+        })
+        .collect()
+}
+
+#[test]
+fn many_poses_are_solved_as_one_is() {
+    let mut rng = Rng::with_seed(3);
+    for pair in PAIRS {
+        let mut tally = Tally::default();
+        for _ in 0..60 {
+            let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            // Whole blocks and what is left of one.
+            let count = [1, 63, 64, 65, 150][rng.usize(..5)];
+            let poses = poses(&mut rng, &manipulator, count);
+            let signs = |rng: &mut Rng| -> String {
+                (0..manipulator.choices()).map(|_| if rng.bool() { '+' } else { '-' }).collect()
+            };
+            let some = manipulator.parse_mode(&signs(&mut rng)).unwrap();
+            for mode in [manipulator.home_mode(), some] {
+                check(&manipulator, &poses, mode, &mut tally);
+            }
+        }
+        let Tally { reached, beyond, outside } = tally;
+        println!("{pair:?}: {reached} in reach, {outside} of them beyond limits, {beyond} not");
+        assert!(reached > 500 && outside > 50, "{pair:?}: {reached} in reach, {outside} outside");
+    }
+}
+
+/// Every mode of the shipped mechanisms.
+#[test]
+fn shipped_mechanisms_are_solved_as_one_is() {
+    let mut rng = Rng::with_seed(4);
+    for example in examples::EXAMPLES {
+        let Ok(manipulator) = Manipulator::new(file::read(example.text).unwrap().mechanism) else {
+            continue;
+        };
+        let mut tally = Tally::default();
+        let home = manipulator.task().home();
+        let close: Vec<Vec<f64>> =
+            (0..130).map(|_| home.iter().map(|h| h + 0.3 * (rng.f64() - 0.5)).collect()).collect();
+        for number in 0..1_u32 << manipulator.choices() {
+            let sign = |bit| if number >> bit & 1 == 0 { '+' } else { '-' };
+            let signs: String = (0..manipulator.choices()).map(sign).collect();
+            check(&manipulator, &close, manipulator.parse_mode(&signs).unwrap(), &mut tally);
+        }
+        assert!(tally.reached > 20, "{}: hardly any pose was in reach", example.name);
+    }
+}
+
+/// The first pose that is no pose is told, by its number.
+#[test]
+fn a_wrong_pose_is_told() {
+    let text = examples::find("plano-spherical-5dof").unwrap().text;
+    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let mut poses = vec![manipulator.task().home(); 100];
+    poses[99][0] = f64::INFINITY;
+    poses[77][3] = f64::NAN;
+    let (mut joints, mut imaginary) = (vec![0.0; 2000], vec![0.0; 300]);
+    let (mut reachable, mut within_limits) = ([false; 100], [false; 100]);
+    let mut out = Answers {
+        joints: &mut joints,
+        imaginary: &mut imaginary,
+        reachable: &mut reachable,
+        within_limits: &mut within_limits,
+    };
+    let mode = manipulator.home_mode();
+    let error = manipulator.inverse_many(&poses.concat(), mode, &mut manipulator.batch(), &mut out);
+    let error = error.unwrap_err();
+    assert_eq!(error.row, 77);
+    assert!(matches!(error.error, PoseError::NotFinite { name: "xi", .. }), "{error}");
+}
