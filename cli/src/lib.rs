@@ -1,6 +1,7 @@
 //! `opm`: kinematics and workspaces of overconstrained parallel manipulators, from a mechanism file.
 //!
-//! The program as a library with one function, so that the Python package can bring the command along.
+//! The program as a library: [`main`], so that the Python package can bring the command along, and
+//! [`recording`], so that both record alike.
 
 mod args;
 mod batch;
@@ -24,6 +25,7 @@ mod plot;
 mod pose;
 mod progress;
 mod record;
+pub mod recording;
 mod scene;
 mod shard;
 mod source;

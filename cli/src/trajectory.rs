@@ -61,16 +61,10 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         Some(mode) => load::mode(&manipulator, mode)?,
         None => motion.motion.mode.unwrap_or_else(|| manipulator.home_mode()),
     };
-    if motion.motion.duration > LONGEST {
-        let (label, duration) = (&motion.label, motion.motion.duration);
-        return Err(Failure::Work(format!(
-            "{label}: lasts {duration:e} s, expected at most {LONGEST:e} s"
-        )));
-    }
     let rate = args.rate.or(motion.motion.rate).unwrap_or(RATE);
     let run = Run { loaded: &loaded, motion: &motion, manipulator: &manipulator, mode, rate };
-    let trajectory = Trajectory::new(&manipulator, &motion.motion, mode, rate)
-        .map_err(|error| Failure::at(&motion.label, &error))?;
+    run.check()?;
+    let trajectory = run.trajectory()?;
     let player = match &args.output {
         Some(path) => {
             loaded
@@ -122,6 +116,31 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
 type Batch = Vec<(Sample, Vec<Change>)>;
 
 impl Run<'_> {
+    /// Records the motion from end to end.
+    pub fn record(
+        &self,
+        path: &Path,
+        done: &AtomicU64,
+        cancelled: impl Fn() -> bool,
+    ) -> Result<(), Failure> {
+        self.check()?;
+        let trajectory = self.trajectory()?;
+        let player = Player::create(path, self)?;
+        self.follow(trajectory, Some(player), done, cancelled).map(|_| ())
+    }
+
+    /// Refuses what a recording has no clock for.
+    fn check(&self) -> Result<(), Failure> {
+        let (label, duration) = (&self.motion.label, self.motion.motion.duration);
+        let long = format!("{label}: lasts {duration:e} s, expected at most {LONGEST:e} s");
+        if duration > LONGEST { Err(Failure::Work(long)) } else { Ok(()) }
+    }
+
+    fn trajectory(&self) -> Result<Trajectory<'_>, Failure> {
+        Trajectory::new(self.manipulator, &self.motion.motion, self.mode, self.rate)
+            .map_err(|error| Failure::at(&self.motion.label, &error))
+    }
+
     /// Follows the motion from end to end, and records it where there is a player: the one on a thread
     /// of its own, while the other takes down what came before.
     fn follow(

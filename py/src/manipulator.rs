@@ -14,7 +14,7 @@ use opm_core::mechanism::file::{self, MechanismFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// A mechanism, decomposed and compiled for closed-form inverse kinematics. Immutable.
@@ -141,7 +141,7 @@ impl Manipulator {
 
     /// The mechanism file.
     #[getter]
-    fn text(&self) -> &str {
+    pub fn text(&self) -> &str {
         self.text.get_or_init(|| self.family.as_ref().map_or_else(String::new, Family::write))
     }
 
@@ -260,6 +260,13 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
 }
 
 impl Manipulator {
+    /// What its file is called, without folders.
+    pub fn file_name(&self) -> String {
+        let path = Path::new(&self.label);
+        let name = path.file_name().map_or_else(|| self.label.clone(), |n| n.display().to_string());
+        if path.extension().is_some() { name } else { format!("{name}.toml") }
+    }
+
     /// What a file says, decomposed; `text` is the file.
     pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
         let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;

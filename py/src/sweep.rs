@@ -8,6 +8,7 @@ use crate::measure::{Measure, goal, measured};
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
 use opm_core::manipulator as core;
 use opm_workspace::measure::Over;
 use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Sections, Shard};
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::num::{NonZeroU64, NonZeroUsize};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
@@ -45,6 +47,13 @@ pub struct Sweep {
 enum Range {
     Fixed(f64),
     Several((f64, f64, u64)),
+}
+
+/// What x, y and z of a cloud are: three task coordinates, or `tip`.
+#[derive(FromPyObject)]
+enum CloudAxes {
+    One(String),
+    Several(Vec<String>),
 }
 
 /// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
@@ -286,6 +295,53 @@ impl Sweep {
         of: u64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.pointed(py, shard(number, of)?, 0)
+    }
+
+    /// Records the points, as `opm workspace -o` does: the same bytes.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        axes: Option<CloudAxes>,
+        scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        let of = self.of.get();
+        let name = of.file_name();
+        let swept = Swept {
+            mechanism: Attached { name: &name, text: of.text() },
+            manipulator: &self.manipulator,
+            grid: &self.grid,
+            modes: self.modes,
+            found: &self.count,
+        };
+        let axes = match axes {
+            None => Vec::new(),
+            Some(CloudAxes::One(name)) => vec![name],
+            Some(CloudAxes::Several(names)) => names,
+        };
+        let shown = Shown { axes, scalars, color };
+        let progress = Progress::default();
+        let work = || record_sweep(&swept, shown, &path, &progress);
+        interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
+    }
+
+    /// [`Self::write`], of MCAP alone.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write_mcap(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        axes: Option<CloudAxes>,
+        scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            let path = path.display();
+            return Err(wrong(format!("{path}, expected a name that ends in .mcap")));
+        }
+        self.write(py, path, axes, scalars, color)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -6,11 +6,13 @@ use crate::manipulator::Manipulator;
 use crate::rows::no_memory;
 use crate::solutions::{column, units};
 use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods};
-use opm_core::manipulator as core;
-use opm_core::motion::{Motion, Path as Course, Spline, examples, file, table};
+use opm_cli::recording::{Attached, Followed, record_motion};
+use opm_core::manipulator::{self as core, Mode};
+use opm_core::motion::{Motion, examples, file, table};
 use opm_core::trajectory::{self as core_trajectory, Change, Sample, Told};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -18,29 +20,62 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const RATE: f64 = 100.0;
 
 /// A motion as the joints follow it.
-#[pyclass(frozen, get_all, module = "opm_kinematics")]
+#[pyclass(frozen, module = "opm_kinematics")]
 pub struct Trajectory {
+    #[pyo3(get)]
     times: Py<PyArray1<f64>>,
+    #[pyo3(get)]
     poses: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     pose_rates: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     pose_accelerations: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     joints: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     joint_rates: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     joint_accelerations: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     imaginary: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     imaginary_rates: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     imaginary_accelerations: Py<PyArray2<f64>>,
+    #[pyo3(get)]
     condition: Py<PyArray1<f64>>,
+    #[pyo3(get)]
     reachable: Py<PyArray1<bool>>,
+    #[pyo3(get)]
     within_limits: Py<PyArray1<bool>>,
+    #[pyo3(get)]
     regular: Py<PyArray1<bool>>,
+    #[pyo3(get)]
     violations: Vec<Violation>,
+    #[pyo3(get)]
     joint_names: Vec<String>,
+    #[pyo3(get)]
     imaginary_names: Vec<String>,
+    #[pyo3(get)]
     units: BTreeMap<String, &'static str>,
+    #[pyo3(get)]
     mode: String,
+    #[pyo3(get)]
     name: String,
+    #[pyo3(get)]
     rows: usize,
+    source: Source,
+}
+
+/// What was followed: for a recording.
+struct Source {
+    manipulator: Py<Manipulator>,
+    motion: Motion,
+    /// The file's own name, and its text.
+    file_name: String,
+    text: String,
+    mode: Mode,
+    rate: f64,
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
@@ -66,14 +101,15 @@ pub struct Violation {
 #[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
 pub fn trajectory(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    manipulator: &Bound<'_, Manipulator>,
     motion: &Bound<'_, PyAny>,
     times: Option<Vec<f64>>,
     rate: Option<f64>,
     mode: Option<&str>,
 ) -> PyResult<Trajectory> {
-    let motion = match times {
-        Some(times) => through(manipulator, motion, times)?,
+    let (owner, manipulator) = (manipulator, manipulator.get());
+    let (motion, file_name, text) = match times {
+        Some(times) => through(manipulator, motion, &times)?,
         None => read(manipulator, motion)?,
     };
     let mode = match mode {
@@ -85,18 +121,18 @@ pub fn trajectory(
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
     let stop = AtomicBool::new(false);
-    let one = std::num::NonZeroUsize::new(1);
     let work = || Record::follow(inner, followed, &stop);
-    let record = interrupt::run(py, one, work, || stop.store(true, Ordering::Relaxed))??;
-    record.finish(py, inner, inner.format_mode(mode), motion.name.clone())
+    let record =
+        interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
+    let manipulator = owner.clone().unbind();
+    record.finish(py, Source { manipulator, motion, file_name, text, mode, rate })
 }
 
-/// The natural cubic spline through waypoints.
-fn through(
-    manipulator: &Manipulator,
-    poses: &Bound<'_, PyAny>,
-    times: Vec<f64>,
-) -> PyResult<Motion> {
+/// A motion, the name of its file, and the text of that.
+type Read = (Motion, String, String);
+
+/// Waypoints, as the table of poses that they are.
+fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
     let array = poses.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>();
     let array = array.map_err(|_| wrong("motion: with times, expected (w, d) poses"))?;
     let poses = manipulator.poses(&array)?;
@@ -104,35 +140,33 @@ fn through(
         let (poses, times) = (poses.count, times.len());
         return Err(wrong(format!("{times} times of {poses} poses, expected one a pose")));
     }
-    let names = manipulator.inner.task_coordinates();
-    let values = (0..poses.count).flat_map(|row| poses.row(row)).chain(&times);
-    if let Some(odd) = values.copied().find(|v| v.is_nan() || v.abs() > core::LARGEST) {
-        return Err(wrong(format!("{odd} among the poses and times, expected numbers")));
+    let names = manipulator.inner.task_coordinates().iter().map(|c| c.name);
+    let mut text = ["t"].into_iter().chain(names).collect::<Vec<_>>().join(",");
+    for (row, time) in times.iter().enumerate() {
+        let cells = [time].into_iter().chain(poses.row(row)).map(|value| format!("{value:?}"));
+        text = text + "\n" + &cells.collect::<Vec<_>>().join(",");
     }
-    let column = |i: usize| (0..poses.count).map(|row| poses.row(row)[i]).collect();
-    let columns = (0..names.len()).map(column).collect();
-    let (start, end) = (times.first().copied(), times.last().copied());
-    let spline = Spline::new(times, columns).map_err(|error| failed(&error))?;
-    let start = start.unwrap_or_default();
-    Ok(Motion {
-        name: "waypoints".to_owned(),
-        start,
-        duration: end.unwrap_or_default() - start,
-        rate: None,
-        mode: None,
-        path: Course::Spline(spline),
-    })
+    text.push('\n');
+    let motion = table::read(&text, "waypoints", &manipulator.inner).map_err(|errors| {
+        // The first line is the header.
+        let told = errors.problems.iter().map(|problem| match problem.line {
+            0 | 1 => problem.message.clone(),
+            line => format!("waypoint {}: {}", line - 1, problem.message),
+        });
+        wrong(told.collect::<Vec<_>>().join("\n"))
+    })?;
+    Ok((motion, "waypoints.csv".to_owned(), text))
 }
 
 /// A motion file, a table of poses, or a shipped motion: an existing path wins.
-fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Motion> {
+fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> {
     let expected = "motion: expected a path, the name of a shipped motion, or poses with times";
     let path: PathBuf = motion.extract().map_err(|_| wrong(expected))?;
     let label = path.display().to_string();
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
+    let (text, name) = match std::fs::read_to_string(&path) {
+        Ok(text) => (text, path.file_name().map_or(label.clone(), |n| n.display().to_string())),
         Err(error) => match examples::find(&label) {
-            Some(example) => example.text.to_owned(),
+            Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
             None => return Err(error.into()),
         },
     };
@@ -140,7 +174,8 @@ fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Motion
     let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
     let stem = path.file_stem().map_or_else(|| label.clone(), |s| s.display().to_string());
     let motion = if csv { table::read(&text, &stem, inner) } else { file::read(&text, inner) };
-    motion.map_err(|errors| wrong(errors.in_file(&label)))
+    let motion = motion.map_err(|errors| wrong(errors.in_file(&label)))?;
+    Ok((motion, name, text))
 }
 
 /// Columns in the making.
@@ -207,13 +242,8 @@ impl Record {
         }
     }
 
-    fn finish(
-        self,
-        py: Python<'_>,
-        manipulator: &core::Manipulator,
-        mode: String,
-        name: String,
-    ) -> PyResult<Trajectory> {
+    fn finish(self, py: Python<'_>, source: Source) -> PyResult<Trajectory> {
+        let manipulator = &*source.manipulator.get().inner;
         let rows = self.times.len();
         let widths = [
             manipulator.task_coordinates().len(),
@@ -246,9 +276,10 @@ impl Record {
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
-            mode,
-            name,
+            mode: manipulator.format_mode(source.mode),
+            name: source.motion.name.clone(),
             rows,
+            source,
         })
     }
 }
@@ -282,6 +313,26 @@ impl Violation {
 
 #[pymethods]
 impl Trajectory {
+    /// Records the motion, as `opm trajectory -o` does: the same bytes.
+    fn write_mcap(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let Source { manipulator, motion, file_name, text, mode, rate } = &self.source;
+        let manipulator = manipulator.get();
+        let name = manipulator.file_name();
+        let followed = Followed {
+            mechanism: Attached { name: &name, text: manipulator.text() },
+            motion_file: Attached { name: file_name, text },
+            manipulator: &manipulator.inner,
+            motion,
+            mode: *mode,
+            rate: *rate,
+        };
+        let stop = AtomicBool::new(false);
+        let cancelled = || stop.load(Ordering::Relaxed);
+        let work = || record_motion(&followed, &path, cancelled);
+        interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
+            .map_err(wrong)
+    }
+
     fn __len__(&self) -> usize {
         self.rows
     }

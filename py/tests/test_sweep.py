@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -92,3 +94,61 @@ def test_other_threads_go_on_during_a_sweep(manipulator):
         done.set()
         ticker.join()
     assert len(ticks) > 3
+
+
+def recorded_by_the_program(path, grid, *options):
+    command = [sys.executable, "-m", "opm_kinematics", "workspace", "plano-spherical-5dof", "--quiet", *options]
+    for name, range_ in grid.items():
+        command += ["--grid", f"{name}=" + (":".join(map(str, range_)) if isinstance(range_, tuple) else str(range_))]
+    subprocess.run([*command, "-o", path], capture_output=True, check=True)
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("ending", ["mcap", "npy", "ply"])
+@pytest.mark.parametrize(
+    ("mode", "shown"),
+    [
+        ("home", {}),
+        ("any", {"axes": ["x", "y", "psi"], "scalars": ["theta11", "S1", "inverse_condition"], "color": "theta12"}),
+        ("home", {"axes": "tip"}),
+    ],
+)
+def test_a_recording_is_that_of_the_command_line(manipulator, tmp_path, ending, mode, shown):
+    swept = opm.sweep(manipulator, mode=mode, **GRID)
+    options = ["--mode", mode]
+    for name, value in shown.items():
+        options += [f"--{name}", value if isinstance(value, str) else ",".join(value)]
+    expected = recorded_by_the_program(tmp_path / f"a.{ending}", GRID, *options)
+    swept.write(tmp_path / f"b.{ending}", **shown)
+    assert (tmp_path / f"b.{ending}").read_bytes() == expected
+
+
+@pytest.mark.parametrize(
+    ("section", "grid"),
+    [("upper", {"zeta": (-1.0, 1.0, 9), "psi": (-1.0, 1.0, 9)}), ("lower", {"x": (-2.0, 2.0, 9), "y": (-1.0, 3.0, 9)})],
+)
+def test_a_recording_of_a_section_is_that_of_the_command_line(manipulator, tmp_path, section, grid):
+    swept = opm.sweep(manipulator, section=section, **grid)
+    assert swept.count > 0
+    expected = recorded_by_the_program(tmp_path / "a.mcap", grid, "--kind", section)
+    swept.write_mcap(tmp_path / "b.mcap")
+    assert (tmp_path / "b.mcap").read_bytes() == expected
+    with pytest.raises(opm.OpmError, match="section upper is written as MCAP|section lower is written as MCAP"):
+        swept.write(tmp_path / "b.npy")
+
+
+def test_wrong_recordings_are_told(manipulator, tmp_path):
+    swept = opm.sweep(manipulator, **GRID)
+    for options, message in [
+        ({"axes": ["x", "y"]}, "^axes: .*expected three different task coordinates"),
+        ({"scalars": ["w"]}, "^scalars: .*none of"),
+        ({"color": "w"}, "^color: .*none of"),
+    ]:
+        with pytest.raises(opm.OpmError, match=message):
+            swept.write_mcap(tmp_path / "a.mcap", **options)
+    with pytest.raises(opm.OpmError, match="No such file"):
+        swept.write_mcap(tmp_path / "none" / "a.mcap")
+    for write, name in [(swept.write, "a.txt"), (swept.write_mcap, "a.npy"), (swept.write, "-")]:
+        with pytest.raises(opm.OpmError, match=f"{name}, expected a name that ends in .mcap"):
+            write(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []

@@ -91,10 +91,10 @@ def test_wrong_input_is_told(manipulator, tmp_path):
     home = np.zeros((4, 5))
     for motion, options, message in [
         (home, {"times": [0, 1, 2]}, "3 times of 4 poses"),
-        (home, {"times": [0, 1, 1, 2]}, "the times do not increase"),
-        (home[:2], {"times": [0, 1]}, "2 times, expected at least 3"),
+        (home, {"times": [0, 1, 1, 2]}, "waypoint 3: t is 1.0 after 1.0|waypoint 3: t is 1 after 1"),
+        (home[:2], {"times": [0, 1]}, "expected at least 3"),
         (home[:, :3], {"times": [0, 1, 2, 3]}, "3 columns of poses, expected 5"),
-        (home * np.nan, {"times": [0, 1, 2, 3]}, "NaN among the poses and times"),
+        (home * np.nan, {"times": [0, 1, 2, 3]}, "waypoint 1: .*NaN"),
         (home, {}, "expected a path, the name of a shipped motion, or poses with times"),
         ("plano-spherical-sinusoids", {"rate": 0.0}, "expected a rate above zero"),
         ("plano-spherical-sinusoids", {"rate": np.nan}, "expected a rate above zero"),
@@ -104,3 +104,25 @@ def test_wrong_input_is_told(manipulator, tmp_path):
             opm.trajectory(manipulator, motion, **options)
     with pytest.raises(MemoryError):
         opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=1e14)
+
+
+@pytest.mark.parametrize("motion", ["plano-spherical-sinusoids", "out.csv"])
+def test_a_recording_is_that_of_the_command_line(manipulator, tmp_path, motion):
+    rows = "\n".join(f"{t},{0.1 * t}" for t in range(4))
+    (tmp_path / "out.csv").write_text(f"t,x\n{rows}\n")
+    given = tmp_path / motion if motion.endswith("csv") else motion
+    command = [sys.executable, "-m", "opm_kinematics", "trajectory", "plano-spherical-5dof", "--motion", given]
+    subprocess.run([*command, "--rate", "30", "--quiet", "-o", tmp_path / "a.mcap"], capture_output=True, check=True)
+    found = opm.trajectory(manipulator, given, rate=30)
+    found.write_mcap(tmp_path / "b.mcap")
+    assert (tmp_path / "a.mcap").read_bytes() == (tmp_path / "b.mcap").read_bytes()
+    with pytest.raises(opm.OpmError, match=r"none.*No such file"):
+        found.write_mcap(tmp_path / "none" / "b.mcap")
+
+
+def test_waypoints_are_recorded_too(manipulator, tmp_path):
+    found = opm.trajectory(manipulator, np.zeros((3, 5)), times=[0, 1, 2])
+    found.write_mcap(tmp_path / "a.mcap")
+    command = [sys.executable, "-m", "opm_kinematics", "inspect", tmp_path / "a.mcap", "--format", "json"]
+    told = subprocess.run(command, capture_output=True, check=True).stdout
+    assert b"waypoints" in told and sorted(p.name for p in tmp_path.iterdir()) == ["a.mcap"]

@@ -68,6 +68,9 @@ fn shards_are_the_whole_one_after_the_other() {
     assert!(shared > 60, "{shared} sweeps had points in several shards");
 }
 
+/// A pose's first coordinate; the numbers of its slice and row, and its other coordinates.
+type Pose = (f64, (u64, u64, Vec<f64>));
+
 /// What a sweep gives, from the numbers of its poses alone; also where a run goes over many rows.
 #[test]
 fn a_replay_gives_what_the_sweep_gave() {
@@ -84,7 +87,7 @@ fn a_replay_gives_what_the_sweep_gave() {
                 made.extend(hits.first.iter().map(|&first| (first, row.clone())));
             };
             let progress = Progress::default();
-            let take = |all: &mut Vec<(f64, (u64, u64, Vec<f64>))>, made| {
+            let take = |all: &mut Vec<Pose>, made| {
                 all.extend::<Vec<_>>(made);
                 Ok::<(), Cancelled>(())
             };

@@ -10,7 +10,7 @@
 //! * On the rim of reach, within [`RIM`], the two branches meet and both are given.
 //! * An angle that the target leaves free is given as zero, its home value.
 //! * The general case is straight arithmetic, which a loop over many targets is vectorised with; what is
-//!   rare, and what is out of reach, is told apart after it ([`ClosedForm`]).
+//!   rare, and what is out of reach, is told apart after it (`ClosedForm`).
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 

@@ -312,8 +312,9 @@ fn boundaries_are_shown_from_their_slices_on() {
 
     for wrong in [vec![(1, vec![]), (1, vec![])], vec![(5, vec![])], vec![(2, vec![]), (0, vec![])]]
     {
-        let mut recorder =
-            WorkspaceRecorder::new(Cursor::new(Vec::new()), &workspace(layout(), 0, 5)).unwrap();
+        let mut bytes = Vec::new();
+        let sink = Cursor::new(&mut bytes);
+        let mut recorder = WorkspaceRecorder::new(sink, &workspace(layout(), 0, 5)).unwrap();
         assert!(matches!(recorder.boundary(wrong), Err(RecordError::Slice { .. })));
     }
 }

@@ -573,6 +573,44 @@ class Sweep:
         """
     def measure(self, *, tolerance: float | None = None, budget: int | None = None) -> Measure:
         """How much of the box that the grid covers is in reach: :func:`measure` over it."""
+    def write(
+        self,
+        path: str | PathLike[str],
+        *,
+        axes: Sequence[str] | None = None,
+        scalars: Sequence[str] | None = None,
+        color: str | None = None,
+    ) -> None:
+        """Record the points as ``opm workspace -o`` does, byte for byte.
+
+        Of a section alone, as ``--kind upper`` or ``lower`` does: MCAP only.
+
+        Parameters
+        ----------
+        path : path
+            Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
+            when it is whole.
+        axes : sequence of three str, or "tip", optional
+            The task coordinates that are x, y and z of the cloud, or the platform's point.
+        scalars : sequence of str, optional
+            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``.
+        color : str, optional
+            The one of them that the colour shows.
+
+        Raises
+        ------
+        OpmError
+            A name that is none, a file that cannot be written.
+        """
+    def write_mcap(
+        self,
+        path: str | PathLike[str],
+        *,
+        axes: Sequence[str] | None = None,
+        scalars: Sequence[str] | None = None,
+        color: str | None = None,
+    ) -> None:
+        """:meth:`write`, of a name that ends in ``.mcap``."""
 
 def sweep(
     manipulator: Manipulator,
@@ -720,6 +758,19 @@ class Trajectory:
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
+    def write_mcap(self, path: str | PathLike[str]) -> None:
+        """Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
+
+        Parameters
+        ----------
+        path : path
+            The file appears when it is whole.
+
+        Raises
+        ------
+        OpmError
+            A file that cannot be written.
+        """
 
 @final
 class Violation:
@@ -779,7 +830,8 @@ def trajectory(
     manipulator : Manipulator
     motion : path, str or (w, d) array_like
         A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
-        coordinate a column, which a natural cubic spline goes through.
+        coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
+        waypoint before, as those of a table are.
     times : (w,) sequence of float, optional
         When the waypoints are, seconds, increasing; three at least.
     rate : float, optional
