@@ -1,9 +1,11 @@
-"""Inverse kinematics of a million poses with opm and with NumPy: every joint of the shipped plano-spherical-5dof, actuated, passive
-and imaginary, and which poses are in reach and within limits; one thread, turn and turn about. All must agree; prints a table.
+"""Inverse kinematics of a million poses with opm and with NumPy: every joint of the shipped plano-spherical-5dof, actuated,
+passive and imaginary, and which poses are in reach and within limits; one thread, turn and turn about. All must agree; prints a
+table.
 
 The NumPy code is the paper's formulas (Selvi, section 3.1; Eqs. 2-3 and 10-16, its errata mended) for the working mode
 `++ ++ ++ +`, and for the passive joints the products of rotations that define them: an array operation a step, angles only where
-an angle is asked for. Once on all poses at a time, as one writes it; once a part at a time, so that what is between stays in the cache.
+an angle is asked for. Once on all poses at a time, as one writes it; once a part at a time, so that what is between stays in the
+cache.
 """
 
 import math
