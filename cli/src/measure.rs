@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn bounds_are_rounded_away_from_the_value() {
         let shown = |ends: [f64; 3]| rounded(ends, resolving(ends[2] - ends[1], ends[2]));
-        assert_eq!(shown([63.094, 63.0349, 63.1541]), ["63.094", "63.034", "63.155"]);
+        assert_eq!(shown([63.094, 63.0349, 63.1541]), ["63.09", "63.03", "63.16"]);
         assert_eq!(shown([5560.0, 5101.0, 6019.0]), ["5560", "5100", "6020"]);
         assert_eq!(shown([0.0, 0.0, 0.0]), ["0", "0", "0"]);
         assert_eq!(shown([1.0, 1.0, 1.0])[1], "1.00000000000000");

@@ -25,10 +25,16 @@ const PORTION: u64 = 1 << 12;
 
 /// Opens a file for a recording before the work starts, so that a wrong path costs no time.
 pub fn create(path: &Path) -> Result<PartialFile, Failure> {
+    no_stream(path)?;
+    PartialFile::create(path).map_err(|e| Failure::at(path.display(), &e))
+}
+
+/// Refuses standard output: what is on its way to a file goes by another name until it is whole.
+fn no_stream(path: &Path) -> Result<(), Failure> {
     if path == Path::new("-") {
         return Err(Failure::flag("--output", "a recording needs a file, not standard output"));
     }
-    PartialFile::create(path).map_err(|e| Failure::at(path.display(), &e))
+    Ok(())
 }
 
 /// A file that is open for a recording.
@@ -48,6 +54,7 @@ enum Format {
 impl Format {
     /// By the ending of the file's name.
     fn of(path: &Path) -> Result<Self, Failure> {
+        no_stream(path)?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             Some("mcap") => Ok(Self::Mcap),

@@ -228,10 +228,10 @@ fn inputs_are_not_written_over() {
 fn outputs_that_cannot_be_written() {
     let folder = Folder::new();
     let csv = folder.write("in.csv", "x\n0\n");
-    fs::create_dir(folder.path("taken")).unwrap();
+    fs::create_dir(folder.path("taken.mcap")).unwrap();
     for (output, parts) in [
-        (folder.arg("no/where.out"), &["where.out", "cannot create", "No such file"][..]),
-        (folder.arg("taken"), &["taken", "not a regular file"]),
+        (folder.arg("no/where.mcap"), &["where.mcap", "cannot create", "No such file"][..]),
+        (folder.arg("taken.mcap"), &["taken.mcap", "not a regular file"]),
     ] {
         opm(&["workspace", PLANO, "-o", &output]).fails_with_one_line(1, parts);
         opm(&["ik", PLANO, "--poses", &csv, "-o", &output]).fails_with_one_line(1, parts);
