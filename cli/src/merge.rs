@@ -175,8 +175,8 @@ fn missing(run: &Run<'_>, parts: &[Part], there: &BTreeSet<u64>, of: u64) -> Fai
         .collect();
     let missing = || gaps.iter().flat_map(|&[from, to]| from..=to);
     let number = of - there.len() as u64;
-    let plural = if number == 1 { "shard is" } else { "shards are" };
-    let mut message = format!("{number} of {of} {plural} missing: {}", text.join(","));
+    let verb = if number == 1 { "is" } else { "are" };
+    let mut message = format!("{number} of {of} shards {verb} missing: {}", text.join(","));
     for number in missing().take(COMMANDS) {
         message += &format!("\n  {}", command(run, &parts[0], number, of));
     }
