@@ -27,8 +27,9 @@ lint: ## Check format, lints and documentation, warnings being errors
 test-rust: ## Run the Rust tests, build the examples
 	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
 
+# The module as the Rust tests are built: optimised, without the minutes that linking for release takes.
 test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
-	$(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
+	MATURIN_PEP517_ARGS="--profile dev" $(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
 	$(TESTS_VENV)/bin/python -m pytest -q tests/python py/tests
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md

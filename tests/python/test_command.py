@@ -45,9 +45,9 @@ def test_it_says_what_the_program_says(opm, command, arguments, status):
 def test_it_records_the_same_bytes(opm, tmp_path):
     grid = "--grid x=-0.1:0.1:21 --grid y=-0.1:0.1:21 --grid xi=-0.5:0.5:5 --quiet".split()
     for name, command in [("a", [opm]), ("b", SCRIPT)]:
-        status, _, said = run(command, "workspace", "plano-spherical-5dof", *grid, "-o", tmp_path / name)
+        status, _, said = run(command, "workspace", "plano-spherical-5dof", *grid, "-o", tmp_path / f"{name}.mcap")
         assert (status, said) == (0, b"")
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+    assert (tmp_path / "a.mcap").read_bytes() == (tmp_path / "b.mcap").read_bytes()
 
 
 def test_nobody_reads_its_output():
