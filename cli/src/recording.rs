@@ -5,7 +5,7 @@ use crate::args::CloudArgs;
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
 use crate::kind::{Kind, Questions, SetRecording, SetWishes, Study};
-use crate::load;
+use crate::load::{self, Loaded};
 use crate::motion::LoadedMotion;
 use crate::record::Recorder;
 use crate::source::Source;
@@ -74,15 +74,31 @@ pub fn record_sweep(
     record.map_err(told)
 }
 
+impl<'a> Swept<'a> {
+    fn load(&self) -> Result<Loaded, Failure> {
+        let Attached { name, text } = self.mechanism;
+        load::attached(name, name, text)
+    }
+
+    /// As the program knows it.
+    fn run<'b>(&self, loaded: &'b Loaded, kind: Kind) -> Run<'b>
+    where
+        'a: 'b,
+    {
+        let Self { manipulator, grid, modes, .. } = *self;
+        Run { loaded, manipulator, kind, grid, modes, limit: None }
+    }
+}
+
 fn record_poses(
     swept: &Swept<'_>,
     args: &CloudArgs,
     path: &Path,
     progress: &Progress,
 ) -> Result<(), Failure> {
-    let Swept { mechanism, manipulator, grid, modes, found } = *swept;
-    let loaded = load::attached(mechanism.name, mechanism.name, mechanism.text)?;
-    let run = Run { loaded: &loaded, manipulator, kind: Kind::Grid, grid, modes, limit: None };
+    let Swept { manipulator, grid, found, .. } = *swept;
+    let loaded = swept.load()?;
+    let run = swept.run(&loaded, Kind::Grid);
     let wishes = Wishes::new(args, manipulator.characteristic_length(), manipulator)?;
     Recorder::check(path, grid)?;
     let (recorder, cloud) = (Recorder::create(path)?, Cloud::new(wishes, &run));
@@ -97,10 +113,9 @@ fn record_section(
     path: &Path,
     progress: &Progress,
 ) -> Result<(), Failure> {
-    let Swept { mechanism, manipulator, grid, modes, found } = *swept;
-    let loaded = load::attached(mechanism.name, mechanism.name, mechanism.text)?;
-    let run = Run { loaded: &loaded, manipulator, kind, grid, modes, limit: None };
-    let wishes = SetWishes::new(kind, args, manipulator)?;
+    let loaded = swept.load()?;
+    let run = swept.run(&loaded, kind);
+    let wishes = SetWishes::new(kind, args, swept.manipulator)?;
     Recorder::check_set(path, &kind.name())?;
     let recorder = Recorder::create(path)?;
     let questions = Questions { kind, shape: true, conditioning: None };
@@ -108,7 +123,7 @@ fn record_section(
         SetError::Cancelled(cancelled) => Failure::from(cancelled),
         SetError::Size { .. } => Failure::Work(error.to_string()),
     })?;
-    recorder.record_set(&run, &SetRecording::new(wishes, &run, &study)?, found, progress)?;
+    recorder.record_set(&run, &SetRecording::new(wishes, &run, &study)?, swept.found, progress)?;
     Ok(())
 }
 

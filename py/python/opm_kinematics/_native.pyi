@@ -282,7 +282,7 @@ class Manipulator:
         ----------
         poses : (n, d) array_like
             A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is, and must not be
-            written to meanwhile; anything else is converted, with one copy.
+            written to meanwhile; anything else is converted first, in memory of its own.
         mode : str
             ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
             gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
