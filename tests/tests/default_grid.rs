@@ -68,11 +68,74 @@ fn it_finds_a_small_workspace() {
         let turned = |text: &str| turned(&text.replace("zeta = 0,", ""));
         let manipulator = limited(example("plano-spherical-5dof", turned), 0.003, radians);
         let (grid, _, reachable) = fitted(&manipulator);
-        assert!(reachable > grid.poses() / 1000, "{reachable} of {} at {xi}", grid.poses());
+        assert!(reachable > grid.poses() / 1000, "{reachable} of {grid:?} at {xi}, {radians}");
         for (axis, home) in grid.axes().iter().zip(manipulator.task().home()) {
             assert!((axis.min..=axis.max).contains(&home), "{axis:?}");
         }
     }
+}
+
+/// No pose of a finer and wider grid that is in reach lies outside, whatever thin parts a workspace has.
+#[test]
+fn nothing_in_reach_is_outside_it() {
+    const POSES: f64 = 1e7;
+    let mut checked = 0;
+    for example in examples::EXAMPLES {
+        let Ok(manipulator) = Manipulator::new(self::example(example.name, str::to_owned)) else {
+            continue;
+        };
+        let (fitted, extents, _) = fitted(&manipulator);
+        let coordinates = manipulator.task_coordinates();
+        // Even, so that home is not on it, and other values than any grid of the search has.
+        let count = 2 * (0.5 * POSES.powf(1.0 / coordinates.len() as f64)) as u64;
+        let axes =
+            fitted.axes().iter().zip(&extents).zip(coordinates).map(|((axis, extent), c)| {
+                let wider = 0.25 * (axis.max - axis.min);
+                let (home, half) = match c.name {
+                    "xi" => (PI / 2.0, PI / 2.0),
+                    "nu" => (c.home, PI / 2.0),
+                    _ if c.quantity.unit() == "m" || manipulator.counts_turns(c.name) => {
+                        (c.home, f64::INFINITY)
+                    }
+                    _ => (c.home, PI),
+                };
+                let [min, max] = match extent.unbounded {
+                    true => [axis.min, axis.max],
+                    false => [axis.min - wider, axis.max + wider],
+                };
+                opm_workspace::Axis::new(c.name, min.max(home - half), max.min(home + half), count)
+            });
+        let wide = Grid::new(&manipulator, axes.collect()).unwrap();
+        let modes = Modes::One(manipulator.home_mode());
+        let mut outside: Option<Vec<f64>> = None;
+        let sweep = Sweep::new(&manipulator, &wide, modes);
+        let found = sweep.points(
+            &Progress::default(),
+            |hits, outside: &mut Option<Vec<f64>>| {
+                let rows = [hits.first[0], hits.first[hits.first.len() - 1]];
+                for first in rows {
+                    let pose: Vec<f64> =
+                        std::iter::once(first).chain(hits.others.iter().copied()).collect();
+                    let beyond = pose.iter().zip(fitted.axes()).any(|(value, axis)| {
+                        let rounding = 1e-9 * (axis.max - axis.min);
+                        *value < axis.min - rounding || *value > axis.max + rounding
+                    });
+                    if beyond {
+                        *outside = Some(pose);
+                    }
+                }
+            },
+            || None,
+            |some| {
+                outside = outside.take().or(some);
+                Ok::<(), opm_workspace::Cancelled>(())
+            },
+        );
+        found.unwrap();
+        assert_eq!(outside, None, "{}: outside of {:?}", example.name, fitted.axes());
+        checked += 1;
+    }
+    assert!(checked >= 10, "{checked} mechanisms");
 }
 
 /// Locked joints leave one pose: the grid closes in on it and comes to an end.

@@ -1,7 +1,10 @@
 //! A grid that suits a mechanism: how far its workspace reaches along every task coordinate.
 //!
 //! Found by sweeping: a coarse grid about home grows until no reachable pose lies on its faces, then
-//! shrinks onto those that there are. One way for every mechanism, limits of all kinds included.
+//! shrinks onto those that there are. A workspace ends in tips and edges that are thinner than such a
+//! grid's steps: from the farthest pose that was found along a coordinate, grids about the farthest so
+//! far, ever finer, go on until none goes farther. One way for every mechanism, limits of all kinds
+//! included.
 
 use crate::grid::{Axis, Grid};
 use crate::progress::{Cancelled, Progress};
@@ -23,6 +26,12 @@ const FINER: f64 = 6.0;
 
 /// How many times a coarse grid may double before a coordinate counts as unbounded.
 const DOUBLINGS: usize = 8;
+
+/// Poses of a grid about the farthest pose.
+const FOLLOWING_POSES: f64 = 2e4;
+
+/// How far a workspace reaches is followed up to this share of its width.
+const FOLLOWED: f64 = 0.01;
 
 /// A coarse grid that shrinks by less than this has settled.
 const SETTLED: f64 = 0.9;
@@ -58,7 +67,7 @@ pub fn default_grid(
     progress: &Progress,
 ) -> Result<(Grid, Vec<Extent>), Cancelled> {
     let search = Search::new(manipulator, modes, progress)?;
-    let ranges = search.shrink(search.grow()?)?;
+    let ranges = search.fit()?;
     let lower = manipulator.task().lower_count;
     let (n, uppers) = (ranges.len() as f64, (ranges.len() - lower) as f64);
     // lower^n / FINER^uppers = DEFAULT_POSES
@@ -97,6 +106,18 @@ impl Range {
 
     fn width(&self) -> f64 {
         self.extent.max - self.extent.min
+    }
+
+    /// Of an Euler angle about the intersection motion or the platform's axis.
+    fn turns(&self) -> bool {
+        matches!(self.extent.name, "zeta" | "psi")
+    }
+
+    /// Half its width farther to both sides, where it may grow: thin parts may pass between the poses of
+    /// a coarse grid that ends there.
+    fn beyond(&self) -> [f64; 2] {
+        let more = if self.grows && !self.extent.unbounded { 0.5 * self.width() } else { 0.0 };
+        [self.extent.min - more, self.extent.max + more]
     }
 
     /// The ends, outward to about a percent of the width, in decimal steps; not beyond those of an
@@ -158,9 +179,10 @@ impl<'a> Search<'a> {
             let mut ranges = start.clone();
             let mut last = vec![];
             for _ in 0..DOUBLINGS {
-                let Some(hit) = self.hits(&ranges)? else { return Ok(ranges) };
+                let Some(hits) = self.hits(&ranges)? else { return Ok(ranges) };
                 last.clear();
-                for (number, (range, &[low, high])) in ranges.iter_mut().zip(&hit).enumerate() {
+                for (number, (range, hit)) in ranges.iter_mut().zip(&hits).enumerate() {
+                    let [low, high] = hit.numbers;
                     let (width, extent) = (range.width(), &mut range.extent);
                     let (down, up) = (low == 0, high + 1 == self.count);
                     if range.grows && !extent.unbounded && (down || up) {
@@ -180,13 +202,101 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Ranges that hold the workspace closely.
+    fn fit(&self) -> Result<Vec<Range>, Cancelled> {
+        let grown = self.grow()?;
+        let within: Vec<[f64; 2]> = grown.iter().map(Range::beyond).collect();
+        let mut ranges = self.shrink(grown)?;
+        // A coarse grid over what was found may show parts that the one before it missed.
+        loop {
+            let Some(hits) = self.hits(&ranges)? else { return Ok(ranges) };
+            let mut found = ranges.clone();
+            let mut farther = false;
+            // At a tilt of zero zeta and psi turn about one axis: what goes on along one of them is the
+            // same orientations again, with the other.
+            let tilt = ranges.iter().find(|range| range.extent.name == "xi");
+            let level = tilt.is_some_and(|tilt| {
+                let slack = FOLLOWED * tilt.width();
+                let nearest = PI * (tilt.extent.min / PI).round();
+                nearest >= tilt.extent.min - slack && nearest <= tilt.extent.max + slack
+            });
+            for (number, range) in found.iter_mut().enumerate() {
+                let least = FOLLOWED * range.width();
+                if range.extent.unbounded || least == 0.0 || level && range.turns() {
+                    continue;
+                }
+                let mut ends = [0.0; 2];
+                for (side, end) in ends.iter_mut().enumerate() {
+                    let pose = hits[number].poses[side].clone();
+                    let outward = if side == 0 { -1.0 } else { 1.0 };
+                    *end = self.follow(pose, (number, outward), &ranges, &within)?;
+                }
+                let Extent { min, max, .. } = &mut range.extent;
+                farther |= ends[0] < *min - least || ends[1] > *max + least;
+                (*min, *max) = (min.min(ends[0]), max.max(ends[1]));
+            }
+            ranges = found;
+            if !farther {
+                return Ok(ranges);
+            }
+        }
+    }
+
+    /// How far the workspace reaches along one coordinate, to one side, from a pose of it: grids about
+    /// the farthest pose so far, of a coarse grid's step to every side, and half as wide where they gain
+    /// little. Stays `within` a box.
+    fn follow(
+        &self,
+        mut pose: Vec<f64>,
+        (number, outward): (usize, f64),
+        ranges: &[Range],
+        within: &[[f64; 2]],
+    ) -> Result<f64, Cancelled> {
+        let side = usize::from(outward > 0.0);
+        let limit = within[number][side];
+        let least = FOLLOWED * ranges[number].width();
+        let mut steps: Vec<f64> =
+            ranges.iter().map(|range| range.width() / (self.count - 1) as f64).collect();
+        let count = odd(FOLLOWING_POSES.powf(1.0 / ranges.len() as f64));
+        loop {
+            let axes = ranges.iter().enumerate().map(|(i, range)| {
+                let [mut low, mut high] = [pose[i] - steps[i], pose[i] + steps[i]];
+                if i == number {
+                    // No pose on the other side is farther.
+                    if outward > 0.0 { low = pose[i] } else { high = pose[i] }
+                }
+                let [min, max] = within[i];
+                axis(range.extent.name, low.clamp(min, max), high.clamp(min, max), count)
+            });
+            let grid = Grid::new(self.manipulator, axes.collect())
+                .expect("steps are finite and the count is small");
+            let mut gained = 0.0;
+            if let Some(found) = self.farthest(&grid)? {
+                let farther = outward * (found[number][side][number] - pose[number]);
+                if farther > 0.0 {
+                    gained = farther;
+                    pose.clone_from(&found[number][side]);
+                }
+            }
+            if gained < 0.5 * steps[number] {
+                if steps[number] <= least {
+                    break;
+                }
+                steps.iter_mut().for_each(|step| *step *= 0.5);
+            }
+        }
+        let end = pose[number] + outward * steps[number];
+        Ok(if outward > 0.0 { end.min(limit) } else { end.max(limit) })
+    }
+
     /// Ranges as close about the workspace as a coarse grid shows it.
     fn shrink(&self, mut ranges: Vec<Range>) -> Result<Vec<Range>, Cancelled> {
         loop {
             let grid = self.grid(&ranges);
-            let Some(hit) = self.hits(&ranges)? else { return Ok(ranges) };
+            let Some(hits) = self.hits(&ranges)? else { return Ok(ranges) };
             let mut settled = true;
-            for ((range, axis), &[low, high]) in ranges.iter_mut().zip(grid.axes()).zip(&hit) {
+            for ((range, axis), hit) in ranges.iter_mut().zip(grid.axes()).zip(&hits) {
+                let [low, high] = hit.numbers;
                 let (min, max) =
                     (axis.value(low.saturating_sub(1)), axis.value((high + 1).min(self.count - 1)));
                 if max - min > NARROW * (range.start[1] - range.start[0]) {
@@ -207,55 +317,103 @@ impl<'a> Search<'a> {
             .expect("ranges are finite and the count is small")
     }
 
-    /// Lowest and highest number of the reachable poses along every axis of a coarse grid. Home
-    /// counts where it is reachable, so that a workspace between the poses is not missed.
-    fn hits(&self, ranges: &[Range]) -> Result<Option<Vec<[u64; 2]>>, Cancelled> {
+    /// How far the reachable poses of a coarse grid go along every axis. Home counts where it is
+    /// reachable, so that a workspace between the poses is not missed.
+    fn hits(&self, ranges: &[Range]) -> Result<Option<Vec<Hit>>, Cancelled> {
         let grid = self.grid(ranges);
-        let axes = grid.axes();
         let number = |axis: &Axis, value: f64| {
             let share = (value - axis.min) / (axis.max - axis.min);
             if axis.count == 1 { 0.0 } else { share * (axis.count - 1) as f64 }
         };
-        let home = axes.iter().zip(self.manipulator.task_coordinates()).map(|(axis, c)| {
-            let number = number(axis, c.home);
+        let home: Vec<f64> = self.manipulator.task_coordinates().iter().map(|c| c.home).collect();
+        let home = home.as_slice();
+        let at_home = |(i, axis): (usize, &Axis)| {
+            let number = number(axis, home[i]);
             let [below, above] = [(number + ON_GRID).floor(), (number - ON_GRID).ceil()];
-            [below.max(0.0) as u64, above.max(0.0) as u64]
-        });
-        let mut found: Option<Vec<[u64; 2]>> = self.home.then(|| home.collect());
-        // Per segment only the ends matter: two numbers a coordinate.
-        let ends = |hits: &crate::Hits<'_>, ends: &mut Vec<Vec<[f64; 2]>>| {
-            let mut row = vec![[hits.first[0], hits.first[hits.first.len() - 1]]];
-            row.extend(hits.others.iter().map(|&value| [value; 2]));
-            match ends.first_mut() {
-                None => ends.push(row),
-                Some(known) => {
-                    for (known, row) in known.iter_mut().zip(row) {
-                        *known = [known[0].min(row[0]), known[1].max(row[1])];
-                    }
-                }
+            Hit {
+                numbers: [below.max(0.0) as u64, above.max(0.0) as u64],
+                poses: [home.to_vec(), home.to_vec()],
             }
         };
-        let sweep = Sweep::new(self.manipulator, &grid, self.modes);
-        sweep.points(self.progress, ends, Vec::new, |ends| {
-            for row in ends {
-                let row: Vec<_> = axes
-                    .iter()
-                    .zip(row)
-                    .map(|(axis, ends)| ends.map(|end| number(axis, end).round() as u64))
-                    .collect();
-                match &mut found {
-                    None => found = Some(row),
-                    Some(found) => {
-                        for (found, row) in found.iter_mut().zip(row) {
-                            *found = [found[0].min(row[0]), found[1].max(row[1])];
-                        }
+        let mut hits: Option<Vec<Hit>> =
+            self.home.then(|| grid.axes().iter().enumerate().map(at_home).collect());
+        let Some(found) = self.farthest(&grid)? else { return Ok(hits) };
+        let found = found.into_iter().zip(grid.axes()).enumerate().map(|(i, (poses, axis))| Hit {
+            numbers: poses.each_ref().map(|pose| number(axis, pose[i]).round() as u64),
+            poses,
+        });
+        match &mut hits {
+            None => hits = Some(found.collect()),
+            Some(hits) => {
+                for (i, (hit, Hit { numbers, poses })) in hits.iter_mut().zip(found).enumerate() {
+                    let [low, high] = poses;
+                    if low[i] < hit.poses[0][i] {
+                        hit.poses[0] = low;
                     }
+                    if high[i] > hit.poses[1][i] {
+                        hit.poses[1] = high;
+                    }
+                    let known = hit.numbers;
+                    hit.numbers = [known[0].min(numbers[0]), known[1].max(numbers[1])];
                 }
             }
-            Ok::<(), Cancelled>(())
-        })?;
-        Ok(found)
+        }
+        Ok(hits)
     }
+
+    /// Of every coordinate, a reachable pose of the grid with its lowest and one with its highest value:
+    /// the first of them.
+    fn farthest(&self, grid: &Grid) -> Result<Option<Vec<[Vec<f64>; 2]>>, Cancelled> {
+        let mut farthest = vec![];
+        Sweep::new(self.manipulator, grid, self.modes).points(
+            self.progress,
+            |hits, ends: &mut Vec<[Vec<f64>; 2]>| {
+                let [low, high] = [hits.first[0], hits.first[hits.first.len() - 1]];
+                let pose = |first: f64| {
+                    let others = hits.others.iter().copied();
+                    std::iter::once(first).chain(others).collect::<Vec<f64>>()
+                };
+                if ends.is_empty() {
+                    *ends = vec![[pose(low), pose(high)]; hits.others.len() + 1];
+                    return;
+                }
+                for (i, ends) in ends.iter_mut().enumerate() {
+                    let other = i.checked_sub(1).map(|i| hits.others[i]);
+                    if other.unwrap_or(low) < ends[0][i] {
+                        ends[0] = pose(low);
+                    }
+                    if other.unwrap_or(high) > ends[1][i] {
+                        ends[1] = pose(high);
+                    }
+                }
+            },
+            Vec::new,
+            |ends| {
+                if farthest.is_empty() {
+                    farthest = ends;
+                    return Ok::<(), Cancelled>(());
+                }
+                for (i, ([low, high], known)) in ends.into_iter().zip(&mut farthest).enumerate() {
+                    if low[i] < known[0][i] {
+                        known[0] = low;
+                    }
+                    if high[i] > known[1][i] {
+                        known[1] = high;
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(if farthest.is_empty() { None } else { Some(farthest) })
+    }
+}
+
+/// How far the reachable poses of a coarse grid go along one axis.
+struct Hit {
+    /// Lowest and highest number of their values.
+    numbers: [u64; 2],
+    /// A pose with the lowest value, and one with the highest.
+    poses: [Vec<f64>; 2],
 }
 
 /// The range of an angle that knows no whole turns: of Euler angles and tilts every orientation or
