@@ -328,12 +328,17 @@ pub struct TrajectoryArgs {
 /// All kinds but `grid`, and that with --shape, tell the connected components of the set, and the
 /// boundary of one that varies in two coordinates, or in slices of a third: closed lines, whose inside
 /// is to the left, in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
+/// `imaginary` has neither boundary nor measure: values of joints are on no grid, and where orientations
+/// fold over them, the image of their boundary is not that of the image.
 ///
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
 /// With -o points.npy the points are a structured NumPy array, float64, of the coordinates or joints
 /// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
+/// Without --scalars both have every task coordinate, PLY those whose names are not x, y or z. They are
+/// of poses: the kinds reachable, dexterous, imaginary, upper and lower are written as MCAP alone, and
+/// so are shards.
 ///
 /// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
 /// is nothing to do. `opm merge` joins the parts, and takes --axes, --color and --scalars.

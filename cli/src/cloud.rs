@@ -7,7 +7,7 @@ use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use opm_mcap::{CloudLayout, Packer};
+use opm_mcap::{CloudLayout, Packer, TableFormat};
 use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
 
 /// The name of the platform's point among the axes.
@@ -77,6 +77,7 @@ fn is_field(name: &str) -> bool {
 }
 
 /// What the points of a recording are made of.
+#[derive(Clone)]
 pub struct Cloud<'a> {
     manipulator: &'a Manipulator,
     modes: Modes,
@@ -84,6 +85,8 @@ pub struct Cloud<'a> {
     length: f64,
     axes: [Named; 3],
     scalars: Vec<Named>,
+    /// Nobody chose them.
+    fitting: bool,
     color: Named,
 }
 
@@ -101,23 +104,48 @@ impl<'a> Cloud<'a> {
                 let flat = (0..grid.axes().len()).rfind(|number| !several(number));
                 return [task(a), task(b), task(flat.unwrap_or(tallest))];
             }
-            // Every pair of subspaces has at least three coordinates.
-            let mut others = (0..grid.axes().len()).filter(|&number| number != tallest);
-            let mut other = || others.next().unwrap_or(tallest);
-            [task(other()), task(other()), task(tallest)]
+            // What varies, then what does not; every pair of subspaces has at least three coordinates.
+            let fixed = (0..grid.axes().len()).filter(|number| !several(number));
+            let mut order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
+            // Places stand on the ground, the tallest orientation above them.
+            if varying.len() > 2 && varying[0] < grid.lower() {
+                order.retain(|&number| number != tallest);
+                order.insert(2, tallest);
+            }
+            [task(order[0]), task(order[1]), task(order[2])]
         });
+        let fitting = wishes.scalars.is_none();
         let scalars = wishes.scalars.unwrap_or_else(|| {
             // What the colour shows can be read off, too.
             let known = axes.contains(&color) || is_field(&color.0);
             if known { vec![] } else { vec![color.clone()] }
         });
-        Self { manipulator, modes, limit, length: wishes.length, axes, scalars, color }
+        let length = wishes.length;
+        Self { manipulator, modes, limit, length, axes, scalars, fitting, color }
+    }
+
+    /// The same with every task coordinate as a value of a point, where nobody chose the values: rows of
+    /// a table know nothing of slices. A mesh tool's x, y and z are the axes.
+    pub fn with_every_coordinate(mut self, format: TableFormat) -> Self {
+        if !self.fitting {
+            return self;
+        }
+        let coordinates = self.manipulator.task_coordinates().iter().enumerate();
+        let named = coordinates.map(|(number, c)| (c.name.to_owned(), Column::Task(number)));
+        let (axes, scalars) = (&self.axes, &self.scalars);
+        let more: Vec<Named> = named
+            .filter(|named| !axes.contains(named) && !scalars.contains(named))
+            .filter(|(name, _)| format == TableFormat::Npy || !is_field(name))
+            .collect();
+        self.scalars.extend(more);
+        self
     }
 
     /// How often the grid is swept to record it.
     pub fn passes(&self) -> u64 {
         match self.color.1 {
             Column::Actuated(number) if self.limits(number).is_none() => 3,
+            Column::InverseCondition => 3,
             _ => 2,
         }
     }
@@ -164,7 +192,7 @@ impl<'a> Cloud<'a> {
     }
 
     /// The values at the ends of the colours: of a task coordinate the grid's, of a joint its
-    /// limits or what there is.
+    /// limits or what there is; of condition numbers what there is.
     pub fn color_range(
         &self,
         source: &Source<'_>,
@@ -176,8 +204,7 @@ impl<'a> Cloud<'a> {
             Column::Task(number) => Some([grid.axes()[number].min, grid.axes()[number].max]),
             Column::Imaginary(number) => Some(found.imaginary[number].unwrap_or_default()),
             Column::Actuated(number) => self.limits(number),
-            Column::InverseCondition => Some([0.0, 1.0]),
-            Column::Tip(_) => None,
+            Column::InverseCondition | Column::Tip(_) => None,
         };
         if let Some(range) = known {
             return Ok(range);

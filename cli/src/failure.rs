@@ -18,9 +18,13 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The work failed at `place`, for instance a file.
+    /// The work failed at `place`, for instance a file. An error that names it itself says it once.
     pub fn at(place: impl Display, error: &(dyn Error + '_)) -> Self {
-        Self::Work(format!("{place}: {}", chain(error)))
+        let (place, text) = (place.to_string(), chain(error));
+        if text.split([' ', ':']).any(|word| word == place) {
+            return Self::Work(text);
+        }
+        Self::Work(format!("{place}: {text}"))
     }
 
     /// A flag was given what it cannot take.

@@ -147,6 +147,19 @@ impl Kind {
         }
     }
 
+    /// What is to be said where a set that is over orientations is asked for at home's alone.
+    pub fn of_one_orientation(self, grid: &Grid) -> Option<String> {
+        let upper = &grid.axes()[grid.lower()..];
+        let over = matches!(self, Self::Reachable | Self::Dexterous | Self::Imaginary);
+        if !over || upper.iter().any(|axis| axis.count > 1) {
+            return None;
+        }
+        let names: Vec<String> =
+            upper.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
+        let (kind, names) = (self.name(), names.join(", "));
+        Some(format!("--kind {kind} has one orientation alone; for more give {names}"))
+    }
+
     /// Refuses flags that make no sense with it.
     pub fn check_flags(
         self,

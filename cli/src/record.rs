@@ -12,6 +12,7 @@ use opm_mcap::{
     TableRecorder, Workspace, WorkspaceRecorder, table_columns,
 };
 use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What writes the files.
@@ -35,6 +36,17 @@ fn no_stream(path: &Path) -> Result<(), Failure> {
         return Err(Failure::flag("--output", "a recording needs a file, not standard output"));
     }
     Ok(())
+}
+
+/// Refuses a name that does not end as that of an MCAP file does, of what is written as one alone.
+pub fn expect_mcap(path: &Path, what: &str) -> Result<(), Failure> {
+    no_stream(path)?;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+        return Ok(());
+    }
+    let path = path.display();
+    let problem = format!("{path}: {what} is written as MCAP, expected a name that ends in .mcap");
+    Err(Failure::flag("--output", problem))
 }
 
 /// A file that is open for a recording.
@@ -88,16 +100,7 @@ impl Recorder {
 
     /// Refuses what a set that is no set of poses is not written as.
     pub fn check_set(path: &Path, kind: &str) -> Result<(), Failure> {
-        match Format::of(path)? {
-            Format::Mcap => Ok(()),
-            Format::Table(_) => Err(Failure::flag(
-                "--output",
-                format!(
-                    "{}: --kind {kind} is written as MCAP, expected a name that ends in .mcap",
-                    path.display()
-                ),
-            )),
-        }
+        expect_mcap(path, &format!("--kind {kind}"))
     }
 
     /// Opens the file.
@@ -117,12 +120,19 @@ impl Recorder {
         progress: &Progress,
     ) -> Result<PathBuf, Failure> {
         let Self { path, file, format } = self;
+        let cloud = &match format {
+            Format::Mcap => cloud.clone(),
+            Format::Table(format) => cloud.clone().with_every_coordinate(format),
+        };
         let color_range = cloud.color_range(source, found, run.grid, progress)?;
         let layout = cloud.layout(color_range);
         let job = Job { run, cloud, source, found, study, progress, path: &path, layout };
         match format {
             Format::Mcap => job.mcap(file)?,
-            Format::Table(format) => job.table(file, format)?,
+            Format::Table(format) => job.table(file, format).inspect_err(|_| {
+                // Nothing reads part of a table.
+                let _ = fs::remove_file(partial(&path));
+            })?,
         }
         Ok(path)
     }
@@ -224,14 +234,12 @@ impl Job<'_> {
             bytes.extend_from_slice(&portion.packed);
             table.push(&bytes).map_err(failed)
         };
-        self.source
-            .points(
-                self.progress,
-                |hits, points: &mut Points<'_>| points.add(hits),
-                made,
-                |mut points| points.take()?.iter().try_for_each(&mut write),
-            )
-            .map_err(|failure| self.interrupted(failure))?;
+        self.source.points(
+            self.progress,
+            |hits, points: &mut Points<'_>| points.add(hits),
+            made,
+            |mut points| points.take()?.iter().try_for_each(&mut write),
+        )?;
         table.finish().map_err(failed)
     }
 
@@ -356,15 +364,16 @@ pub fn describe(run: &Run<'_>) -> Metadata {
 
 /// What came of it.
 fn result(run: &Run<'_>, found: &Count) -> Metadata {
-    let (measure, units) = run.measure(found, FileUnits::SI);
     let mut record: Metadata = [
         ("reachable", found.reachable.to_string()),
         ("fraction", (found.reachable as f64 / found.poses as f64).to_string()),
-        ("measure", measure.to_string()),
-        ("measure_units", units),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into();
+    if let Some((measure, units)) = run.measure(found, FileUnits::SI) {
+        record.insert("measure".to_owned(), measure.to_string());
+        record.insert("measure_units".to_owned(), units);
+    }
     record.extend(ranges(run, found));
     record
 }

@@ -7,7 +7,7 @@ use crate::kind::{self, Kind, Questions, SetRecording, SetWishes, Study};
 use crate::load::{self, Loaded};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
-use crate::record::Recorder;
+use crate::record::{Recorder, expect_mcap};
 use crate::shard;
 use crate::source::Source;
 use crate::text::{self, Table, count, short};
@@ -45,6 +45,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     if let Some(path) = &args.cloud.output {
         loaded.refuse_as_output(path, &[])?;
         match kind.is_of_poses() {
+            true if args.shard.is_some() => expect_mcap(path, "a shard")?,
             true => given.as_ref().map_or(Ok(()), |grid| Recorder::check(path, grid))?,
             false => Recorder::check_set(path, &kind.name())?,
         }
@@ -65,6 +66,9 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
             "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
              be out of reach, which no section alone is asked for: the whole reaches less than both",
         );
+    }
+    if let Some(warning) = kind.of_one_orientation(&grid) {
+        output.warn(warning);
     }
     let run = Run { loaded: &loaded, manipulator: &manipulator, kind, grid: &grid, modes, limit };
     let work = Work { output, pool: &pool, progress: &progress };
@@ -284,12 +288,15 @@ impl<'a> Run<'a> {
     }
 
     /// The counted share of the box of the set's axes, those with more than one value. (Those of
-    /// shards add up.)
-    pub fn measure(&self, found: &Count, units: FileUnits) -> (f64, String) {
+    /// shards add up.) `None` of values of imaginary joints, which are on no grid.
+    pub fn measure(&self, found: &Count, units: FileUnits) -> Option<(f64, String)> {
         let Self { kind, grid, .. } = self;
+        if *kind == Kind::Imaginary {
+            return None;
+        }
         let points: u64 = grid.axes()[kind.axes(grid)].iter().map(|axis| axis.count).product();
         let axes = kind.axes(grid).map(|i| (&grid.axes()[i], grid.coordinates()[i].quantity));
-        kind::measure(found.reachable as f64 / points as f64, axes, units)
+        Some(kind::measure(found.reachable as f64 / points as f64, axes, units))
     }
 }
 
@@ -325,14 +332,17 @@ impl Outcome<'_> {
             .zip(&found.imaginary)
             .map(|(joint, range)| (joint.name.clone(), json!(range)))
             .collect();
-        let (value, units) = run.measure(found, FileUnits::SI);
+        let measure = run.measure(found, FileUnits::SI);
+        let measure = measure
+            .map(|(value, units)| json!({ "value": value, "units": units, "method": "grid" }));
+        let fraction = (found.poses > 0).then(|| found.reachable as f64 / found.poses as f64);
         let mut json = json!({
             "poses": found.poses,
             "reachable": found.reachable,
-            "fraction": found.reachable as f64 / found.poses as f64,
+            "fraction": fraction,
             "grid": grid,
             "mode": run.mode(),
-            "measure": { "value": value, "units": units, "method": "grid" },
+            "measure": measure,
             "imaginary_range": ranges,
             "seconds": self.seconds(),
             "poses_per_second": self.rate(),
@@ -377,14 +387,18 @@ impl Outcome<'_> {
             let _ = writeln!(text, "condition number at most {most} (lengths over {length})\n");
         }
 
-        let share = 100.0 * found.reachable as f64 / found.poses as f64;
-        let (value, measured) = run.measure(found, units);
+        let share = match found.poses {
+            0 => "no poses of its own".to_owned(),
+            poses => format!("{} %", short(100.0 * found.reachable as f64 / poses as f64)),
+        };
         let points = [run.kind.points(), &format!(">{}", count(found.poses)), ">"];
         let mut results = Table::new(points);
         let reached = run.kind.reached().to_owned();
-        results.row([reached, count(found.reachable), format!("{} %", short(share))]);
+        results.row([reached, count(found.reachable), share]);
         let _ = write!(text, "{results}");
-        if run.grid.poses() > 1 {
+        if run.grid.poses() > 1
+            && let Some((value, measured)) = run.measure(found, units)
+        {
             let _ = writeln!(text, "measure {} {measured}", short(value));
         }
         if let Some(study) = self.study {

@@ -59,8 +59,9 @@ def test_a_mesh_tool_reads_the_cloud(record, cloud):
 @pytest.mark.parametrize("ending", ["npy", "ply"])
 def test_tables_without_flags_or_points(record, cloud, ending):
     path = record(ending)
-    count = len(np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data)
-    assert count == len(cloud)
+    table = np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data
+    assert len(table) == len(cloud)
+    assert {"zeta", "psi"} <= set(table.dtype.names)
     path = record(ending, "--grid", "zeta=0", "--mode", "home", "--max-condition", "1")
     count = len(np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data)
     assert count == 0

@@ -16,12 +16,15 @@ pub fn several(coordinate: &Coordinate) -> bool {
     coordinate.axis.as_ref().is_some_and(|axis| axis.count > 1)
 }
 
-/// The first two of the recording's axes that vary.
+/// The first two of the recording's axes that vary; twice the one where only one does.
 pub fn fast(layout: &Layout) -> [usize; 2] {
     let varies = |number: &&usize| {
         layout.coordinates[**number].axis.as_ref().is_none_or(|axis| axis.count > 1)
     };
     let mut order: Vec<usize> = layout.axes.iter().filter(varies).copied().collect();
+    if let [only] = order[..] {
+        return [only; 2];
+    }
     order.extend(layout.axes.iter().filter(|number| !varies(number)));
     [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
 }

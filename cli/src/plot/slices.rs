@@ -6,6 +6,7 @@ use super::source::{Rate, Source, Stop};
 use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
+use crate::kind::Kind;
 use opm_mcap::Cloud as Points;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::color::Map;
@@ -16,6 +17,8 @@ use opm_workspace::{Axis, rings};
 const CHOSEN: u64 = 8;
 /// Share of the colours that the slices take: the brightest is left to no one.
 const COLORS: f64 = 0.95;
+/// Share of a grid's largest value below which one is zero.
+const ROUNDING: f64 = 1e-12;
 
 /// Slices in the making.
 pub struct Slices<'a> {
@@ -56,7 +59,8 @@ impl<'a> Slices<'a> {
         view: Option<[usize; 2]>,
     ) -> Result<Self, Failure> {
         let view = view.unwrap_or_else(|| fast(layout));
-        if view[0] == view[1] {
+        let bar = view[0] == view[1];
+        if bar && layout.coordinates.get(view[0]).is_none_or(|c| c.axis.is_none()) {
             let name = layout.coordinates.get(view[0]).map_or("one coordinate", |c| &*c.name);
             return Err(Failure::Work(format!(
                 "{}: nothing to draw: its points differ in {name} alone, and a slice shows two \
@@ -89,6 +93,8 @@ impl<'a> Slices<'a> {
             let range = range.map(|value| value / factor);
             Colored { field: field.clone(), measure, factor, range }
         });
+        // Where every place is reached at every orientation, there is nothing to colour.
+        let color = color.filter(|_| layout.kind != Kind::Dexterous);
         let mut slices =
             Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
         let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
@@ -100,8 +106,9 @@ impl<'a> Slices<'a> {
         let content = |slices: &Self| slices.content(extents);
         slices.tiles = values.into_iter().map(|value| (value, content(&slices))).collect();
         let [a, b] = view.map(|number| &layout.coordinates[number]);
-        slices.home =
-            a.home.zip(b.home).map(|(a, b)| [a / slices.view[0].factor, b / slices.view[1].factor]);
+        slices.home = a.home.zip(b.home).map(|(a, b)| {
+            [a / slices.view[0].factor, if bar { 0.0 } else { b / slices.view[1].factor }]
+        });
         Ok(slices)
     }
 
@@ -130,6 +137,11 @@ impl<'a> Slices<'a> {
         Ok((start..=last).step_by(step as usize).collect())
     }
 
+    /// Whether there is one coordinate to see, along which a set is a bar.
+    fn is_bar(&self) -> bool {
+        self.view[0].number == self.view[1].number
+    }
+
     /// An empty tile.
     fn content(&self, extents: &[opm_mcap::Extent]) -> Content {
         let [a, b] = &self.view;
@@ -138,7 +150,11 @@ impl<'a> Slices<'a> {
             let ends = [axis.min, axis.max].map(|value| value / seen.factor);
             Some(Spacing::between(ends, usize::try_from(axis.count).ok()?))
         };
-        if let (Some(x), Some(y)) = (spacing(a), spacing(b)) {
+        let across = match self.is_bar() {
+            true => Some(Spacing { first: 0.0, step: 1.0, count: 1 }),
+            false => spacing(b),
+        };
+        if let (Some(x), Some(y)) = (spacing(a), across) {
             let paint = match &self.color {
                 Some(color) => Paint::Values(Map::Viridis, color.range),
                 None => Paint::Plain([0; 3]),
@@ -158,6 +174,7 @@ impl<'a> Slices<'a> {
     /// Adds the points of a message of slice `slice`.
     pub fn add(&mut self, cloud: &Points<'_>, slice: u64) {
         let mut tiles = std::mem::take(&mut self.tiles);
+        let bar = self.is_bar();
         let [a, b] = &self.view;
         let value = |seen: &Seen| self.values(cloud, slice, seen.number);
         let (Some(x), Some(y)) = (value(a), value(b)) else {
@@ -170,7 +187,8 @@ impl<'a> Slices<'a> {
         });
         self.each(cloud, slice, self.varied, |point, value| {
             let Some((_, content)) = tiles.iter_mut().find(|tile| tile.0 == value) else { return };
-            let (x, y) = (x.get(point) / a.factor, y.get(point) / b.factor);
+            let x = x.get(point) / a.factor;
+            let y = if bar { 0.0 } else { y.get(point) / b.factor };
             match content {
                 Content::Cells(cells, _) => {
                     let value = color.as_ref().map_or(0.0, |color| color[point]);
@@ -247,7 +265,7 @@ impl<'a> Slices<'a> {
         let name = |number: usize, value: u64| {
             let c = &coordinates[number];
             let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
-            let value = c.axis.as_ref().map_or(0.0, |axis| axis.value(value)) / factor;
+            let value = c.axis.as_ref().map_or(0.0, |axis| rounded(axis, value)) / factor;
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
         let kind = self.layout.kind;
@@ -263,6 +281,7 @@ impl<'a> Slices<'a> {
             let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
             title.push_str(&format!(", at any {names}"));
         }
+        let bar = self.is_bar();
         let [a, b] = &self.view;
         let columns = self.columns();
         let marks: Vec<Option<[f64; 2]>> =
@@ -288,19 +307,19 @@ impl<'a> Slices<'a> {
             Tile {
                 title: self.varied.map_or_else(String::new, |number| name(number, value)),
                 x: a.measure.clone(),
-                y: b.measure.clone(),
+                y: if bar { Measure::nothing() } else { b.measure.clone() },
                 content,
                 mark,
             }
         };
-        let bar = self.color.as_ref().map(|color| Bar {
+        let colors = self.color.as_ref().map(|color| Bar {
             measure: color.measure.clone(),
             range: color.range,
             map: Map::Viridis,
             scale: Scale::Linear,
         });
         let tiles = tiles.into_iter().zip(marks).map(tile).collect();
-        Section { title, columns, shared: true, tiles, bar: bar.filter(|_| cells) }
+        Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells) }
     }
 
     /// Tiles in a row: fewer where tiles that are much wider than high would be too small.
@@ -326,7 +345,7 @@ impl<'a> Slices<'a> {
             (axis.count > 1).then(|| Axis::new(&*axis.name, min, max, axis.count))
         };
         let [a, b] = &self.view;
-        let (x, y) = (axis(a)?, axis(b)?);
+        let (x, y) = (axis(a)?, axis(b).filter(|_| !self.is_bar())?);
         let inside = cells.hits().filter(|_| self.layout.bounded)?;
         Some(rings(&x, &y, &inside).into_iter().map(|ring| ring.points).collect())
     }
@@ -363,7 +382,8 @@ impl<'a> Slices<'a> {
             _ => false,
         };
         if self.tiles.iter().any(bounded) {
-            let line = "The line is the boundary, half-way between values of the grid.";
+            let line =
+                "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
         }
         let coarse = |tile: &(u64, Content)| match &tile.1 {
@@ -381,6 +401,13 @@ impl<'a> Slices<'a> {
         }
         notes
     }
+}
+
+/// A value of the grid; zero where it is that but for the rounding of the ends.
+fn rounded(axis: &Axis, number: u64) -> f64 {
+    let value = axis.value(number);
+    let largest = axis.min.abs().max(axis.max.abs());
+    if value.abs() <= ROUNDING * largest { 0.0 } else { value }
 }
 
 enum Numbers {

@@ -137,6 +137,9 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
     if let Some(mode) = run.get("mode").filter(|mode| !mode.is_empty()) {
         parts.push(format!("mode {mode}"));
     }
+    if let Some(most) = run.get("max_condition") {
+        parts.push(format!("condition number at most {most}"));
+    }
     let number = |text: Option<&String>| text.and_then(|text| text.parse::<u64>().ok());
     match (number(result.get("reachable")), number(run.get("poses"))) {
         (Some(reachable), Some(poses)) if poses > 0 => {

@@ -3,6 +3,7 @@
 use super::Run;
 use super::summary::{MOST_LISTED, Summary, fields};
 use crate::failure::Failure;
+use crate::record::expect_mcap;
 use crate::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use opm_core::manipulator::Manipulator;
 use opm_core::skeleton;
@@ -26,11 +27,9 @@ pub struct Player<W: Sink> {
 impl Player<PartialFile> {
     /// Opens the file before the work starts, so that a wrong path costs no time.
     pub fn create(path: &Path, run: &Run<'_>) -> Result<Self, Failure> {
+        expect_mcap(path, "the recording of a motion")?;
         let place = path.display().to_string();
         let failed = |error: RecordError| Failure::at(&place, &error);
-        if path == Path::new("-") {
-            return Err(Failure::flag("--output", "a recording needs a file, not standard output"));
-        }
         let file = PartialFile::create(path).map_err(failed)?;
         let scene = Scene::of(run.manipulator);
         let parallel = parallel(run.manipulator);

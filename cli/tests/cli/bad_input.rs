@@ -260,3 +260,33 @@ fn a_full_standard_output_is_a_failure() {
         assert!(stderr.starts_with("opm: standard output: No space left"), "{args:?}: {stderr}");
     }
 }
+
+/// What is written as MCAP alone is not given another name; nothing is left.
+#[test]
+fn what_is_written_as_mcap_is_not_called_otherwise() {
+    let folder = Folder::new();
+    for name in ["a.npy", "a.ply", "a"] {
+        let output = folder.arg(name);
+        for (args, what) in [
+            (&["workspace", PLANO, "--grid", "x=0:1:3", "--shard", "1/2"][..], "a shard"),
+            (&["trajectory", PLANO, "--motion", "plano-spherical-sinusoids"], "of a motion"),
+            (&["workspace", PLANO, "--kind", "upper"], "--kind upper"),
+        ] {
+            opm(&[args, &["-o", &output]].concat())
+                .fails_with_one_line(2, &["--output", what, "expected a name that ends in .mcap"]);
+        }
+    }
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+/// A place is named once.
+#[test]
+fn messages_name_the_file_once() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("taken.npy")).unwrap();
+    let run = opm(&["workspace", PLANO, "-o", &folder.arg("taken.npy")]);
+    run.fails_with_one_line(1, &["not a regular file"]);
+    assert_eq!(run.stderr.matches("taken.npy").count(), 1, "{}", run.stderr);
+    opm(&["workspace", PLANO, "--grid", "x=1:0:3"])
+        .fails_with_one_line(2, &["expected the smaller one first"]);
+}

@@ -226,3 +226,68 @@ fn the_global_index_is_the_mean_of_the_recorded_ones() {
         assert!((number(&index["local_min"]) - least).abs() < 1e-6);
     }
 }
+
+/// What varies is on the axes of the cloud, and seen; home's orientation alone is told.
+#[test]
+fn what_varies_is_seen() {
+    let folder = Folder::new();
+    let [cloud, picture] = ["o.mcap", "o.svg"].map(|name| folder.arg(name));
+    let grid = ["--grid=zeta=-1:1:9", "--grid=xi=0:120deg:13", "--grid=psi=-1:1:3"];
+    let orientation = ["workspace", PLANO, "-q", "--kind", "orientation", "-o", &cloud];
+    opm(&[&orientation[..], &grid].concat()).text();
+    let said = opm(&["inspect", &cloud, "--format", "json"]).json().to_string();
+    assert!(said.contains("zeta,xi,psi"), "{said}");
+    opm(&["plot", &cloud, "-o", &picture, "-q"]).text();
+    let svg = std::fs::read_to_string(&picture).unwrap();
+    for word in ["xi (deg)", "zeta (deg)", "The line is the boundary"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert!(!svg.contains("at any"));
+
+    let run = opm(&["workspace", PLANO, "--kind", "reachable", "--grid=x=0:0.1:5"]);
+    run.text();
+    assert!(run.stderr.contains("one orientation alone") && run.stderr.contains("--grid xi="));
+    let run =
+        opm(&["workspace", PLANO, "--kind", "reachable", "--grid=x=0:0.1:5", "--grid=xi=0:1:2"]);
+    run.text();
+    assert!(!run.stderr.contains("one orientation alone"), "{}", run.stderr);
+}
+
+/// A set of one coordinate is a bar along its axis: the other has neither name nor numbers.
+#[test]
+fn a_set_of_one_coordinate_is_a_bar() {
+    let folder = Folder::new();
+    let [cloud, picture] = ["o.mcap", "o.svg"].map(|name| folder.arg(name));
+    for kind in ["upper", "orientation"] {
+        let grid = ["--grid=phi=-1:1:41", "-o", &cloud, "-q"];
+        opm(&[&["workspace", HELICAL, "--kind", kind], &grid[..]].concat()).text();
+        opm(&["plot", &cloud, "-o", &picture, "-q"]).text();
+        let svg = std::fs::read_to_string(&picture).unwrap();
+        assert!(svg.contains("phi (deg)") && svg.contains("x-axis"), "{kind}");
+        assert!(!svg.contains("y-axis") && !svg.contains("x (mm)"), "{kind}");
+    }
+}
+
+/// The values of imaginary joints are on no grid that they could be a share of.
+#[test]
+fn imaginary_joints_have_no_measure() {
+    let found = workspace(&[PLANO, "--kind", "imaginary", "--grid=xi=0:1:5", "--grid=psi=0:1:5"]);
+    assert!(found["measure"].is_null() && found["boundary"].is_null());
+}
+
+/// A limit on the condition number is told in the picture, and colours span what there is.
+#[test]
+fn a_picture_tells_the_condition() {
+    let folder = Folder::new();
+    let [cloud, picture] = ["c.mcap", "c.svg"].map(|name| folder.arg(name));
+    let flags = ["--max-condition", "20", "--color", "inverse_condition", "-q", "-o", &cloud];
+    let grid = ["--grid=x=-0.1:0.1:21", "--grid=y=-0.1:0.1:21"];
+    opm(&[&["workspace", PLANO], &flags[..], &grid].concat()).text();
+    opm(&["plot", &cloud, "-o", &picture, "-q"]).text();
+    let svg = std::fs::read_to_string(&picture).unwrap();
+    assert!(svg.contains("condition number at most 20"));
+    let values = opm(&["inspect", &cloud, "--format", "json"]).json();
+    let run = values["metadata"]["clouds"].clone();
+    let top: f64 = run["color_max"].as_str().unwrap().parse().unwrap();
+    assert!(top > 0.05 && top < 0.5, "{top}");
+}

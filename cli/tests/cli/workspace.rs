@@ -333,3 +333,43 @@ fn a_limit_on_the_condition_number_is_that_of_velocity() {
         assert!(topics.iter().all(|topic| topic["points"] == found["reachable"]), "{inspected}");
     }
 }
+
+/// The grid has fewer rows than the parts have blocks, so that some parts have none.
+#[test]
+fn a_shard_without_poses_says_so() {
+    let folder = Folder::new();
+    let flags = ["--grid=x=-0.2:0.2:9", "--grid=xi=0:1:3", "--shard", "1/3", "-o"];
+    let part = folder.arg("part.mcap");
+    let run = opm(&[&["workspace", PLANO], &flags[..], &[&part]].concat());
+    let text = run.text();
+    assert!(text.contains("no poses of its own") && !text.contains("NaN"), "{text}");
+}
+
+/// Whoever reads a table knows nothing of slices or of what is held.
+#[test]
+fn a_table_has_every_coordinate() {
+    let folder = Folder::new();
+    let names = ["x", "y", "zeta", "xi", "psi"];
+    for grid in [
+        &["--grid=x=5mm"][..],
+        &["--grid=x=-0.01:0.01:5", "--grid=zeta=-0.1:0.1:3", "--grid=psi=0:0.1:2"],
+        &["--grid=zeta=-0.1:0.1:3", "--grid=xi=0:0.1:2", "--grid=psi=0:0.1:2"],
+    ] {
+        for (ending, own) in [("npy", &[][..]), ("ply", &["x", "y"])] {
+            let table = folder.arg(&format!("points.{ending}"));
+            let run = [&["workspace", PLANO, "-q", "-o", &table], grid].concat();
+            opm(&run).text();
+            let bytes = std::fs::read(&table).unwrap();
+            let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]).into_owned();
+            for name in names.iter().filter(|name| !own.contains(name)) {
+                let axis = head.lines().any(|line| {
+                    line.starts_with("comment x, y, z: ")
+                        && line.split([' ', ',', ';']).any(|word| word == *name)
+                });
+                let column = [format!("('{name}', '<f8')"), format!("property float {name}\n")];
+                let stored = column.iter().any(|column| head.contains(column));
+                assert!(axis || stored, "{grid:?}, {ending}: no {name} in {head}");
+            }
+        }
+    }
+}

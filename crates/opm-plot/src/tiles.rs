@@ -68,6 +68,15 @@ pub struct Measure {
 }
 
 impl Measure {
+    /// Of an axis without values: bars lie along the other one.
+    pub fn nothing() -> Self {
+        Self { name: String::new(), unit: Unit { resolution: f64::INFINITY, ..Unit::none() } }
+    }
+
+    fn is_nothing(&self) -> bool {
+        self.name.is_empty()
+    }
+
     /// A number of things, which are called `name`.
     pub fn count(name: &str) -> Self {
         let unit = Unit { symbol: String::new(), steps: Steps::Decimal, resolution: 0.5 };
@@ -95,6 +104,7 @@ const WIDEST_HISTOGRAM: f64 = 620.0;
 /// Height of a tile over its width, where lengths do not decide it, and at most.
 const FLAT: f64 = 0.72;
 const FLAT_HISTOGRAM: f64 = 0.36;
+const FLAT_BAR: f64 = 0.15;
 const TALLEST: f64 = 1.05;
 /// The same of tiles that are as wide as their lengths demand.
 const TALLEST_SHARED: f64 = 2.0;
@@ -202,7 +212,9 @@ impl<'a> Laid<'a> {
         let slope = |number: usize| {
             let ([x, y], tile) = (ranges[number], &section.tiles[number]);
             let same = !tile.x.unit.symbol.is_empty() && tile.x.unit.symbol == tile.y.unit.symbol;
-            if histogram {
+            if tile.y.is_nothing() {
+                FLAT_BAR
+            } else if histogram {
                 FLAT_HISTOGRAM
             } else if same {
                 (y[1] - y[0]) / (x[1] - x[0])
@@ -297,7 +309,10 @@ impl<'a> Laid<'a> {
         let [x, y] = range;
         let most = (place.width / 44.0).clamp(2.0, 10.0) as usize;
         let x = Axis::linear(x, tile.x.unit.steps, most, fits(place.width));
-        let y = Axis::linear(y, tile.y.unit.steps, ticks_in(place.height), |_, _| true);
+        let mut y = Axis::linear(y, tile.y.unit.steps, ticks_in(place.height), |_, _| true);
+        if tile.y.is_nothing() {
+            y.ticks.clear();
+        }
         // Tiles of the other shapes in the section keep theirs inside the common box.
         let frame = Frame { place, x: &x, y: &y };
         let mut shapes = vec![frame.grid()];
@@ -319,7 +334,7 @@ impl<'a> Laid<'a> {
         }
         shapes.extend(frame.border());
         let name = y.title(&tile.y.name, &tile.y.unit);
-        if sides.left {
+        if sides.left && !tile.y.is_nothing() {
             shapes.push(frame.beside(Some(&name), left_of(&y, true)));
         }
         let name = x.title(&tile.x.name, &tile.x.unit);
@@ -332,6 +347,7 @@ impl<'a> Laid<'a> {
             shapes.push(NAME.text(text, middle, Anchor::Middle));
         }
         let label = match &*tile.title {
+            "" if tile.y.is_nothing() => tile.x.name.clone(),
             "" => format!("{} over {}", tile.y.name, tile.x.name),
             title => title.to_owned(),
         };

@@ -42,7 +42,8 @@ pub enum GridError {
     Twice(String),
     /// An end that is not a number, or the ends reversed.
     #[error(
-        "grid axis {name}: {min} to {max}, expected numbers up to {LARGEST:e}, the smaller one first"
+        "grid axis {name}: {min} to {max}, expected {}",
+        if min > max { "the smaller one first".to_owned() } else { format!("numbers up to {LARGEST:e}") }
     )]
     Range {
         /// The axis.
