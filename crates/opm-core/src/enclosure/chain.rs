@@ -351,3 +351,35 @@ fn ball<const N: usize>(ball: &Ball, r: &Rotation<N>) -> [Enclosed<N>; 3] {
         Enclosed::Value(dot(&row, &sine) * 0.5 * ratio)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(50_000))]
+
+        /// The angle at the base of a spherical triangle with two sides given, over a range of the third.
+        #[test]
+        fn openings_hold(
+            arcs in [0.1..3.0_f64, 0.1..3.0_f64],
+            share in -0.99..0.99_f64,
+            half in prop_oneof![Just(1e-3), Just(1e-2), Just(0.1), Just(0.5)],
+            at in prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64],
+        ) {
+            let [a, b] = arcs;
+            let axis = |angle: f64| Vector3::new(angle.sin(), 0.0, angle.cos());
+            let arcs = Arcs::of(axis(0.0), axis(a), axis(a + b));
+            // Where the triangle closes.
+            let middle = a.cos() * b.cos() + share * a.sin() * b.sin();
+            let z = Affine::<1>::coordinate(middle, half * (1.0 - share.abs()), 0);
+            if let Some(opening) = arcs.opening(z) {
+                let to = (z.centre + z.slope[0] * at).acos();
+                let angle = ((b.cos() - a.cos() * to.cos()) / (a.sin() * to.sin())).acos();
+                let off = (opening.centre + opening.slope[0] * at - angle).abs();
+                prop_assert!(off <= opening.total_error() + 1e-12, "{off} {opening:?}");
+            }
+        }
+    }
+}
