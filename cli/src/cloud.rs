@@ -8,7 +8,7 @@ use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
 use opm_mcap::{CloudLayout, Packer};
-use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
+use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Poses, Progress};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";

@@ -2,7 +2,7 @@
 
 use crate::cloud::{Cloud, Points, Portion};
 use crate::failure::Failure;
-use crate::kind::{SetRecording, Study, pose_boundary};
+use crate::kind::{Kind, SetRecording, Study, pose_boundary};
 use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
@@ -11,7 +11,7 @@ use opm_mcap::{
     CloudLayout, MAX_SLICES, Metadata, Packer, PartialFile, RecordError, TableFormat,
     TableRecorder, Workspace, WorkspaceRecorder, table_columns,
 };
-use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress};
+use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Poses, Progress};
 use std::path::{Path, PathBuf};
 
 /// What writes the files.
@@ -73,6 +73,14 @@ impl Format {
 }
 
 impl Recorder {
+    /// Refuses a name, or a grid, that a recording of this kind does not have.
+    pub fn check_run(path: &Path, kind: Kind, grid: Option<&Grid>) -> Result<(), Failure> {
+        match kind.is_of_poses() {
+            true => grid.map_or(Ok(()), |grid| Self::check(path, grid)),
+            false => Self::check_set(path, &kind.name()),
+        }
+    }
+
     /// Refuses a name of no known ending, and for MCAP a grid whose slowest axis alone has more values
     /// than a recording may have slices.
     pub fn check(path: &Path, grid: &Grid) -> Result<(), Failure> {
@@ -356,7 +364,7 @@ pub fn describe(run: &Run<'_>) -> Metadata {
 
 /// What came of it.
 fn result(run: &Run<'_>, found: &Count) -> Metadata {
-    let (measure, units) = run.measure(found, FileUnits::SI);
+    let (measure, units) = run.measure(run.kind, found, FileUnits::SI);
     let mut record: Metadata = [
         ("reachable", found.reachable.to_string()),
         ("fraction", (found.reachable as f64 / found.poses as f64).to_string()),
