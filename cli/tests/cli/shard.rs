@@ -80,24 +80,24 @@ fn merged_shards_are_the_one_run_of_every_kind() {
     let cuts = ["--grid", "theta11=-0.7:0.9:17", "--grid", "theta12=-0.7:0.7:5"];
     let lower = [&GRID[..4], &cuts].concat();
     // What a shard is asked for, what is asked when all are there, what only the recording is asked for.
-    let cases: [(&[&str], &[&str], &[&str], &[&str]); 10] = [
-        (&["--kind", "constant-orientation"], &tilted, &[], &[]),
-        (&["--kind", "orientation", "--mode", "any"], &sphere, &[], &["--color", "psi"]),
-        (&["--kind", "reachable"], &GRID, &[], &["--axes", "x,y,share"]),
-        (&["--kind", "dexterous"], &places, &[], &[]),
-        (&["--kind", "imaginary"], &places, &[], &["--color", "theta11"]),
-        (&["--kind", "upper"], &sphere, &[], &["--scalars", "theta12"]),
-        (&["--kind", "lower"], &lower, &[], &[]),
-        (&[], &GRID, &["--shape"], &["--axes", "x,y,xi"]),
-        (&["--conditioning"], &long, &[], &["--scalars", "inverse_condition"]),
-        (
+    let cases: [[&[&str]; 4]; 10] = [
+        [&["--kind", "constant-orientation"], &tilted, &[], &[]],
+        [&["--kind", "orientation", "--mode", "any"], &sphere, &[], &["--color", "psi"]],
+        [&["--kind", "reachable"], &GRID, &[], &["--axes", "x,y,share"]],
+        [&["--kind", "dexterous"], &places, &[], &[]],
+        [&["--kind", "imaginary"], &places, &[], &["--color", "theta11"]],
+        [&["--kind", "upper"], &sphere, &[], &["--scalars", "theta12"]],
+        [&["--kind", "lower"], &lower, &[], &[]],
+        [&[], &GRID, &["--shape"], &["--axes", "x,y,xi"]],
+        [&["--conditioning"], &long, &[], &["--scalars", "inverse_condition"]],
+        [
             &["--conditioning", "--length", "80mm", "--max-condition", "20"],
             &long,
             &["--shape"],
             &["--color", "inverse_condition"],
-        ),
+        ],
     ];
-    for (asked, grid, later, cloud) in cases {
+    for [asked, grid, later, cloud] in cases {
         let folder = Folder::new();
         let one = folder.arg("one.mcap");
         let run = [&["workspace", PLANO, "--format", "json", "-q"], asked, grid].concat();
