@@ -13,7 +13,7 @@ use crate::trajectory;
 use crate::workspace::Run;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::Motion;
-use opm_workspace::{Count, Grid, Modes, Progress, Sections, SetError};
+use opm_workspace::{Count, Grid, Modes, Progress, Sections};
 use std::path::Path;
 use std::sync::atomic::AtomicU64;
 
@@ -86,7 +86,7 @@ impl<'a> Swept<'a> {
         'a: 'b,
     {
         let Self { manipulator, grid, modes, .. } = *self;
-        Run { loaded, manipulator, kind, grid, modes, limit: None }
+        Run { loaded, manipulator, kind, grid, modes, limit: None, conditioning: None }
     }
 }
 
@@ -118,11 +118,7 @@ fn record_section(
     let wishes = SetWishes::new(kind, args, swept.manipulator)?;
     Recorder::check_set(path, &kind.name())?;
     let recorder = Recorder::create(path)?;
-    let questions = Questions { kind, shape: true, conditioning: None };
-    let study = Study::new(&questions, &run.sweep(), progress).map_err(|error| match error {
-        SetError::Cancelled(cancelled) => Failure::from(cancelled),
-        SetError::Size { .. } => Failure::Work(error.to_string()),
-    })?;
+    let study = Study::new(Questions { kind, shape: true }, &Source::Sweep(run.sweep()), progress)?;
     recorder.record_set(&run, &SetRecording::new(wishes, &run, &study)?, swept.found, progress)?;
     Ok(())
 }
