@@ -13,6 +13,7 @@ mod html;
 mod interrupt;
 mod manipulator;
 mod measure;
+mod parts;
 mod rows;
 mod screws;
 mod solids;
@@ -36,7 +37,7 @@ mod _native {
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
-    use crate::measure::{Measure, measure};
+    use crate::measure::{Boxes, Measure, measure};
     #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]

@@ -4,7 +4,8 @@ use crate::error::{failed, wrong};
 use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::measure::{Measure, goal, measured};
+use crate::measure::{Asked, Measure, goal};
+use crate::parts::Parts;
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -18,10 +19,6 @@ use std::collections::BTreeMap;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
-/// so that all have work to the end and little is lost with one.
-const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
 
 /// Poses of a part at least: fewer are not worth the way to another process.
 const LEAST_PART: u64 = 1 << 15;
@@ -92,7 +89,7 @@ pub fn sweep(
         None => sweep.counted(py, Shard::WHOLE)?,
         Some(parts) => {
             let plan = Py::new(py, sweep.clone(py))?;
-            let counted: Vec<Counted> = parts.run(plan.bind(py), "_count")?.extract()?;
+            let counted: Vec<Counted> = spread(plan.bind(py), parts, "_count")?.extract()?;
             let nothing = Count::nothing(&sweep.manipulator);
             counted.into_iter().fold(nothing, |all, part| all.merge(&count_of(part)))
         }
@@ -100,33 +97,15 @@ pub fn sweep(
     Ok(Sweep { count, ..sweep })
 }
 
-/// Other processes that do the work, and into how many parts it is divided.
-struct Parts<'py> {
-    executor: Bound<'py, PyAny>,
-    shards: NonZeroU64,
-}
-
-impl<'py> Parts<'py> {
-    fn new(
-        executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
-    ) -> PyResult<Option<Self>> {
-        match (executor, shards) {
-            (Some(executor), shards) => {
-                Ok(Some(Self { executor, shards: shards.unwrap_or(SHARDS) }))
-            }
-            (None, None) => Ok(None),
-            (None, Some(_)) => Err(wrong("shards are given, but no executor that they are for")),
-        }
-    }
-
-    /// What `task` of the sweep gives for each part, in their order.
-    fn run(&self, plan: &Bound<'py, Sweep>, task: &str) -> PyResult<Bound<'py, PyAny>> {
-        let blocks = plan.get().grid.poses().div_ceil(LEAST_PART);
-        let shards = self.shards.get().min(blocks.max(1));
-        let module = plan.py().import("opm_kinematics._executor")?;
-        module.call_method1("run", (&self.executor, plan, task, shards))
-    }
+/// What `task` of a sweep gives for each of its parts, in their order.
+fn spread<'py>(
+    plan: &Bound<'py, Sweep>,
+    parts: &Parts<'py>,
+    task: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let count = parts.count(plan.get().grid.poses(), LEAST_PART);
+    let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
+    parts.session(plan.py(), |workers| workers.call_method1("run", (plan, task, numbers)))
 }
 
 fn count_of((poses, reachable, imaginary): Counted) -> Count {
@@ -138,8 +117,7 @@ impl Sweep {
     /// What was swept: `"whole"`, `"upper"` or `"lower"`.
     #[getter]
     fn section(&self) -> &'static str {
-        let word = SECTIONS.iter().find(|(sections, _)| *sections == self.grid.sections());
-        word.map_or("", |(_, word)| word)
+        word(self.grid.sections())
     }
 
     /// Poses in reach and within all limits.
@@ -199,7 +177,7 @@ impl Sweep {
         let mask = match Parts::new(executor, shards)? {
             None => this.masked(py, Shard::WHOLE)?,
             Some(parts) => {
-                let parts = parts.run(slf, "_mask")?;
+                let parts = spread(slf, &parts, "_mask")?;
                 py.import("numpy")?.call_method1("concatenate", (parts,))?.cast_into()?
             }
         };
@@ -219,24 +197,27 @@ impl Sweep {
         match Parts::new(executor, shards)? {
             None => this.pointed(py, Shard::WHOLE, this.count.reachable).map(Bound::into_any),
             Some(parts) => {
-                let parts = parts.run(slf, "_points")?;
+                let parts = spread(slf, &parts, "_points")?;
                 py.import("numpy")?.call_method1("concatenate", (parts,))
             }
         }
     }
 
     /// How much of the box that the grid covers is in reach, between guaranteed bounds.
-    #[pyo3(signature = (*, tolerance = None, budget = None))]
+    #[pyo3(signature = (*, tolerance = None, budget = None, executor = None, shards = None))]
     fn measure(
         &self,
         py: Python<'_>,
         tolerance: Option<f64>,
         budget: Option<u64>,
+        executor: Option<Bound<'_, PyAny>>,
+        shards: Option<NonZeroU64>,
     ) -> PyResult<Measure> {
         let axes = self.grid.axes().iter();
         let over: Vec<_> = axes.map(|a| Over::new(a.name.as_str(), a.min, a.max)).collect();
-        let asked = (self.grid.sections(), self.modes);
-        measured(py, &self.manipulator, asked, &over, goal(tolerance, budget)?, self.threads)
+        let (of, sections) = (self.of.clone_ref(py), self.grid.sections());
+        let asked = Asked { of, sections, modes: self.modes, threads: self.threads };
+        asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)
     }
 
     /// Pickling: with the manipulator, not with what the grid holds.
@@ -374,6 +355,12 @@ pub fn sections(word: &str) -> PyResult<Sections> {
     let words = || SECTIONS.map(|(_, word)| word).join(", ");
     let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
     known.map(|(sections, _)| *sections).ok_or_else(told)
+}
+
+/// What sections are called.
+pub fn word(sections: Sections) -> &'static str {
+    let word = SECTIONS.iter().find(|(known, _)| *known == sections);
+    word.map_or("", |(_, word)| word)
 }
 
 /// The working modes that count: one, or any.

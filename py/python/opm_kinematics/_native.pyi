@@ -571,7 +571,14 @@ class Sweep:
 
         `executor` and `shards` are those of :func:`sweep`.
         """
-    def measure(self, *, tolerance: float | None = None, budget: int | None = None) -> Measure:
+    def measure(
+        self,
+        *,
+        tolerance: float | None = None,
+        budget: int | None = None,
+        executor: _Executor | None = None,
+        shards: int | None = None,
+    ) -> Measure:
         """How much of the box that the grid covers is in reach: :func:`measure` over it."""
     def write(
         self,
@@ -662,6 +669,8 @@ def measure(
     tolerance: float | None = None,
     budget: int | None = None,
     threads: int | None = None,
+    executor: _Executor | None = None,
+    shards: int | None = None,
 ) -> Measure:
     """Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
 
@@ -680,12 +689,19 @@ def measure(
     budget : int, optional
         Boxes to look at, at most: 2**22 if not given.
     threads : int, optional
-        How many; the result does not depend on it. A processor each if not given.
+        How many, here or in each worker; the result does not depend on it. A processor each if not given.
+    executor : concurrent.futures.Executor or callable, optional
+        Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+        more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
+        executor that a function makes serves all rounds.
+    shards : int, optional
+        How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
 
     Raises
     ------
     OpmError
-        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode.
+        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+        and again.
     """
 
 @final
