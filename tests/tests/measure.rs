@@ -264,12 +264,12 @@ fn domain_pieces(found: &Measured) -> u64 {
 #[test]
 fn what_was_found_before_a_stop_is_kept() {
     let m = example("plano-spherical-5dof");
-    let over = [Over::new("x", -0.1, 0.1), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
+    let over = [Over::new("x", -0.4, 0.4), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
     let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
     let (goal, progress) = (Goal { tolerance: 0.0, ..Goal::default() }, Progress::default());
     let asker = Asker::new(&m, &domain, Modes::Any);
     let mut search = Search::new(&domain, goal);
-    for _ in 0..4 {
+    for _ in 0..10 {
         let bounds = asker.ask(search.round().unwrap(), &progress).unwrap();
         search.take(bounds);
     }
