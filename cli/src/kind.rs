@@ -12,8 +12,8 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, ConditioningIndex, Extent, Grid, GridSet, Outline, Progress, Sections, SetError, Sweep,
-    Visits, boundary, components,
+    Axis, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline, Progress,
+    Sections, SetError, Sweep, Visits, boundary, components,
 };
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -45,6 +45,11 @@ pub enum Kind {
 type Finesse = [f64; 2];
 
 impl Kind {
+    /// All of them.
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
+
     /// As it is given.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
@@ -147,19 +152,36 @@ impl Kind {
         }
     }
 
-    /// Refuses flags that make no sense with it.
-    pub fn check_flags(
+    /// What is wrong with a flag.
+    fn wrong(self, flag: &str, problem: &str) -> Failure {
+        Failure::flag(flag, format!("with --kind {}: {problem}", self.name()))
+    }
+
+    /// Refuses what it has no meaning with.
+    pub fn check_run(
         self,
-        args: &WorkspaceArgs,
         manipulator: &Manipulator,
+        modes: Modes,
+        limit: Option<ConditionLimit>,
     ) -> Result<(), Failure> {
-        let name = self.name();
-        let wrong = |flag: &str, problem: &str| {
-            Err(Failure::flag(flag, format!("with --kind {name}: {problem}")))
-        };
-        if self.sections() != Sections::Whole && args.max_condition.is_some() {
+        let wrong = |flag, problem| Err(self.wrong(flag, problem));
+        if self.sections() != Sections::Whole && limit.is_some() {
             return wrong("--max-condition", "a section alone has no condition number");
         }
+        if self == Self::Imaginary && modes == Modes::Any {
+            return wrong(
+                "--mode",
+                "the imaginary joints have other values in each mode; give one",
+            );
+        }
+        if self == Self::Imaginary && manipulator.imaginary().is_empty() {
+            return wrong("--kind", "this mechanism has no imaginary joints");
+        }
+        Ok(())
+    }
+
+    /// Refuses flags that make no sense with it.
+    pub fn check_flags(self, args: &WorkspaceArgs) -> Result<(), Failure> {
         let whole = self == Self::Grid && !args.shape && !args.conditioning;
         if args.shard.is_some() && !whole {
             let problem = "shards are of --kind grid, without --shape and --conditioning";
@@ -168,16 +190,7 @@ impl Kind {
         if args.conditioning && !self.is_of_poses() {
             let problem = "only poses have a condition number; ask for it of grid, \
                            constant-orientation or orientation";
-            return wrong("--conditioning", problem);
-        }
-        if self == Self::Imaginary && args.mode == "any" {
-            return wrong(
-                "--mode",
-                "the imaginary joints have other values in each mode; give one",
-            );
-        }
-        if self == Self::Imaginary && manipulator.imaginary().is_empty() {
-            return wrong("--kind", "this mechanism has no imaginary joints");
+            return Err(self.wrong("--conditioning", problem));
         }
         Ok(())
     }

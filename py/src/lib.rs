@@ -16,6 +16,7 @@ mod measure;
 mod parts;
 mod rows;
 mod screws;
+mod shape;
 mod solids;
 mod solutions;
 mod sweep;
@@ -38,6 +39,8 @@ mod _native {
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
     use crate::measure::{Boxes, Measure, measure};
+    #[pymodule_export]
+    use crate::shape::{Conditioning, Outline};
     #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]

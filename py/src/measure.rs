@@ -4,7 +4,7 @@ use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::Parts;
-use crate::sweep::{modes, sections, word};
+use crate::sweep::modes;
 use opm_workspace::measure::{
     self as workspace, Asker, Bounds, Cell, Domain, Goal, Measured, Over, Search, Stop,
 };
@@ -17,6 +17,10 @@ use std::num::{NonZeroU64, NonZeroUsize};
 /// Boxes of a part, all but the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
 /// to get them and to compile the manipulator. Rounds of no more are answered here.
 const LEAST_BOXES: u64 = 1 << 12;
+
+/// What is measured.
+const SECTIONS: [(Sections, &str); 3] =
+    [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
 /// How much of a box is in reach, between two bounds.
 #[pyclass(frozen, module = "opm_kinematics")]
@@ -74,6 +78,20 @@ pub fn measure(
     let fitted = interrupt::run(py, threads, fit, || progress.cancel())?;
     let (over, _) = fitted.map_err(|error| failed(&error))?;
     asked.measured(py, &over, goal, parts)
+}
+
+/// The section of this name, or both.
+fn sections(word: &str) -> PyResult<Sections> {
+    let known = SECTIONS.iter().find(|(_, known)| *known == word);
+    let words = || SECTIONS.map(|(_, word)| word).join(", ");
+    let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
+    known.map(|(sections, _)| *sections).ok_or_else(told)
+}
+
+/// What sections are called.
+fn word(sections: Sections) -> &'static str {
+    let word = SECTIONS.iter().find(|(known, _)| *known == sections);
+    word.map_or("", |(_, word)| word)
 }
 
 /// The goal with what is not given as it is by default.
