@@ -448,7 +448,7 @@ pub struct MergeArgs {
 /// counts as in `opm workspace`: in reach and within all joint limits.
 ///
 /// What is measured is the product of all ranges. Orientations count as evenly as rotations are
-/// spread (Haar's measure): xi is weighed by sin xi, nu by cos nu, and every orientation once is
+/// spread (Haar's measure): xi is weighed by sin xi, nu by cos(nu - home), and every orientation once is
 /// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
 /// positive xi has orientations twice if zeta has a whole turn.
 ///

@@ -5,6 +5,7 @@ use fastrand::Rng;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
+use opm_core::task::Task;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::measure::{Asker, Domain, Goal, Measured, Over, Search, Stop, measure};
 use opm_workspace::{Cancelled, Modes, Progress, Sections};
@@ -132,10 +133,17 @@ fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> 
     clipped
 }
 
-/// A random manipulator with limits on some of its joints, and what counts.
+/// A random manipulator with limits on some of its joints and some values of its pose at home, and what
+/// counts.
 fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
     let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
-    let (mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let (mut mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let task = Task::new(&mechanism, &decomposition).unwrap();
+    for coordinate in &task.coordinates {
+        if rng.bool() {
+            mechanism.task.home.push((coordinate.name.to_owned(), rng.f64() * 4.0 - 2.0));
+        }
+    }
     let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
     let mode = [None, Some(m.home_mode())][rng.usize(..2)];
     let sections = [Sections::Whole, Sections::Whole, Sections::Upper, Sections::Lower];
@@ -157,6 +165,39 @@ fn domain_of(rng: &mut Rng, m: &Manipulator, sections: Sections, size: f64) -> D
     Domain::new(m, sections, &over).unwrap()
 }
 
+/// A box about a pose on the boundary of what counts: where the way from a pose of a domain that does to
+/// one that does not leads across. `None` where a few draws do not find both.
+fn at_the_boundary(
+    rng: &mut Rng,
+    m: &Manipulator,
+    domain: &Domain,
+    mode: Option<Mode>,
+    size: f64,
+) -> Option<Domain> {
+    let mut ends = [None, None];
+    for _ in 0..20 {
+        let shares: Vec<f64> = (0..domain.dimension()).map(|_| rng.f64()).collect();
+        let pose = domain.pose(&shares);
+        let end = usize::from(counts(m, domain, mode, &pose));
+        ends[end] = Some(pose);
+    }
+    let [Some(mut out), Some(mut within)] = ends else { return None };
+    for _ in 0..60 {
+        let middle: Vec<f64> = out.iter().zip(&within).map(|(a, b)| 0.5 * (a + b)).collect();
+        if counts(m, domain, mode, &middle) { within = middle } else { out = middle }
+    }
+    let axes = domain.axes().iter().zip(within);
+    let over: Vec<Over> = axes
+        .map(|(axis, at)| {
+            let half = if axis.min < axis.max { size * rng.f64() } else { 0.0 };
+            // The pose is not always in the middle.
+            let off = half * (2.0 * rng.f64() - 1.0);
+            Over::new(&*axis.name, at - half + off, at + half + off)
+        })
+        .collect();
+    Domain::new(m, domain.sections(), &over).ok()
+}
+
 /// One box at a time: what is said of it holds of the poses in it.
 #[test]
 fn boxes_are_never_contradicted() {
@@ -167,8 +208,12 @@ fn boxes_are_never_contradicted() {
         let (m, mode, sections) = random(&mut rng, round);
         let modes = mode.map_or(Modes::Any, Modes::One);
         for _ in 0..40 {
-            let size = 10.0_f64.powf(-3.0 * rng.f64());
-            let domain = domain_of(&mut rng, &m, sections, size);
+            let size = 10.0_f64.powf(1.0 - 4.0 * rng.f64());
+            let mut domain = domain_of(&mut rng, &m, sections, size);
+            if rng.bool() {
+                let size = 10.0_f64.powf(-8.0 * rng.f64());
+                domain = at_the_boundary(&mut rng, &m, &domain, mode, size).unwrap_or(domain);
+            }
             // The first boxes alone: a tilt may have several.
             let goal = Goal { tolerance: 0.0, budget: 0 };
             let found = measured(&m, &domain, modes, goal);

@@ -186,7 +186,7 @@ impl Manipulator {
     }
 }
 
-/// The unit vector at the angle that `at` stands for.
+/// The unit vector at the angle that `at` stands for, of `nu` less its home value.
 fn polar<const N: usize>(piece: Piece, at: Affine<N>, of_upper: bool) -> Plane<N> {
     let sign = piece.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);

@@ -169,7 +169,8 @@ fn commuting<const N: usize>(cut: Cut, g: &Target<N>, tau: Enclosed<N>) -> Targe
 pub enum Coordinate<const N: usize> {
     /// Linear in the box.
     Linear(Affine<N>),
-    /// An angle of which the box is even in the cosine, so that its sine and cosine are known instead.
+    /// An angle of which the box is even in the cosine or sine: as the unit vector at it, of `nu` less its
+    /// home value.
     Polar(Plane<N>),
 }
 
@@ -177,16 +178,15 @@ impl<const N: usize> Coordinate<N> {
     fn minus(self, home: f64) -> Affine<N> {
         match self {
             Self::Linear(value) => value - home,
-            Self::Polar(e) => e.argument() - home,
+            Self::Polar(_) => unreachable!("what is tilted in a sphere is turned by, not moved"),
         }
     }
 
-    /// The unit vector at the angle, less that at home.
+    /// The unit vector at the angle, less what it is measured from.
     fn turn(self, home: f64) -> Plane<N> {
         match self {
             Self::Linear(value) => (value - home).turn(),
-            Self::Polar(e) if home == 0.0 => e,
-            Self::Polar(e) => e * crate::chain::unit(-home),
+            Self::Polar(e) => e,
         }
     }
 }

@@ -58,12 +58,14 @@ impl DomainAxis {
         self.min < self.max
     }
 
-    /// What it is weighed by, where that is not one.
+    /// What it is weighed by, up to its sign, where that is not one: `home` stands for its value at home.
     pub fn weight(&self) -> Option<&'static str> {
         match self.kind {
-            Kind::Tilt(shift) if self.has_width() => {
-                Some(if shift == 0.0 { "sin xi" } else { "cos nu" })
-            }
+            Kind::Tilt(shift) if self.has_width() => Some(match &*self.name {
+                "xi" => "sin xi",
+                _ if shift == FRAC_PI_2 => "cos nu",
+                _ => "cos(nu - home)",
+            }),
             _ => None,
         }
     }
@@ -230,8 +232,8 @@ impl Domain {
         &self.axes
     }
 
-    /// Its own measure, the product of its ranges; of a tilt `∫ |sin xi| dxi` or `∫ |cos nu| dnu`. One where
-    /// no axis has a width.
+    /// Its own measure, the product of its ranges; of a tilt `∫ |sin xi| dxi` or
+    /// `∫ |cos(nu - home)| dnu`. One where no axis has a width.
     pub fn whole(&self) -> f64 {
         self.whole
     }
