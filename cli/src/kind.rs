@@ -12,8 +12,8 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, ConditioningIndex, Extent, Grid, GridSet, Outline, Poses, Progress, Sections, Visits,
-    boundary, components,
+    Axis, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline, Poses,
+    Progress, Sections, Visits, boundary, components,
 };
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -45,6 +45,11 @@ pub enum Kind {
 type Finesse = [f64; 2];
 
 impl Kind {
+    /// All of them.
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
+
     /// As it is given.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
@@ -147,25 +152,23 @@ impl Kind {
         }
     }
 
-    /// Refuses flags that make no sense with it.
-    pub fn check_flags(
+    /// What is wrong with a flag.
+    fn wrong(self, flag: &str, problem: &str) -> Failure {
+        Failure::flag(flag, format!("with --kind {}: {problem}", self.name()))
+    }
+
+    /// Refuses what it has no meaning with.
+    pub fn check_run(
         self,
-        args: &WorkspaceArgs,
         manipulator: &Manipulator,
+        modes: Modes,
+        limit: Option<ConditionLimit>,
     ) -> Result<(), Failure> {
-        let name = self.name();
-        let wrong = |flag: &str, problem: &str| {
-            Err(Failure::flag(flag, format!("with --kind {name}: {problem}")))
-        };
-        if self.sections() != Sections::Whole && args.max_condition.is_some() {
+        let wrong = |flag, problem| Err(self.wrong(flag, problem));
+        if self.sections() != Sections::Whole && limit.is_some() {
             return wrong("--max-condition", "a section alone has no condition number");
         }
-        if args.conditioning && !self.is_of_poses() {
-            let problem = "only poses have a condition number; ask for it of grid, \
-                           constant-orientation or orientation";
-            return wrong("--conditioning", problem);
-        }
-        if self == Self::Imaginary && args.mode == "any" {
+        if self == Self::Imaginary && modes == Modes::Any {
             return wrong(
                 "--mode",
                 "the imaginary joints have other values in each mode; give one",
@@ -173,6 +176,16 @@ impl Kind {
         }
         if self == Self::Imaginary && manipulator.imaginary().is_empty() {
             return wrong("--kind", "this mechanism has no imaginary joints");
+        }
+        Ok(())
+    }
+
+    /// Refuses flags that make no sense with it.
+    pub fn check_flags(self, args: &WorkspaceArgs) -> Result<(), Failure> {
+        if args.conditioning && !self.is_of_poses() {
+            let problem = "only poses have a condition number; ask for it of grid, \
+                           constant-orientation or orientation";
+            return Err(self.wrong("--conditioning", problem));
         }
         Ok(())
     }

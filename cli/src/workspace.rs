@@ -32,9 +32,10 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         mode => Modes::One(load::mode(&manipulator, mode)?),
     };
     let kind = args.kind;
-    kind.check_flags(args, &manipulator)?;
+    kind.check_flags(args)?;
     let length = characteristic_length(args.length, "--length", &manipulator)?;
     let limit = args.max_condition.map(|most| ConditionLimit { most, length });
+    kind.check_run(&manipulator, modes, limit)?;
     let given = given_grid(&args.grid, kind, &manipulator)?;
     let wishes = AnyWishes::new(kind, &args.cloud, length, &manipulator)?;
     wishes.check_length(args)?;

@@ -7,8 +7,8 @@ use opm_core::manipulator::{Follow, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
 use opm_core::task::Task;
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::measure::{Domain, Goal, Measured, Over, Stop, measure};
-use opm_workspace::{Modes, Progress, Sections};
+use opm_workspace::measure::{Asker, Domain, Goal, Measured, Over, Search, Stop, measure};
+use opm_workspace::{Cancelled, Modes, Progress, Sections};
 use std::f64::consts::PI;
 
 fn example(name: &str) -> Manipulator {
@@ -369,11 +369,23 @@ fn domain_pieces(found: &Measured) -> u64 {
 #[test]
 fn what_was_found_before_a_stop_is_kept() {
     let m = example("plano-spherical-5dof");
-    let over = [Over::new("x", -0.1, 0.1), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
+    let over = [Over::new("x", -0.4, 0.4), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
     let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
-    let progress = Progress::default();
+    let (goal, progress) = (Goal { tolerance: 0.0, ..Goal::default() }, Progress::default());
+    let asker = Asker::new(&m, &domain, Modes::Any);
+    let mut search = Search::new(&domain, goal);
+    for _ in 0..10 {
+        let bounds = asker.ask(search.round().unwrap(), &progress).unwrap();
+        search.take(bounds);
+    }
+    let before = search.found();
+    assert_eq!((before.stop, before.boxes), (Stop::Cancelled, progress.done()));
+    assert!(0.0 < before.lower && before.lower < before.upper && before.upper < before.whole);
     progress.cancel();
-    let found = measure(&m, &domain, Modes::Any, &Goal::default(), &progress);
-    assert_eq!((found.stop, found.boxes), (Stop::Cancelled, 1));
-    assert!(found.lower <= found.upper && found.upper <= found.whole);
+    assert_eq!(asker.ask(search.round().unwrap(), &progress), Err(Cancelled));
+    assert_eq!(search.found(), before);
+    // Of one that is stopped at once nothing is known.
+    let none = measure(&m, &domain, Modes::Any, &goal, &progress);
+    assert_eq!((none.stop, none.boxes), (Stop::Cancelled, 0));
+    assert_eq!((none.lower, none.upper), (0.0, none.whole));
 }
