@@ -1,10 +1,12 @@
 //! Recordings for the Python package, by what records for the program: the same run gives the same
 //! bytes.
 
+pub use crate::kind::Kind;
+
 use crate::args::CloudArgs;
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
-use crate::kind::{Kind, Questions, SetRecording, SetWishes, Study};
+use crate::kind::{Questions, SetRecording, SetWishes, Study};
 use crate::load::{self, Loaded};
 use crate::motion::LoadedMotion;
 use crate::record::Recorder;
@@ -13,7 +15,7 @@ use crate::trajectory;
 use crate::workspace::Run;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::Motion;
-use opm_workspace::{Count, Grid, Modes, Progress, Sections, SetError};
+use opm_workspace::{ConditionLimit, Count, Grid, Modes, Progress};
 use std::path::Path;
 use std::sync::atomic::AtomicU64;
 
@@ -33,11 +35,17 @@ pub struct Swept<'a> {
     pub mechanism: Attached<'a>,
     /// What was swept.
     pub manipulator: &'a Manipulator,
+    /// What the workspace is of.
+    pub kind: Kind,
     /// Over which poses.
     pub grid: &'a Grid,
     /// In which working modes.
     pub modes: Modes,
-    /// What was found.
+    /// How well conditioned poses have to be.
+    pub limit: Option<ConditionLimit>,
+    /// Characteristic length of condition numbers, metres.
+    pub length: f64,
+    /// What was found: of a set that is not of poses, its points.
     pub found: &'a Count,
 }
 
@@ -52,8 +60,23 @@ pub struct Shown {
     pub color: Option<String>,
 }
 
+/// Refuses what is no workspace of a kind: a grid that it is not of, a limit on a condition number that there
+/// is not, modes or a mechanism in which it has no meaning.
+///
+/// # Errors
+/// What is wrong, by the flag's name without dashes.
+pub fn check(
+    kind: Kind,
+    manipulator: &Manipulator,
+    grid: &Grid,
+    modes: Modes,
+    limit: Option<ConditionLimit>,
+) -> Result<(), String> {
+    kind.check_run(manipulator, modes, limit).and_then(|()| kind.check(grid)).map_err(told)
+}
+
 /// Records the points of a sweep, as `opm workspace -o` does: in the format that the file's name ends
-/// in. A sweep of one section alone is what `--kind upper` or `lower` is.
+/// in.
 ///
 /// # Errors
 /// What was asked for and there is not, by the flag's name without dashes; a file that cannot be
@@ -66,10 +89,9 @@ pub fn record_sweep(
 ) -> Result<(), String> {
     let Shown { axes, scalars, color } = shown;
     let args = CloudArgs { output: None, axes, color, scalars };
-    let record = match swept.grid.sections() {
-        Sections::Whole => record_poses(swept, &args, path, progress),
-        Sections::Upper => record_section(swept, Kind::Upper, &args, path, progress),
-        Sections::Lower => record_section(swept, Kind::Lower, &args, path, progress),
+    let record = match swept.kind.is_of_poses() {
+        true => record_poses(swept, &args, path, progress),
+        false => record_set(swept, &args, path, progress),
     };
     record.map_err(told)
 }
@@ -81,13 +103,19 @@ impl<'a> Swept<'a> {
     }
 
     /// As the program knows it.
-    fn run<'b>(&self, loaded: &'b Loaded, kind: Kind) -> Run<'b>
+    fn run<'b>(&self, loaded: &'b Loaded) -> Run<'b>
     where
         'a: 'b,
     {
-        let Self { manipulator, grid, modes, .. } = *self;
-        Run { loaded, manipulator, kind, grid, modes, limit: None }
+        let Self { manipulator, kind, grid, modes, limit, .. } = *self;
+        Run { loaded, manipulator, kind, grid, modes, limit, conditioning: None }
     }
+}
+
+/// The shape of a set, by sweeping.
+fn shape(run: &Run<'_>, progress: &Progress) -> Result<Study, Failure> {
+    let questions = Questions { kind: run.kind, shape: true };
+    Study::new(questions, &Source::Sweep(run.sweep()), progress)
 }
 
 fn record_poses(
@@ -96,33 +124,31 @@ fn record_poses(
     path: &Path,
     progress: &Progress,
 ) -> Result<(), Failure> {
-    let Swept { manipulator, grid, found, .. } = *swept;
+    let Swept { manipulator, grid, found, length, .. } = *swept;
     let loaded = swept.load()?;
-    let run = swept.run(&loaded, Kind::Grid);
-    let wishes = Wishes::new(args, manipulator.characteristic_length(), manipulator)?;
+    let run = swept.run(&loaded);
+    let wishes = Wishes::new(args, length, manipulator)?;
     Recorder::check(path, grid)?;
     let (recorder, cloud) = (Recorder::create(path)?, Cloud::new(wishes, &run));
-    recorder.record(&run, &cloud, &Source::Sweep(run.sweep()), found, None, progress)?;
+    // As without --shape.
+    let study = if run.kind == Kind::Grid { None } else { Some(shape(&run, progress)?) };
+    let source = Source::Sweep(run.sweep());
+    recorder.record(&run, &cloud, &source, found, study.as_ref(), progress)?;
     Ok(())
 }
 
-fn record_section(
+fn record_set(
     swept: &Swept<'_>,
-    kind: Kind,
     args: &CloudArgs,
     path: &Path,
     progress: &Progress,
 ) -> Result<(), Failure> {
     let loaded = swept.load()?;
-    let run = swept.run(&loaded, kind);
-    let wishes = SetWishes::new(kind, args, swept.manipulator)?;
-    Recorder::check_set(path, &kind.name())?;
+    let run = swept.run(&loaded);
+    let wishes = SetWishes::new(run.kind, args, swept.manipulator)?;
+    Recorder::check_set(path, &run.kind.name())?;
     let recorder = Recorder::create(path)?;
-    let questions = Questions { kind, shape: true, conditioning: None };
-    let study = Study::new(&questions, &run.sweep(), progress).map_err(|error| match error {
-        SetError::Cancelled(cancelled) => Failure::from(cancelled),
-        SetError::Size { .. } => Failure::Work(error.to_string()),
-    })?;
+    let study = shape(&run, progress)?;
     recorder.record_set(&run, &SetRecording::new(wishes, &run, &study)?, swept.found, progress)?;
     Ok(())
 }
@@ -171,8 +197,8 @@ pub fn record_motion(
 fn told(failure: Failure) -> String {
     match failure {
         Failure::Usage(message) => match message.strip_prefix("--output: ") {
-            Some(of_the_path) => of_the_path.replace("--kind", "section"),
-            None => message.replace("--kind", "section").replace("--", ""),
+            Some(of_the_path) => of_the_path.replace("--kind", "kind"),
+            None => message.replace("--max-condition", "max_condition").replace("--", ""),
         },
         Failure::Work(message) | Failure::Interrupted(message) => message,
         Failure::Closed => "nobody reads what is written".to_owned(),

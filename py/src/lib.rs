@@ -13,8 +13,10 @@ mod html;
 mod interrupt;
 mod manipulator;
 mod measure;
+mod parts;
 mod rows;
 mod screws;
+mod shape;
 mod solids;
 mod solutions;
 mod sweep;
@@ -38,6 +40,8 @@ mod _native {
     #[pymodule_export]
     use crate::measure::{Measure, measure};
     #[pymodule_export]
+    use crate::shape::{Conditioning, Outline};
+    #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]
     use crate::solutions::Solutions;
@@ -51,6 +55,8 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // For pickling alone: no export.
+        module.setattr("_Boxes", module.py().get_type::<crate::measure::Boxes>())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

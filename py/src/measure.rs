@@ -3,19 +3,29 @@
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::sweep::{modes, sections};
-use opm_core::manipulator as core;
-use opm_workspace::measure::{self as workspace, Domain, Goal, Over, Stop};
-use opm_workspace::{Cancelled, Modes, Progress, Sections};
+use crate::parts::{Parts, Pickled};
+use crate::sweep::modes;
+use opm_workspace::measure::{
+    self as workspace, Asker, Bounds, Cell, Domain, Goal, Measured, Over, Search, Stop,
+};
+use opm_workspace::{Modes, Progress, Sections};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU64, NonZeroUsize};
+
+/// Boxes of a part, all but the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
+/// to get them and to compile the manipulator. Rounds of no more are answered here.
+const LEAST_BOXES: u64 = 1 << 12;
+
+/// What is measured.
+const SECTIONS: [(Sections, &str); 3] =
+    [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
 /// How much of a box is in reach, between two bounds.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Measure {
-    found: workspace::Measured,
+    found: Measured,
     domain: Domain,
 }
 
@@ -30,18 +40,20 @@ enum Range {
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, over = None, section = "whole", mode = "home", tolerance = None, budget = None,
-    threads = None
+    threads = None, executor = None, shards = None
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn measure(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    manipulator: Py<Manipulator>,
     over: Option<BTreeMap<String, Bound<'_, PyAny>>>,
     section: &str,
     mode: &str,
     tolerance: Option<f64>,
     budget: Option<u64>,
     threads: Option<NonZeroUsize>,
+    executor: Option<Bound<'_, PyAny>>,
+    shards: Option<NonZeroU64>,
 ) -> PyResult<Measure> {
     let given = over.unwrap_or_default().into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(Over::new(name, value, value)),
@@ -52,8 +64,34 @@ pub fn measure(
         }
     });
     let given: Vec<Over> = given.collect::<PyResult<_>>()?;
-    let asked = (sections(section)?, modes(manipulator, mode)?);
-    measured(py, &manipulator.inner, asked, &given, goal(tolerance, budget)?, threads)
+    let modes = modes(manipulator.get(), mode)?;
+    let asked = Asked { of: manipulator, sections: sections(section)?, modes, threads };
+    let goal = goal(tolerance, budget)?;
+    let parts = Parts::new(executor, shards)?;
+    // What is given is looked at first: a wrong name need not wait for a sweep.
+    asked.domain(&given)?;
+    let progress = Progress::default();
+    let fit = || {
+        let manipulator = &asked.of.get().inner;
+        workspace::ranges(manipulator, asked.sections, asked.modes, &given, &progress)
+    };
+    let fitted = interrupt::run(py, threads, fit, || progress.cancel())?;
+    let (over, _) = fitted.map_err(|error| failed(&error))?;
+    asked.measured(py, &over, goal, parts)
+}
+
+/// The section of this name, or both.
+fn sections(word: &str) -> PyResult<Sections> {
+    let known = SECTIONS.iter().find(|(_, known)| *known == word);
+    let words = || SECTIONS.map(|(_, word)| word).join(", ");
+    let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
+    known.map(|(sections, _)| *sections).ok_or_else(told)
+}
+
+/// What sections are called.
+fn word(sections: Sections) -> &'static str {
+    let word = SECTIONS.iter().find(|(known, _)| *known == sections);
+    word.map_or("", |(_, word)| word)
 }
 
 /// The goal with what is not given as it is by default.
@@ -66,29 +104,124 @@ pub fn goal(tolerance: Option<f64>, budget: Option<u64>) -> PyResult<Goal> {
     Ok(Goal { tolerance, budget: budget.unwrap_or(usual.budget) })
 }
 
-/// Measures over what is given, or over what fits where nothing is.
-pub fn measured(
-    py: Python<'_>,
-    manipulator: &core::Manipulator,
-    (sections, modes): (Sections, Modes),
-    given: &[Over],
+/// What is measured, of which domain apart.
+pub struct Asked {
+    pub of: Py<Manipulator>,
+    pub sections: Sections,
+    pub modes: Modes,
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl Asked {
+    fn domain(&self, over: &[Over]) -> PyResult<Domain> {
+        let domain = Domain::new(&self.of.get().inner, self.sections, over);
+        domain.map_err(|error| failed(&error))
+    }
+
+    /// Measures over these ranges.
+    pub fn measured(
+        self,
+        py: Python<'_>,
+        over: &[Over],
+        goal: Goal,
+        parts: Option<Parts<'_>>,
+    ) -> PyResult<Measure> {
+        let domain = self.domain(over)?;
+        let found = match parts {
+            None => {
+                let (manipulator, progress) = (&self.of.get().inner, Progress::default());
+                let work =
+                    || workspace::measure(manipulator, &domain, self.modes, &goal, &progress);
+                interrupt::run(py, self.threads, work, || progress.cancel())?
+            }
+            Some(parts) => {
+                let boxes = Bound::new(py, Boxes { asked: self, domain: domain.clone() })?;
+                parts.session(py, |workers| boxes_searched(&boxes, goal, &parts, workers))?
+            }
+        };
+        Ok(Measure { found, domain })
+    }
+}
+
+/// Measures with the help of workers, who are asked for the boxes of large rounds.
+fn boxes_searched(
+    boxes: &Bound<'_, Boxes>,
     goal: Goal,
-    threads: Option<NonZeroUsize>,
-) -> PyResult<Measure> {
-    let progress = Progress::default();
-    let work = || -> Result<Result<Measure, workspace::DomainError>, Cancelled> {
-        // What is given is looked at first: a wrong name need not wait for a sweep.
-        if let Err(error) = Domain::new(manipulator, sections, given) {
-            return Ok(Err(error));
-        }
-        let (over, _) = workspace::ranges(manipulator, sections, modes, given, &progress)?;
-        Ok(Domain::new(manipulator, sections, &over).map(|domain| {
-            let found = workspace::measure(manipulator, &domain, modes, &goal, &progress);
-            Measure { found, domain }
-        }))
-    };
-    let done = interrupt::run(py, threads, work, || progress.cancel())?;
-    done.map_err(|error| failed(&error))?.map_err(|error| failed(&error))
+    parts: &Parts<'_>,
+    workers: &Bound<'_, PyAny>,
+) -> PyResult<Measured> {
+    let (py, this) = (boxes.py(), boxes.get());
+    let mut search = Search::new(&this.domain, goal);
+    while let Some(cells) = py.detach(|| search.round()) {
+        let count = parts.count(cells.len() as u64, LEAST_BOXES) as usize;
+        let bounds = if count == 1 {
+            this.bounds(py, cells)?
+        } else {
+            let part = cells.len().div_ceil(count);
+            let packed = cells.chunks(part).map(|part| {
+                let bytes: Vec<u8> = part.iter().flat_map(Cell::pack).collect();
+                (PyBytes::new(py, &bytes),)
+            });
+            let packed: Vec<_> = packed.collect();
+            let known: Vec<Bound<'_, PyBytes>> =
+                workers.call_method1("run", (boxes, "_ask", packed))?.extract()?;
+            let known = known.iter().flat_map(|part| part.as_bytes().as_chunks().0);
+            known.map(Bounds::unpack).collect()
+        };
+        py.detach(|| search.take(bounds));
+    }
+    Ok(search.found())
+}
+
+/// The boxes of a domain, for whoever is asked for some of them.
+#[pyclass(frozen, name = "_Boxes", module = "opm_kinematics._native")]
+pub struct Boxes {
+    asked: Asked,
+    domain: Domain,
+}
+
+impl Boxes {
+    fn bounds(&self, py: Python<'_>, cells: &[Cell]) -> PyResult<Vec<Bounds>> {
+        let (asked, progress) = (&self.asked, Progress::default());
+        let asker = Asker::new(&asked.of.get().inner, &self.domain, asked.modes);
+        let work = || asker.ask(cells, &progress);
+        let known = interrupt::run(py, asked.threads, work, || progress.cancel())?;
+        known.map_err(|error| failed(&error))
+    }
+}
+
+/// A domain as it crosses processes: section, mode, ranges, threads.
+type Spec = (String, String, Vec<(String, f64, f64)>, Option<NonZeroUsize>);
+
+#[pymethods]
+impl Boxes {
+    /// What is known of boxes, all packed.
+    fn _ask<'py>(&self, py: Python<'py>, cells: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+        let cells: Vec<Cell> = cells.as_chunks().0.iter().map(Cell::unpack).collect();
+        let known: Vec<u8> = self.bounds(py, &cells)?.iter().flat_map(Bounds::pack).collect();
+        Ok(PyBytes::new(py, &known))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec)>> {
+        let Self { asked: Asked { of, sections, modes, threads }, domain } = slf.get();
+        let mode = match modes {
+            Modes::Any => "any".to_owned(),
+            Modes::One(mode) => of.get().inner.format_mode(*mode),
+        };
+        let over = domain.axes().iter().map(|axis| (axis.name.clone(), axis.min, axis.max));
+        let spec = (word(*sections).to_owned(), mode, over.collect(), *threads);
+        Ok((slf.get_type().getattr("_restored")?, (of.clone_ref(slf.py()), spec)))
+    }
+
+    #[staticmethod]
+    fn _restored(of: Py<Manipulator>, spec: Spec) -> PyResult<Self> {
+        let (section, mode, over, threads) = spec;
+        let over = over.into_iter().map(|(name, min, max)| Over::new(name, min, max));
+        let (sections, modes) = (sections(&section)?, modes(of.get(), &mode)?);
+        let asked = Asked { of, sections, modes, threads };
+        let domain = asked.domain(&over.collect::<Vec<_>>())?;
+        Ok(Self { asked, domain })
+    }
 }
 
 #[pymethods]

@@ -4,42 +4,51 @@ use crate::error::{failed, wrong};
 use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::measure::{Measure, goal, measured};
+use crate::measure::{self, Measure, goal};
+use crate::parts::{Parts, Pickled};
 use crate::rows::no_memory;
+use crate::velocity::characteristic_length;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
+use opm_cli::recording::{Attached, Kind, Shown, Swept, check, record_sweep};
 use opm_core::manipulator as core;
 use opm_workspace::measure::Over;
-use opm_workspace::{Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Sections, Shard};
+use opm_workspace::{
+    Axis, Cancelled, ConditionLimit, Count, Grid, GridSet, Hits, Modes, Progress, Run, SetAxis,
+    SetError, Shard, Visits, default_grid,
+};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
+use std::ffi::CString;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
-use std::sync::Arc;
-
-/// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
-/// so that all have work to the end and little is lost with one.
-const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
+use std::sync::{Arc, OnceLock};
 
 /// Poses of a part at least: fewer are not worth the way to another process.
 const LEAST_PART: u64 = 1 << 15;
 
-/// What a sweep is of.
-const SECTIONS: [(Sections, &str); 3] =
-    [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
-
-/// A grid of poses, swept.
+/// A grid, swept: which of its poses are in reach, or the points of another kind of workspace.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
     of: Py<Manipulator>,
-    manipulator: Arc<core::Manipulator>,
-    grid: Grid,
-    modes: Modes,
-    mode: String,
-    threads: Option<NonZeroUsize>,
+    pub manipulator: Arc<core::Manipulator>,
+    pub grid: Grid,
+    pub modes: Modes,
+    asked: Asked,
+    pub threads: Option<NonZeroUsize>,
     count: Count,
+    tally: OnceLock<Arc<Vec<u64>>>,
+}
+
+/// What is asked of a grid.
+#[derive(Clone, Debug)]
+struct Asked {
+    kind: Kind,
+    mode: String,
+    most: Option<f64>,
+    length: f64,
 }
 
 /// Values of one coordinate: a number, or lowest, highest and how many.
@@ -60,17 +69,20 @@ enum CloudAxes {
 type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 
 /// Sweeps a grid: `sweep(m, x=(min, max, count), y=value)`. A coordinate that is not given stays at
-/// home.
+/// home; where none is, the grid is fitted to the workspace.
 #[pyfunction]
 #[pyo3(signature = (
-    manipulator, /, *, mode = "home", section = "whole", threads = None, executor = None, shards = None, **axes
+    manipulator, /, *, kind = "grid", mode = "home", max_condition = None, length = None, threads = None,
+    executor = None, shards = None, **axes
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn sweep(
     py: Python<'_>,
     manipulator: Py<Manipulator>,
+    kind: &str,
     mode: &str,
-    section: &str,
+    max_condition: Option<f64>,
+    length: Option<f64>,
     threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
     shards: Option<NonZeroU64>,
@@ -85,48 +97,84 @@ pub fn sweep(
                 range.repr()?
             ))),
         });
-    let axes = axes.collect::<PyResult<_>>()?;
-    let sweep = Sweep::planned(manipulator, axes, [mode, section], threads)?;
+    let mut axes = axes.collect::<PyResult<Vec<_>>>()?;
+    let inner = &manipulator.get().inner;
+    let asked = Asked {
+        kind: named(kind)?,
+        mode: mode.to_owned(),
+        most: max_condition.map(condition_number).transpose()?,
+        length: characteristic_length(inner, length)?,
+    };
     let parts = Parts::new(executor, shards)?;
-    let count = match &parts {
-        None => sweep.counted(py, Shard::WHOLE)?,
+    if axes.is_empty() {
+        axes = fitted(py, inner, asked.kind, modes(manipulator.get(), mode)?, threads)?;
+    }
+    let planned = Sweep::planned(manipulator, axes, asked, threads)?;
+    let plan = Bound::new(py, planned)?;
+    let mut count = match &parts {
+        None => plan.get().counted(py, Shard::WHOLE)?,
         Some(parts) => {
-            let plan = Py::new(py, sweep.clone(py))?;
-            let counted: Vec<Counted> = parts.run(plan.bind(py), "_count")?.extract()?;
-            let nothing = Count::nothing(&sweep.manipulator);
+            let counted: Vec<Counted> = spread(&plan, parts, "_count", None)?.extract()?;
+            let nothing = Count::nothing(&plan.get().manipulator);
             counted.into_iter().fold(nothing, |all, part| all.merge(&count_of(part)))
         }
     };
-    Ok(Sweep { count, ..sweep })
+    if let Some(least) = plan.get().least() {
+        let tally = Sweep::tally(&plan, parts.as_ref())?;
+        count.poses = tally.len() as u64;
+        count.reachable = tally.iter().filter(|&&visits| visits >= least).count() as u64;
+    }
+    Ok(Sweep { count, ..plan.get().clone(py) })
 }
 
-/// Other processes that do the work, and into how many parts it is divided.
-struct Parts<'py> {
-    executor: Bound<'py, PyAny>,
-    shards: NonZeroU64,
+/// The axes of a grid that suits the workspace, with a warning where that has no end.
+fn fitted(
+    py: Python<'_>,
+    manipulator: &core::Manipulator,
+    kind: Kind,
+    modes: Modes,
+    threads: Option<NonZeroUsize>,
+) -> PyResult<Vec<Axis>> {
+    let progress = Progress::default();
+    let find = || default_grid(manipulator, modes, &progress);
+    let found = interrupt::run(py, threads, find, || progress.cancel())?;
+    let (grid, extents) = found.map_err(|error| failed(&error))?;
+    let grid = kind.fit(manipulator, grid);
+    for extent in extents.iter().filter(|extent| extent.unbounded && kind.asks(extent, &grid)) {
+        let name = extent.name;
+        let message = format!(
+            "the workspace goes on beyond this grid along {name}; limit a joint, or give {name}"
+        );
+        let category = py.get_type::<PyUserWarning>();
+        PyErr::warn(py, &category, &CString::new(message)?, 1)?;
+    }
+    Ok(grid.axes().to_vec())
 }
 
-impl<'py> Parts<'py> {
-    fn new(
-        executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
-    ) -> PyResult<Option<Self>> {
-        match (executor, shards) {
-            (Some(executor), shards) => {
-                Ok(Some(Self { executor, shards: shards.unwrap_or(SHARDS) }))
-            }
-            (None, None) => Ok(None),
-            (None, Some(_)) => Err(wrong("shards are given, but no executor that they are for")),
-        }
-    }
+/// The kind of this name.
+fn named(word: &str) -> PyResult<Kind> {
+    let words = || Kind::all().iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+    Kind::named(word).ok_or_else(|| wrong(format!("kind is {word:?}, expected one of {}", words())))
+}
 
-    /// What `task` of the sweep gives for each part, in their order.
-    fn run(&self, plan: &Bound<'py, Sweep>, task: &str) -> PyResult<Bound<'py, PyAny>> {
-        let blocks = plan.get().grid.poses().div_ceil(LEAST_PART);
-        let shards = self.shards.get().min(blocks.max(1));
-        let module = plan.py().import("opm_kinematics._executor")?;
-        module.call_method1("run", (&self.executor, plan, task, shards))
+/// A limit on condition numbers, checked.
+fn condition_number(most: f64) -> PyResult<f64> {
+    match most {
+        1.0.. if most.is_finite() => Ok(most),
+        _ => Err(wrong(format!("max_condition is {most:?}, expected a number of at least 1"))),
     }
+}
+
+/// What `task` of a sweep gives for each of its parts, in their order; or what they `fold` to.
+pub fn spread<'py>(
+    plan: &Bound<'py, Sweep>,
+    parts: &Parts<'py>,
+    task: &str,
+    fold: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let count = parts.count(plan.get().grid.poses(), LEAST_PART);
+    let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
+    parts.session(plan.py(), |workers| workers.call_method1("run", (plan, task, numbers, fold)))
 }
 
 fn count_of((poses, reachable, imaginary): Counted) -> Count {
@@ -135,20 +183,37 @@ fn count_of((poses, reachable, imaginary): Counted) -> Count {
 
 #[pymethods]
 impl Sweep {
-    /// What was swept: `"whole"`, `"upper"` or `"lower"`.
+    /// What the workspace is of: `"grid"`, `"dexterous"`, ...
     #[getter]
-    fn section(&self) -> &'static str {
-        let word = SECTIONS.iter().find(|(sections, _)| *sections == self.grid.sections());
-        word.map_or("", |(_, word)| word)
+    fn kind(&self) -> String {
+        self.asked.kind.name()
     }
 
-    /// Poses in reach and within all limits.
+    /// The largest condition number at which a pose counts, if there is one.
+    #[getter]
+    fn max_condition(&self) -> Option<f64> {
+        self.asked.most
+    }
+
+    /// The characteristic length of condition numbers, metres.
+    #[getter]
+    pub fn length(&self) -> f64 {
+        self.asked.length
+    }
+
+    /// Orientations of the grid: how many values the upper section's coordinates have together.
+    #[getter]
+    fn orientations(&self) -> u64 {
+        self.grid.slices()
+    }
+
+    /// Points of the workspace: poses in reach and within all limits.
     #[getter]
     fn count(&self) -> u64 {
         self.count.reachable
     }
 
-    /// Poses of the grid.
+    /// Points of the grid: poses, places or orientations.
     #[getter]
     fn poses(&self) -> u64 {
         self.count.poses
@@ -171,15 +236,16 @@ impl Sweep {
         Ok(dict)
     }
 
-    /// The values of every coordinate, by name, in the order of the mask's axes.
+    /// The values of every coordinate of the points, by name, in the order of the mask's axes.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = PyDict::new(py);
-        for axis in self.grid.axes() {
-            let values: Vec<f64> = (0..axis.count).map(|i| axis.value(i)).collect();
-            dict.set_item(&axis.name, values.into_pyarray(py))?;
-        }
-        Ok(dict)
+        values(py, &self.grid.axes()[self.span()])
+    }
+
+    /// The values of every coordinate of the grid, by name.
+    #[getter]
+    fn grid<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        values(py, self.grid.axes())
     }
 
     /// `m` or `rad` of every coordinate, by name.
@@ -188,86 +254,104 @@ impl Sweep {
         self.grid.coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
-    /// Which poses are reachable: an array of bools with an axis a task coordinate.
+    /// Which points are in: an array of bools with an axis a coordinate.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn mask<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
         shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (py, this) = (slf.py(), slf.get());
-        let mask = match Parts::new(executor, shards)? {
-            None => this.masked(py, Shard::WHOLE)?,
-            Some(parts) => {
-                let parts = parts.run(slf, "_mask")?;
-                py.import("numpy")?.call_method1("concatenate", (parts,))?.cast_into()?
-            }
-        };
-        // The first coordinate is the fastest: an array in Fortran's order, which numpy sees as such.
-        let shape: Vec<usize> = this.grid.axes().iter().map(|axis| axis.count as usize).collect();
-        Ok(mask.reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?.into_any())
+        let mask = Self::flat_mask(slf, Parts::new(executor, shards)?.as_ref())?;
+        slf.get().shaped(&mask)
     }
 
-    /// The reachable poses, `(count, d)`, in the order of the grid, the first coordinate fastest.
+    /// The points, `(count, d)`, in the order of the grid, the first coordinate fastest.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn points<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
         shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (py, this) = (slf.py(), slf.get());
-        match Parts::new(executor, shards)? {
-            None => this.pointed(py, Shard::WHOLE, this.count.reachable).map(Bound::into_any),
-            Some(parts) => {
-                let parts = parts.run(slf, "_points")?;
+        let (py, this, parts) = (slf.py(), slf.get(), Parts::new(executor, shards)?);
+        match (this.least(), parts) {
+            (Some(_), parts) => {
+                let set = Self::set(slf, parts.as_ref())?;
+                let points: Vec<f64> =
+                    py.detach(|| set.numbers().flat_map(|number| set.point(number)).collect());
+                let shape = [set.count() as usize, set.axes().len()];
+                Ok(points.into_pyarray(py).reshape(shape)?.into_any())
+            }
+            (None, None) => {
+                this.pointed(py, Shard::WHOLE, this.count.reachable).map(Bound::into_any)
+            }
+            (None, Some(parts)) => {
+                let parts = spread(slf, &parts, "_points", None)?;
                 py.import("numpy")?.call_method1("concatenate", (parts,))
             }
         }
     }
 
+    /// In how many orientations each place is reached.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn visits<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let this = slf.get();
+        if !matches!(this.asked.kind, Kind::Reachable | Kind::Dexterous) {
+            let kind = this.kind();
+            return Err(wrong(format!("visits are of kind reachable or dexterous, not of {kind}")));
+        }
+        let tally = Self::tally(slf, Parts::new(executor, shards)?.as_ref())?;
+        this.shaped(&PyArray1::from_slice(slf.py(), &tally))
+    }
+
     /// How much of the box that the grid covers is in reach, between guaranteed bounds.
-    #[pyo3(signature = (*, tolerance = None, budget = None))]
+    #[pyo3(signature = (*, tolerance = None, budget = None, executor = None, shards = None))]
     fn measure(
         &self,
         py: Python<'_>,
         tolerance: Option<f64>,
         budget: Option<u64>,
+        executor: Option<Bound<'_, PyAny>>,
+        shards: Option<NonZeroU64>,
     ) -> PyResult<Measure> {
+        if self.least().is_some() {
+            let (kind, points) = (self.kind(), self.asked.kind.points());
+            return Err(wrong(format!(
+                "a measure is of poses or of one section, not of {kind} {points}"
+            )));
+        }
+        if self.asked.most.is_some() {
+            return Err(wrong("a measure knows no max_condition: sweep without it"));
+        }
         let axes = self.grid.axes().iter();
         let over: Vec<_> = axes.map(|a| Over::new(a.name.as_str(), a.min, a.max)).collect();
-        let asked = (self.grid.sections(), self.modes);
-        measured(py, &self.manipulator, asked, &over, goal(tolerance, budget)?, self.threads)
+        let (of, sections) = (self.of.clone_ref(py), self.grid.sections());
+        let asked = measure::Asked { of, sections, modes: self.modes, threads: self.threads };
+        asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)
     }
 
     /// Pickling: with the manipulator, not with what the grid holds.
-    #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(
-        Bound<'py, PyAny>,
-        (Py<Manipulator>, Vec<(String, f64, f64, u64)>, [String; 2], Option<NonZeroUsize>, Counted),
-    )> {
+    ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
         let this = slf.get();
         let axes = this.grid.axes().iter().map(|a| (a.name.clone(), a.min, a.max, a.count));
         let Count { poses, reachable, imaginary } = this.count.clone();
-        let count = (poses, reachable, imaginary);
+        let Asked { kind, mode, most, length } = this.asked.clone();
+        let spec = (axes.collect(), kind.name(), mode, most, length, this.threads);
         let of = this.of.clone_ref(slf.py());
-        let words = [this.mode.clone(), this.section().to_owned()];
-        let spec = (of, axes.collect(), words, this.threads, count);
-        Ok((slf.get_type().getattr("_restored")?, spec))
+        Ok((slf.get_type().getattr("_restored")?, (of, spec, (poses, reachable, imaginary))))
     }
 
     #[staticmethod]
-    fn _restored(
-        manipulator: Py<Manipulator>,
-        axes: Vec<(String, f64, f64, u64)>,
-        words: [String; 2],
-        threads: Option<NonZeroUsize>,
-        count: Counted,
-    ) -> PyResult<Self> {
+    fn _restored(manipulator: Py<Manipulator>, spec: Spec, count: Counted) -> PyResult<Self> {
+        let (axes, kind, mode, most, length, threads) = spec;
         let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
-        let words = words.each_ref().map(String::as_str);
-        let planned = Self::planned(manipulator, axes.collect(), words, threads)?;
+        let asked = Asked { kind: named(&kind)?, mode, most, length };
+        let planned = Self::planned(manipulator, axes.collect(), asked, threads)?;
         Ok(Self { count: count_of(count), ..planned })
     }
 
@@ -297,6 +381,16 @@ impl Sweep {
         self.pointed(py, shard(number, of)?, 0)
     }
 
+    /// Of every point of a kind that is not of poses, how often one part reaches it.
+    fn _tally<'py>(
+        &self,
+        py: Python<'py>,
+        number: u64,
+        of: u64,
+    ) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        Ok(self.tallied(py, shard(number, of)?)?.into_pyarray(py))
+    }
+
     /// Records the points, as `opm workspace -o` does: the same bytes.
     #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
     fn write(
@@ -312,8 +406,11 @@ impl Sweep {
         let swept = Swept {
             mechanism: Attached { name: &name, text: of.text() },
             manipulator: &self.manipulator,
+            kind: self.asked.kind,
             grid: &self.grid,
             modes: self.modes,
+            limit: self.limit(),
+            length: self.asked.length,
             found: &self.count,
         };
         let axes = match axes {
@@ -351,29 +448,38 @@ impl Sweep {
     /// The working mode, `"any"` or `"home"`, as it was asked for.
     #[getter]
     fn mode(&self) -> &str {
-        &self.mode
+        &self.asked.mode
     }
 
     fn __repr__(&self) -> String {
         let axes: Vec<_> =
             self.grid.axes().iter().map(|a| format!("{} {}", a.name, a.count)).collect();
+        let Asked { kind, mode, most, .. } = &self.asked;
+        let limit = most.map_or(String::new(), |most| format!(", condition at most {most}"));
         format!(
-            "<Sweep of {}: {} of {} poses reachable in mode {:?}, grid {}>",
+            "<Sweep of {}: {} of {} {} {} in mode {mode:?}{limit}, grid {}>",
             self.manipulator.mechanism().name,
             self.count.reachable,
             self.count.poses,
-            self.mode,
+            kind.points(),
+            kind.reached(),
             axes.join(" x ")
         )
     }
 }
 
-/// The section of this name, or both.
-pub fn sections(word: &str) -> PyResult<Sections> {
-    let known = SECTIONS.iter().find(|(_, known)| *known == word);
-    let words = || SECTIONS.map(|(_, word)| word).join(", ");
-    let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
-    known.map(|(sections, _)| *sections).ok_or_else(told)
+/// A sweep that is still to be done, as it crosses processes: axes, kind, mode, largest condition number,
+/// characteristic length, threads.
+type Spec = (Vec<(String, f64, f64, u64)>, String, String, Option<f64>, f64, Option<NonZeroUsize>);
+
+/// The values of axes, by name.
+fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for axis in axes {
+        let values: Vec<f64> = (0..axis.count).map(|i| axis.value(i)).collect();
+        dict.set_item(&axis.name, values.into_pyarray(py))?;
+    }
+    Ok(dict)
 }
 
 /// The working modes that count: one, or any.
@@ -384,23 +490,26 @@ pub fn modes(manipulator: &Manipulator, mode: &str) -> PyResult<Modes> {
     }
 }
 
-fn shard(number: u64, of: u64) -> PyResult<Shard> {
+pub fn shard(number: u64, of: u64) -> PyResult<Shard> {
     Shard::new(number, of).map_err(|error| failed(&error))
 }
 
 impl Sweep {
-    /// A sweep that is still to be done, in a mode and of a section.
+    /// A sweep that is still to be done.
     fn planned(
         of: Py<Manipulator>,
         axes: Vec<Axis>,
-        [mode, section]: [&str; 2],
+        asked: Asked,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Self> {
         let manipulator = Arc::clone(&of.get().inner);
-        let grid = Grid::of(sections(section)?, &manipulator, axes).map_err(|e| failed(&e))?;
-        let modes = modes(of.get(), mode)?;
-        let count = Count::nothing(&manipulator);
-        Ok(Self { of, manipulator, grid, modes, mode: mode.to_owned(), threads, count })
+        let grid = Grid::of(asked.kind.sections(), &manipulator, axes).map_err(|e| failed(&e))?;
+        let modes = modes(of.get(), &asked.mode)?;
+        let (count, tally) = (Count::nothing(&manipulator), OnceLock::new());
+        let planned = Self { of, manipulator, grid, modes, asked, threads, count, tally };
+        let kind = planned.asked.kind;
+        check(kind, &planned.manipulator, &planned.grid, modes, planned.limit()).map_err(wrong)?;
+        Ok(planned)
     }
 
     fn clone(&self, py: Python<'_>) -> Self {
@@ -408,14 +517,38 @@ impl Sweep {
             of: self.of.clone_ref(py),
             manipulator: Arc::clone(&self.manipulator),
             grid: self.grid.clone(),
-            mode: self.mode.clone(),
+            asked: self.asked.clone(),
             count: self.count.clone(),
+            tally: self.tally.clone(),
             ..*self
         }
     }
 
-    fn swept(&self, shard: Shard) -> opm_workspace::Sweep<'_> {
-        opm_workspace::Sweep::new(&self.manipulator, &self.grid, self.modes).shard(shard)
+    pub fn limit(&self) -> Option<ConditionLimit> {
+        self.asked.most.map(|most| ConditionLimit { most, length: self.asked.length })
+    }
+
+    pub fn asked_kind(&self) -> Kind {
+        self.asked.kind
+    }
+
+    /// The numbers of the axes that its points have.
+    fn span(&self) -> std::ops::Range<usize> {
+        self.asked.kind.axes(&self.grid)
+    }
+
+    /// How often a point has to be reached to be in: of a kind whose points are no points of the grid.
+    fn least(&self) -> Option<u64> {
+        match self.asked.kind {
+            Kind::Reachable | Kind::Imaginary => Some(1),
+            Kind::Dexterous => Some(self.grid.slices()),
+            _ => None,
+        }
+    }
+
+    pub fn swept(&self, shard: Shard) -> opm_workspace::Sweep<'_> {
+        let sweep = opm_workspace::Sweep::new(&self.manipulator, &self.grid, self.modes);
+        sweep.limited(self.limit()).shard(shard)
     }
 
     fn counted(&self, py: Python<'_>, shard: Shard) -> PyResult<Count> {
@@ -426,12 +559,103 @@ impl Sweep {
         count.map_err(|error| failed(&error))
     }
 
+    /// Of every point of a kind that has [`least`](Self::least), how often a part of the grid reaches it.
+    fn tallied(&self, py: Python<'_>, shard: Shard) -> PyResult<Vec<u64>> {
+        let (progress, sweep) = (Progress::default(), self.swept(shard));
+        let work = || match self.asked.kind {
+            Kind::Imaginary => {
+                let set = GridSet::slices(&sweep, &progress)?;
+                let mut tally = vec![0; set.points() as usize];
+                set.numbers().for_each(|number| tally[number as usize] = 1);
+                Ok(tally)
+            }
+            _ => Ok(Visits::new(&sweep, &progress)?.counts().to_vec()),
+        };
+        let done = interrupt::run(py, self.threads, work, || progress.cancel())?;
+        done.map_err(|error: SetError| failed(&error))
+    }
+
+    /// The same of the whole grid, which is kept.
+    fn tally<'py>(slf: &Bound<'py, Self>, parts: Option<&Parts<'py>>) -> PyResult<Arc<Vec<u64>>> {
+        let (py, this) = (slf.py(), slf.get());
+        if let Some(known) = this.tally.get() {
+            return Ok(Arc::clone(known));
+        }
+        let tally = match parts {
+            None => this.tallied(py, Shard::WHOLE)?,
+            Some(parts) => {
+                // Parts add up: in place, so that there is never more than one sum.
+                let add = py.import("operator")?.getattr("iadd")?;
+                let sum = spread(slf, parts, "_tally", Some(add))?;
+                sum.cast_into::<PyArray1<u64>>()?.to_vec()?
+            }
+        };
+        Ok(Arc::clone(this.tally.get_or_init(|| Arc::new(tally))))
+    }
+
+    /// Of every point, whether it is in.
+    pub fn flat_mask<'py>(
+        slf: &Bound<'py, Self>,
+        parts: Option<&Parts<'py>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let (py, this) = (slf.py(), slf.get());
+        match (this.least(), parts) {
+            (Some(least), parts) => {
+                let tally = Self::tally(slf, parts)?;
+                Ok(PyArray1::from_iter(py, tally.iter().map(|&visits| visits >= least)))
+            }
+            (None, None) => this.masked(py, Shard::WHOLE),
+            (None, Some(parts)) => {
+                let parts = spread(slf, parts, "_mask", None)?;
+                Ok(py.import("numpy")?.call_method1("concatenate", (parts,))?.cast_into()?)
+            }
+        }
+    }
+
+    /// Its points.
+    pub fn set<'py>(slf: &Bound<'py, Self>, parts: Option<&Parts<'py>>) -> PyResult<GridSet> {
+        let (py, this) = (slf.py(), slf.get());
+        let axes = || {
+            let axis = |i: usize| SetAxis {
+                axis: this.grid.axes()[i].clone(),
+                circle: this.grid.is_circle(i),
+            };
+            this.span().map(axis).collect()
+        };
+        let set = match (this.least(), parts) {
+            (Some(least), parts) => {
+                let tally = Self::tally(slf, parts)?;
+                py.detach(|| GridSet::of(axes(), |number| tally[number as usize] >= least))
+            }
+            (None, None) => {
+                let (progress, sweep) = (Progress::default(), this.swept(Shard::WHOLE));
+                let work = || GridSet::reached(&sweep, &progress);
+                interrupt::run(py, this.threads, work, || progress.cancel())?
+            }
+            (None, Some(parts)) => {
+                let mask = Self::flat_mask(slf, Some(parts))?.readonly();
+                let mask = mask.as_slice()?;
+                py.detach(|| GridSet::of(axes(), |number| mask[number as usize]))
+            }
+        };
+        set.map_err(|error| failed(&error))
+    }
+
+    /// Values of all points in the shape of the grid.
+    pub fn shaped<'py, T: numpy::Element>(
+        &self,
+        flat: &Bound<'py, PyArray1<T>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let axes = &self.grid.axes()[self.span()];
+        let shape: Vec<usize> = axes.iter().map(|axis| axis.count as usize).collect();
+        // The first coordinate is the fastest: an array in Fortran's order, which numpy sees as such.
+        Ok(flat.reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?.into_any())
+    }
+
     fn masked<'py>(&self, py: Python<'py>, shard: Shard) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let sweep = self.swept(shard);
         let poses = usize::try_from(sweep.poses()).map_err(|error| failed(&error))?;
-        let before = (1..shard.number()).map(|number| Shard::new(number, shard.count()));
-        let before = before.map(|shard| shard.map_or(0, |shard| self.swept(shard).poses()));
-        let before: u64 = before.sum();
+        let before = sweep.range().start;
         let mut mask = Vec::new();
         let short = |_| no_memory(format_args!("a mask of {poses} poses"));
         mask.try_reserve_exact(poses).map_err(short)?;
@@ -476,7 +700,7 @@ impl Sweep {
     }
 
     /// Sweeps again, for the points: what `make` keeps of the hits goes to `take`, in their order.
-    fn visit<T: Default + Send>(
+    pub fn visit<T: Default + Send>(
         &self,
         py: Python<'_>,
         shard: Shard,

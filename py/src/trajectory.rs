@@ -1,6 +1,7 @@
 //! Motions of the platform as the joints follow them.
 
 use crate::error::{failed, wrong};
+use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::rows::no_memory;
@@ -344,6 +345,10 @@ impl Trajectory {
             (&self.imaginary_names[..], self.imaginary.bind(py).as_any()),
         ];
         column(tables, name)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "trajectory")
     }
 
     fn __repr__(&self) -> String {

@@ -1,12 +1,13 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
 use crate::error::wrong;
+use crate::html;
 use crate::manipulator::Manipulator;
 use crate::rows::{Rows, Tables};
 use numpy::{
     AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayLike2, PyArrayMethods,
 };
-use opm_core::manipulator::{Mode, Solution};
+use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
@@ -51,6 +52,10 @@ impl Singularity {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (poses, [reachable]) = counted(py, [&self.reachable])?;
         Ok(format!("<Singularity of {poses} poses: {reachable} reachable>"))
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "singularity")
     }
 }
 
@@ -210,13 +215,7 @@ impl Manipulator {
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Singularity> {
         let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
-        let length = length.unwrap_or_else(|| self.inner.characteristic_length());
-        // Its square must be a number.
-        if !(1e-75..=1e75).contains(&length) {
-            return Err(wrong(format!(
-                "length is {length:?}, expected a positive one, 1e-75 to 1e75"
-            )));
-        }
+        let length = characteristic_length(&self.inner, length)?;
         let mut tables = Tables::fill(
             py,
             poses.count,
@@ -265,6 +264,16 @@ impl Manipulator {
             reachable: reachable.into_pyarray(py).unbind(),
         })
     }
+}
+
+/// The length that is given, checked, or the mechanism's own.
+pub fn characteristic_length(inner: &core::Manipulator, given: Option<f64>) -> PyResult<f64> {
+    let length = given.unwrap_or_else(|| inner.characteristic_length());
+    // Its square must be a number.
+    if !(1e-75..=1e75).contains(&length) {
+        return Err(wrong(format!("length is {length:?}, expected a positive one, 1e-75 to 1e75")));
+    }
+    Ok(length)
 }
 
 impl Manipulator {

@@ -17,8 +17,8 @@ def manipulator():
 
 def test_the_upper_section_alone_says_what_it_asks_of_the_imaginary_joints(manipulator):
     """The ranges of +-20 degrees that were computed from Eq. 3 (errata)."""
-    swept = opm.sweep(manipulator, section="upper", **{name: (-TILT, TILT, 41) for name in ("zeta", "xi", "psi")})
-    assert swept.section == "upper" and swept.fraction == 1.0 and list(swept.axes) == ["zeta", "xi", "psi"]
+    swept = opm.sweep(manipulator, kind="upper", **{name: (-TILT, TILT, 41) for name in ("zeta", "xi", "psi")})
+    assert swept.kind == "upper" and swept.fraction == 1.0 and list(swept.axes) == ["zeta", "xi", "psi"]
     expected = {"theta11": (-0.710, 0.914), "theta12": (1.338, 3.090), "theta13": (3.614, 5.247)}
     for name, ends in expected.items():
         np.testing.assert_allclose(swept.imaginary_range[name], ends, atol=2e-3)
@@ -27,7 +27,7 @@ def test_the_upper_section_alone_says_what_it_asks_of_the_imaginary_joints(manip
 def test_the_lower_section_alone_is_the_planar_legs(manipulator):
     """|Q . e(alpha)| <= a1 and |S| <= 0.3 of three sliders, and the arm (Eqs. 10-16)."""
     thetas = {"theta11": (-0.7, 0.9, 5), "theta12": (1.3, 3.1, 4), "theta13": 4.3}
-    swept = opm.sweep(manipulator, section="lower", **PLACES, **thetas)
+    swept = opm.sweep(manipulator, kind="lower", **PLACES, **thetas)
     x, y, *theta = np.meshgrid(*swept.axes.values(), indexing="ij")
     reach = np.hypot(x, y - 0.075)
     inside = reach <= 0.2

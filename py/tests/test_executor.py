@@ -3,6 +3,7 @@
 import os
 import pickle
 import signal
+import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from multiprocessing import get_context
@@ -99,7 +100,7 @@ class Doomed(ProcessPoolExecutor):
 
     def submit(self, fn, /, *args, **kwargs):
         future = super().submit(fn, *args, **kwargs)
-        if len(args) > 2 and args[2] == 20:
+        if args[2][0] == 20:
             os.kill(next(iter(self._processes)), signal.SIGKILL)
         return future
 
@@ -132,6 +133,28 @@ class Slow:
         return self.sweep._count(number, of)
 
 
+class Killing(Executor):
+    """A cluster's; it kills a worker when so many parts have come back."""
+
+    def __init__(self, client, after):
+        pids = client.run(os.getpid)
+        assert os.getpid() not in pids.values() and len(pids) == 2
+        self.inner, self.victim = client.get_executor(pure=False), next(iter(pids.values()))
+        self.after, self.submitted, self.returned, self.killed = after, 0, 0, None
+
+    def submit(self, fn, /, *args, **kwargs):
+        future = self.inner.submit(fn, *args, **kwargs)
+        self.submitted += 1
+        future.add_done_callback(self.came)
+        return future
+
+    def came(self, _):
+        self.returned += 1
+        if self.returned == self.after:
+            self.killed = self.victim
+            os.kill(self.victim, signal.SIGKILL)
+
+
 def test_a_dask_cluster_of_which_a_worker_is_killed(alone, tmp_path: Path):
     distributed = pytest.importorskip("distributed")
     from opm_kinematics._executor import run
@@ -141,32 +164,92 @@ def test_a_dask_cluster_of_which_a_worker_is_killed(alone, tmp_path: Path):
         distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
-        pids = client.run(os.getpid)
-        assert os.getpid() not in pids.values() and len(pids) == 2
-
-        class Killing(Executor):
-            """The cluster's; it kills a worker when the first parts have come back."""
-
-            def __init__(self):
-                self.inner, self.returned, self.killed = client.get_executor(pure=False), 0, None
-
-            def submit(self, fn, /, *args, **kwargs):
-                future = self.inner.submit(fn, *args, **kwargs)
-                future.add_done_callback(self.came)
-                return future
-
-            def came(self, _):
-                self.returned += 1
-                if self.returned == 4:
-                    self.killed = next(iter(pids.values()))
-                    os.kill(self.killed, signal.SIGKILL)
-
-        client.register_plugin  # noqa: B018
-        executor = Killing()
-        counted = run(executor, Slow(alone, tmp_path), "_count", parts)
+        executor = Killing(client, after=4)
+        counted = run(executor, Slow(alone, tmp_path), "_count", [(number, parts) for number in range(1, parts + 1)])
     here = [alone._count(number, parts) for number in range(1, parts + 1)]
     assert counted == here and sum(part[1] for part in counted) == alone.count
     began = [name.name.split("-") for name in tmp_path.iterdir()]
     # Both worked; what the killed one had begun was begun again by another process.
     assert executor.killed in {int(pid) for _, pid in began} and len({pid for _, pid in began}) >= 2
     assert len(began) > parts and {int(number) for number, _ in began} == set(range(1, parts + 1))
+
+
+# Only large rounds go to an executor: the last of these are.
+BOXES = {"over": {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "zeta": (-0.3, 0.3), "xi": (0.0, 0.3)}, "tolerance": 0.0, "budget": 60_000}
+
+
+def measures(found):
+    return found.lower, found.upper, found.boxes, found.stop, found.over
+
+
+@pytest.fixture(scope="module")
+def measured(manipulator):
+    found = opm.measure(manipulator, threads=1, **BOXES)
+    assert found.stop == "budget" and 0 < found.lower < found.upper < found.whole
+    return found
+
+
+def test_measures_ask_executors_for_large_rounds(manipulator, measured):
+    signs = [KilledWorker("gone"), OSError("reset")]
+    here = Here(signs, every=2)
+    found = opm.measure(manipulator, executor=here, **BOXES)
+    assert measures(found) == measures(measured) and here.calls >= 4 and not here.signs
+    # Half of the budget, and the rounds are not worth anybody's while; the same when nobody may have two.
+    small = BOXES | {"budget": 10_000}
+    for more, boxes in [({}, small), ({"shards": 1}, BOXES)]:
+        nobody = Here([])
+        found = opm.measure(manipulator, executor=nobody, **boxes, **more)
+        assert measures(found) == measures(opm.measure(manipulator, **boxes)) and nobody.calls == 0
+
+
+def test_measures_of_every_section_and_mode_on_executors(manipulator):
+    theta = {name: (-0.5, 0.5) for name in manipulator.imaginary}
+    for options in [
+        {"section": "upper"},
+        {"section": "lower", "over": {"x": (-0.2, 0.2), "y": (-0.2, 0.2), **theta}},
+        {"mode": "any", "over": {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "zeta": (-0.3, 0.3), "xi": (0.0, 0.3)}},
+        {"mode": "-+ ++ ++ +", "over": {"x": (-0.4, 0.4), "y": (-0.4, 0.4), "zeta": (-0.3, 0.3), "xi": (0.0, 0.3)}},
+    ]:
+        here = Here([])
+        found = opm.measure(manipulator, executor=here, tolerance=0.0, budget=50_000, **options)
+        assert measures(found) == measures(opm.measure(manipulator, tolerance=0.0, budget=50_000, **options))
+        assert here.calls > 0 and found.upper > 0
+
+
+def test_measures_by_process_pools(manipulator, measured):
+    made = []
+
+    def make():
+        made.append(ProcessPoolExecutor(2, mp_context=get_context("spawn")))
+        return made[-1]
+
+    assert measures(opm.measure(manipulator, executor=make, threads=1, **BOXES)) == measures(measured)
+    # One pool for all rounds.
+    assert len(made) == 1
+    over = {name: (low, high, 2) for name, (low, high) in BOXES["over"].items()}
+    swept = opm.sweep(manipulator, threads=1, **over)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        found = swept.measure(tolerance=0.0, budget=BOXES["budget"], executor=pool)
+    assert measures(found) == measures(measured)
+
+
+def test_measures_by_a_dask_cluster_of_which_a_worker_is_killed(manipulator, measured):
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        executor = Killing(client, after=1)
+        found = opm.measure(manipulator, executor=executor, threads=1, **BOXES)
+        assert measures(found) == measures(measured)
+        # It was in the middle: parts were submitted after the worker had gone.
+        assert executor.killed is not None and executor.submitted > 2
+        assert executor.killed not in client.run(os.getpid).values()
+
+
+def test_ctrl_c_stops_a_measure_by_an_executor(manipulator):
+    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        opm.measure(manipulator, executor=Here([]), **BOXES | {"budget": 2**40})
+    assert time.monotonic() - start < 30  # alone it would take years

@@ -113,3 +113,22 @@ def test_objects_are_immutable(manipulator):
     for thing, name in [(manipulator, "name"), (manipulator.decomposition, "lower"), (manipulator.inverse([manipulator.home]), "joints")]:
         with pytest.raises(AttributeError):
             setattr(thing, name, None)
+
+
+def test_notebooks_show_singularities_and_motions(manipulator):
+    poses = np.zeros((11, 5))
+    poses[:, 3], poses[10, 0] = np.linspace(0.2, 0.9, 11), 9.0
+    measured = manipulator.singularity(poses)
+    html = measured._repr_html_()
+    # A head, five rows from either end, and dots between.
+    assert html.count("<tr>") == 12 and html.count("<th>") == 8 and "11 poses: 10 reachable" in html
+    assert f"<td>{measured.lower_serial[9]:.6g}</td>" in html and f"<td>{measured.condition[0]:.6g}</td>" in html
+    assert "<tr><td>10</td>" + 7 * "<td>–</td>" + "</tr>" in html
+    followed = opm.trajectory(manipulator, [[0, 0, 0, 0.2, 0], [0.5, 0, 0, 0.2, 0], [0, 0, 0, 0.2, 0]], times=[0, 1, 2])
+    html = followed._repr_html_()
+    assert html.count("<tr>") == 1 + len(followed.joint_names) + len(followed.imaginary_names)
+    low, high = np.nanmin(followed["S1"]), np.nanmax(followed["S1"])
+    assert f"<td>S1</td><td>m</td><td>{low:.6g}</td><td>{high:.6g}</td>" in html
+    assert followed.violations and html.count("<li>") == len(followed.violations)
+    fine = opm.trajectory(manipulator, np.array([[0, 0, 0, 0.2, 0]] * 3), times=[0, 1, 2])._repr_html_()
+    assert "nothing that it cannot follow" in fine and "<li>" not in fine

@@ -62,6 +62,29 @@ def test_faces_look_outward(manipulator):
             assert normal @ (face.mean(axis=0) - middle) > -1e-15
 
 
+def test_kinds_are_drawn_with_their_boundary(manipulator):
+    tilt = (-0.2, 0.2, 3)
+    grid = {"x": (-0.25, 0.25, 41), "y": (-0.25, 0.25, 31), "zeta": tilt, "xi": tilt}
+    dexterous = opm.sweep(manipulator, kind="dexterous", **grid)
+    for x, y in (("x", "y"), ("y", "x")):
+        (panel,) = plot.workspace(dexterous, x, y)
+        image = panel.collections[0].get_array()
+        share = opm.sweep(manipulator, **grid).mask().mean(axis=(2, 3, 4))
+        np.testing.assert_allclose(image.reshape(share.T.shape if x == "x" else share.shape), share.T if x == "x" else share)
+        rings = dexterous.boundary()[0].rings
+        drawn = [line.get_xydata() for line in panel.lines]
+        assert len(drawn) == len(rings) > 0
+        for line, ring in zip(drawn, rings, strict=True):
+            np.testing.assert_array_equal(line, ring if x == "x" else ring[:, ::-1])
+    # A panel for each value of a third coordinate has the outline of that value; means have none.
+    level = opm.sweep(manipulator, kind="lower", x=(-0.4, 0.4, 31), y=(-0.4, 0.4, 27), theta11=(-0.5, 1.0, 4))
+    panels = plot.workspace(level, slices="theta11", values=[0.0, 1.0])
+    for panel, number in zip(panels, (1, 3), strict=True):
+        rings = level.boundary()[number].rings
+        assert [len(line.get_xydata()) for line in panel.lines] == [len(ring) for ring in rings]
+    assert not plot.workspace(level)[0].lines and not plot.workspace(opm.sweep(manipulator, **grid))[0].lines
+
+
 def test_slices_are_those_of_the_mask(manipulator):
     swept = opm.sweep(manipulator, x=(-0.2, 0.2, 21), y=(-0.15, 0.15, 16), xi=(0, 1.2, 5), zeta=(-0.3, 0.3, 3))
     panels = plot.workspace(swept, slices="xi", values=[0.0, 0.9])
@@ -104,9 +127,9 @@ def test_wrong_input_is_told(manipulator):
     swept = opm.sweep(manipulator, x=(-0.2, 0.2, 3))
     with pytest.raises(opm.OpmError, match="y is not given, and no coordinate is left"):
         plot.workspace(swept)
-    with pytest.raises(opm.OpmError, match="w: no such task coordinate"):
+    with pytest.raises(opm.OpmError, match="w: no such coordinate"):
         plot.workspace(swept, "x", "w")
-    with pytest.raises(opm.OpmError, match="expected different task coordinates"):
+    with pytest.raises(opm.OpmError, match="expected different coordinates"):
         plot.workspace(swept, "x", "y", slices="x")
     with pytest.raises(opm.OpmError, match="2 axes to draw on, expected 1"):
         plot.workspace(swept, "x", "y", ax=plt.subplots(1, 2)[1])

@@ -123,20 +123,6 @@ def test_a_recording_is_that_of_the_command_line(manipulator, tmp_path, ending, 
     assert (tmp_path / f"b.{ending}").read_bytes() == expected
 
 
-@pytest.mark.parametrize(
-    ("section", "grid"),
-    [("upper", {"zeta": (-1.0, 1.0, 9), "psi": (-1.0, 1.0, 9)}), ("lower", {"x": (-2.0, 2.0, 9), "y": (-1.0, 3.0, 9)})],
-)
-def test_a_recording_of_a_section_is_that_of_the_command_line(manipulator, tmp_path, section, grid):
-    swept = opm.sweep(manipulator, section=section, **grid)
-    assert swept.count > 0
-    expected = recorded_by_the_program(tmp_path / "a.mcap", grid, "--kind", section)
-    swept.write_mcap(tmp_path / "b.mcap")
-    assert (tmp_path / "b.mcap").read_bytes() == expected
-    with pytest.raises(opm.OpmError, match="section upper is written as MCAP|section lower is written as MCAP"):
-        swept.write(tmp_path / "b.npy")
-
-
 def test_wrong_recordings_are_told(manipulator, tmp_path):
     swept = opm.sweep(manipulator, **GRID)
     for options, message in [

@@ -21,11 +21,16 @@ pub struct ConditioningIndex {
     pub min: f64,
     /// The greatest, one at most.
     pub max: f64,
-    /// Of all, in parts of one.
-    sum: u128,
+    /// Of all, in units of 2⁻⁶⁰: a whole number, so that however a sweep is cut, the parts add up to it.
+    pub sum: u128,
 }
 
 impl ConditioningIndex {
+    /// Of no poses.
+    pub fn nothing(length: f64) -> Self {
+        Self { length, poses: 0, min: f64::INFINITY, max: 0.0, sum: 0 }
+    }
+
     /// Sweeps a grid of poses, a few microseconds a reachable pose. Where the sweep has a limit on the
     /// condition number, that has to be meant with the same length.
     ///
@@ -35,7 +40,7 @@ impl ConditioningIndex {
     /// # Errors
     /// When told to stop.
     pub fn new(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
-        let nothing = Self { length, poses: 0, min: f64::INFINITY, max: 0.0, sum: 0 };
+        let nothing = Self::nothing(length);
         let limit = sweep.limit().unwrap_or(ConditionLimit::none(length));
         let mut all = nothing;
         sweep.points(

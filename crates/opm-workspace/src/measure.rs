@@ -4,18 +4,19 @@
 //! The box that is asked for is cut into ever smaller ones, those first whose part in the workspace is
 //! least known ([`opm_core::enclosure`] says how much of each is, from both sides). Rounds of splits do
 //! not depend on when to stop: with a larger budget the same rounds go on, and bounds only come closer.
-//! Boxes are summed in a fixed order, so that nothing depends on the number of threads.
+//! Boxes are summed in a fixed order, so that nothing depends on the number of threads, nor on who is
+//! asked for which box: [`Search`] says what to ask, an [`Asker`] answers.
 
 mod cell;
 mod domain;
 mod ranges;
 
+pub use cell::{Bounds, Cell};
 pub use domain::{Domain, DomainAxis, DomainError, Over};
 pub use ranges::ranges;
 
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 use crate::sweep::Modes;
-use cell::{Bounds, Cell};
 use opm_core::manipulator::{Manipulator, Mode};
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -98,50 +99,50 @@ pub fn measure(
     goal: &Goal,
     progress: &Progress,
 ) -> Measured {
-    let mode = match modes {
-        Modes::One(mode) => Some(mode),
-        Modes::Any => None,
-    };
-    let mut search = Search::new(Asker { manipulator, domain, mode });
-    loop {
-        let found = search.found();
-        if found.meets(goal.tolerance) {
-            return found;
-        }
-        let stop = if search.open.is_empty() {
-            Stop::Exhausted
-        } else if search.boxes + 2 * search.next() as u64 > goal.budget {
-            Stop::Budget
-        } else if search.round(progress) {
-            continue;
-        } else {
-            Stop::Cancelled
-        };
-        return Measured { stop, ..found };
+    let asker = Asker::new(manipulator, domain, modes);
+    let mut search = Search::new(domain, *goal);
+    while let Some(cells) = search.round() {
+        let Ok(bounds) = asker.ask(cells, progress) else { break };
+        search.take(bounds);
     }
+    search.found()
 }
 
-/// What is asked of every box.
-#[derive(Clone, Copy)]
-struct Asker<'a> {
+/// Who knows of every box how much of it is in reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Asker<'a> {
     manipulator: &'a Manipulator,
     domain: &'a Domain,
     mode: Option<Mode>,
 }
 
-impl Asker<'_> {
+impl<'a> Asker<'a> {
+    /// For boxes of this domain of a manipulator.
+    pub fn new(manipulator: &'a Manipulator, domain: &'a Domain, modes: Modes) -> Self {
+        Self { manipulator, domain, mode: modes.one() }
+    }
+
+    /// What is known of some boxes, in their order. It depends on nothing but the box: whoever is asked, the
+    /// answer is the same to the bit.
+    ///
+    /// # Errors
+    /// When told to stop.
+    pub fn ask(&self, cells: &[Cell], progress: &Progress) -> Result<Vec<Bounds>, Cancelled> {
+        let of = |cell: &Cell| progress.advance(1).map(|()| self.bounds(cell));
+        cells.par_iter().map(of).collect()
+    }
+
     /// What is known of a cell: its bounds and how to split it.
-    fn ask(&self, cell: Cell) -> Bounds {
-        let sides = self.domain.sides(&cell);
+    fn bounds(&self, cell: &Cell) -> Bounds {
+        let sides = self.domain.sides(cell);
         let verdict = self.manipulator.enclose(self.domain.asked(), self.mode, &sides);
-        let size = self.domain.size(&cell);
+        let size = self.domain.size(cell);
         let split = verdict.split.and_then(|side| self.domain.wide_number(side));
         let open = verdict.lower < verdict.upper;
         Bounds {
             lower: size * verdict.lower,
             upper: size * verdict.upper,
             split: split.filter(|&axis| open && cell.splits(axis)),
-            cell,
         }
     }
 }
@@ -167,40 +168,109 @@ impl Sum {
     }
 }
 
-/// The boxes of a domain, as far as they are decided.
-struct Search<'a> {
-    asker: Asker<'a>,
+/// The boxes of a domain, as far as they are decided. It goes on in rounds, whose boxes may be asked for
+/// anywhere: of an [`Asker`], here or in other processes.
+#[derive(Clone, Debug)]
+pub struct Search<'a> {
+    domain: &'a Domain,
+    goal: Goal,
     /// Those that are worth splitting.
-    open: Vec<Bounds>,
+    open: Vec<(Cell, Bounds)>,
     /// Sums of the bounds of the others.
     settled: [Sum; 2],
     /// The best bounds so far.
     bounds: [f64; 2],
     boxes: u64,
+    /// The boxes of the round.
+    asked: Vec<Cell>,
+    /// Which open ones they are the halves of, two each; none of the first round, whose boxes are the
+    /// domain's.
+    halved: Vec<usize>,
+    stop: Option<Stop>,
 }
 
 impl<'a> Search<'a> {
-    fn new(asker: Asker<'a>) -> Self {
-        let whole = asker.domain.whole();
-        let mut search = Self {
-            asker,
+    /// Nothing is known of the domain yet.
+    pub fn new(domain: &'a Domain, goal: Goal) -> Self {
+        Self {
+            domain,
+            goal,
             open: Vec::new(),
             settled: [Sum::default(); 2],
-            bounds: [0.0, whole],
+            bounds: [0.0, domain.whole()],
             boxes: 0,
-        };
-        for cell in asker.domain.cells() {
-            search.boxes += 1;
-            search.open.push(asker.ask(cell));
+            asked: Vec::new(),
+            halved: Vec::new(),
+            stop: None,
         }
-        search.settle();
-        search
+    }
+
+    /// The boxes to ask for next, whose bounds it is to [take](Self::take); `None` where the search is over.
+    pub fn round(&mut self) -> Option<&[Cell]> {
+        self.halved.clear();
+        self.asked.clear();
+        if self.boxes == 0 {
+            self.asked.extend(self.domain.cells());
+            return Some(&self.asked);
+        }
+        let count = (self.open.len() / SHARE).max(ROUND).min(self.open.len());
+        self.stop = if self.found().meets(self.goal.tolerance) {
+            Some(Stop::Tolerance)
+        } else if count == 0 {
+            Some(Stop::Exhausted)
+        } else if self.boxes + 2 * count as u64 > self.goal.budget {
+            Some(Stop::Budget)
+        } else {
+            None
+        };
+        if self.stop.is_some() {
+            return None;
+        }
+        self.choose(count);
+        Some(&self.asked)
+    }
+
+    /// Chooses the boxes that leave the widest gap.
+    fn choose(&mut self, count: usize) {
+        let mut chosen: Vec<(u64, usize)> = (self.open.iter().enumerate())
+            // Of floats that are not negative, the bits are in their order.
+            .map(|(number, (_, bounds))| ((bounds.upper - bounds.lower).to_bits(), number))
+            .collect();
+        if count < chosen.len() {
+            chosen.select_nth_unstable_by_key(count, |&(gap, number)| (Reverse(gap), number));
+            chosen.truncate(count);
+        }
+        self.halved.extend(chosen.into_iter().map(|(_, number)| number));
+        self.halved.sort_unstable();
+        let halves = self.halved.iter().flat_map(|&number| {
+            let (cell, bounds) = self.open[number];
+            bounds.split.into_iter().flat_map(move |axis| cell.halves(axis))
+        });
+        self.asked.extend(halves);
+    }
+
+    /// Takes what is known of the boxes of the round, in their order.
+    ///
+    /// # Panics
+    /// Where there are more or fewer than these.
+    pub fn take(&mut self, bounds: Vec<Bounds>) {
+        assert_eq!(bounds.len(), self.asked.len(), "bounds for every box of the round");
+        self.boxes += bounds.len() as u64;
+        let mut known = self.asked.drain(..).zip(bounds);
+        for number in self.halved.drain(..) {
+            if let (Some(first), Some(second)) = (known.next(), known.next()) {
+                self.open[number] = first;
+                self.open.push(second);
+            }
+        }
+        self.open.extend(known);
+        self.settle();
     }
 
     /// Takes those boxes away that no split makes better known, and sums up.
     fn settle(&mut self) {
         let settled = &mut self.settled;
-        self.open.retain(|bounds| {
+        self.open.retain(|(_, bounds)| {
             if bounds.split.is_none() {
                 settled[0].add(bounds.lower);
                 settled[1].add(bounds.upper);
@@ -208,59 +278,24 @@ impl<'a> Search<'a> {
             bounds.split.is_some()
         });
         let [mut lower, mut upper] = self.settled;
-        for bounds in &self.open {
+        for (_, bounds) in &self.open {
             lower.add(bounds.lower);
             upper.add(bounds.upper);
         }
+        let whole = self.domain.whole();
         // Of nothing there is nothing to round.
         let rounded = |sum: Sum, sign: f64| match sum.value() {
             0.0 => 0.0,
-            value => value + sign * ROUNDING * self.asker.domain.whole(),
+            value => value + sign * ROUNDING * whole,
         };
         self.bounds[0] = self.bounds[0].max(rounded(lower, -1.0));
         self.bounds[1] = self.bounds[1].min(rounded(upper, 1.0));
     }
 
-    fn found(&self) -> Measured {
+    /// What is known so far; of a search that is not over, as of one that was cancelled.
+    pub fn found(&self) -> Measured {
         let [lower, upper] = self.bounds;
-        let whole = self.asker.domain.whole();
-        Measured { lower, upper, whole, boxes: self.boxes, stop: Stop::Tolerance }
-    }
-
-    /// How many boxes the next round splits.
-    fn next(&self) -> usize {
-        (self.open.len() / SHARE).max(ROUND).min(self.open.len())
-    }
-
-    /// Splits the boxes that leave the widest gap; `false` where it was told to stop, with all as it was.
-    fn round(&mut self, progress: &Progress) -> bool {
-        let count = self.next();
-        let mut chosen: Vec<(u64, usize)> = (self.open.iter().enumerate())
-            // Of floats that are not negative, the bits are in their order.
-            .map(|(number, bounds)| ((bounds.upper - bounds.lower).to_bits(), number))
-            .collect();
-        if count < chosen.len() {
-            chosen.select_nth_unstable_by_key(count, |&(gap, number)| (Reverse(gap), number));
-            chosen.truncate(count);
-        }
-        let mut chosen: Vec<usize> = chosen.into_iter().map(|(_, number)| number).collect();
-        chosen.sort_unstable();
-        let (asker, open) = (self.asker, &self.open);
-        let halves: Option<Vec<[Bounds; 2]>> = chosen
-            .par_iter()
-            .map(|&number| {
-                progress.advance(2).ok()?;
-                let Bounds { cell, split, .. } = open[number];
-                Some(cell.halves(split?).map(|half| asker.ask(half)))
-            })
-            .collect();
-        let Some(halves) = halves else { return false };
-        for (number, [first, second]) in chosen.into_iter().zip(halves) {
-            self.open[number] = first;
-            self.open.push(second);
-        }
-        self.boxes += 2 * count as u64;
-        self.settle();
-        true
+        let (whole, stop) = (self.domain.whole(), self.stop.unwrap_or(Stop::Cancelled));
+        Measured { lower, upper, whole, boxes: self.boxes, stop }
     }
 }

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from . import examples
 from ._native import (
     Assembly,
+    Conditioning,
     Decomposition,
     Intersection,
     LegSplit,
@@ -22,6 +23,7 @@ from ._native import (
     Measure,
     Motion,
     OpmError,
+    Outline,
     Singularity,
     Solid,
     Solutions,
@@ -37,6 +39,7 @@ from ._native import (
 
 __all__ = [
     "Assembly",
+    "Conditioning",
     "Decomposition",
     "Intersection",
     "LegSplit",
@@ -44,6 +47,7 @@ __all__ = [
     "Measure",
     "Motion",
     "OpmError",
+    "Outline",
     "Singularity",
     "Solid",
     "Solutions",

@@ -1,12 +1,13 @@
-"""Parts of a sweep on any executor: submitted as pickled specifications, run again where a worker is lost."""
+"""Parts of some work on any executor: submitted as pickled specifications, run again where a worker is lost."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, as_completed
-from typing import Any, Protocol
+from types import TracebackType
+from typing import Any
 
 from ._native import OpmError
 
-__all__ = ["run"]
+__all__ = ["Workers", "run"]
 
 #: How often a part is run again before it is given up.
 RETRIES = 3
@@ -16,69 +17,144 @@ LOST = (BrokenExecutor, CancelledError, OSError)
 LOST_BY_NAME = {"KilledWorker"}
 
 
-class Plan(Protocol):
-    """Work that is divided into parts: `task` names a method that takes the number of a part, from 1, and how many."""
+class Workers:
+    """An executor, or one that is made when it is needed, and again where a broken one takes no more work.
 
-
-def run(executor: Executor | Callable[[], Executor], plan: Plan, task: str, parts: int) -> list[Any]:
-    """What the parts give, in their order.
+    Those that are made here are closed with it, or when they are broken; one that is given is left as it is.
 
     Parameters
     ----------
     executor : concurrent.futures.Executor or callable
-        One; or what makes one, which is asked again where a broken one takes no more work, and closed then.
-    plan : Plan
-        Pickled with every part.
-    task : str
-    parts : int
-
-    Raises
-    ------
-    OpmError
-        A part was lost with its worker again and again, or the executor is broken.
-    Exception
-        What the work itself raised.
+        One; or what makes one.
     """
-    made = None if isinstance(executor, Executor) else executor
-    if made is not None and not callable(made):
-        raise OpmError(f"executor is {executor!r}, expected a concurrent.futures.Executor, or a function that makes one")
-    results: dict[int, Any] = {}
-    lost: BaseException | None = None
-    for _ in range(1 + RETRIES):
-        pool = made() if made is not None else executor
-        if not isinstance(pool, Executor):
-            raise OpmError(f"executor gave {pool!r}, expected a concurrent.futures.Executor")
-        try:
-            lost = _round(pool, plan, task, parts, results)
-        finally:
-            if made is not None:
-                pool.shutdown(wait=False, cancel_futures=True)
-        if len(results) == parts:
-            return [results[number] for number in range(1, parts + 1)]
-        if made is None and isinstance(lost, BrokenExecutor):
-            break  # such a one never takes work again
-    hint = "; give a function that makes executors, to go on in a new one" if isinstance(lost, BrokenExecutor) else ""
-    raise OpmError(
-        f"{parts - len(results)} of {parts} parts were lost with their workers ({type(lost).__name__}: {lost}){hint}"
-    ) from lost
+
+    def __init__(self, executor: Executor | Callable[[], Executor]) -> None:
+        self._given = executor if isinstance(executor, Executor) else None
+        self._make = executor
+        self._made: Executor | None = None
+        if self._given is None and not callable(executor):
+            raise OpmError(f"executor is {executor!r}, expected a concurrent.futures.Executor, or a function that makes one")
+
+    def __enter__(self) -> "Workers":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Closes the executor that was made."""
+        if self._made is not None:
+            self._made.shutdown(wait=False, cancel_futures=True)
+            self._made = None
+
+    def run(
+        self,
+        plan: object,
+        task: str,
+        parts: Sequence[tuple[Any, ...]],
+        fold: Callable[[Any, Any], Any] | None = None,
+    ) -> Any:
+        """What the parts give.
+
+        Parameters
+        ----------
+        plan : object
+            Pickled with every part.
+        task : str
+            Which method of the plan works on a part.
+        parts : sequence of tuple
+            Its arguments, a tuple a part.
+        fold : callable, optional
+            Puts the results of two parts together, in whatever order they come: so that one alone is kept.
+
+        Returns
+        -------
+        list or object
+            A result a part, in their order; or the one that they fold to.
+
+        Raises
+        ------
+        OpmError
+            A part was lost with its worker again and again, or the executor is broken.
+        Exception
+            What the work itself raised.
+        """
+        results = _Results(fold)
+        missing = dict(enumerate(parts))
+        lost: BaseException | None = None
+        for _ in range(1 + RETRIES):
+            lost = _round(self._executor(), plan, task, missing, results)
+            if not missing:
+                return results.all(len(parts))
+            if isinstance(lost, BrokenExecutor):
+                if self._given is not None:
+                    break  # such a one never takes work again
+                self.close()
+        hint = "; give a function that makes executors, to go on in a new one" if isinstance(lost, BrokenExecutor) else ""
+        raise OpmError(
+            f"{len(missing)} of {len(parts)} parts were lost with their workers ({type(lost).__name__}: {lost}){hint}"
+        ) from lost
+
+    def _executor(self) -> Executor:
+        if self._given is not None:
+            return self._given
+        if self._made is None:
+            made = self._make()  # type: ignore[operator]
+            if not isinstance(made, Executor):
+                raise OpmError(f"executor gave {made!r}, expected a concurrent.futures.Executor")
+            self._made = made
+        return self._made
 
 
-def _round(pool: Executor, plan: Plan, task: str, parts: int, results: dict[int, Any]) -> BaseException | None:
-    """Runs the parts that have no result once, and gives the last sign of a lost worker."""
+def run(
+    executor: Executor | Callable[[], Executor],
+    plan: object,
+    task: str,
+    parts: Sequence[tuple[Any, ...]],
+    fold: Callable[[Any, Any], Any] | None = None,
+) -> Any:
+    """:meth:`Workers.run` of workers who have nothing else to do."""
+    with Workers(executor) as workers:
+        return workers.run(plan, task, parts, fold)
+
+
+class _Results:
+    """What has come of the parts: one by one, or folded."""
+
+    def __init__(self, fold: Callable[[Any, Any], Any] | None) -> None:
+        self._fold, self._folded, self._each = fold, [], {}  # type: ignore[var-annotated]
+
+    def add(self, number: int, result: Any) -> None:
+        if self._fold is None:
+            self._each[number] = result
+        else:
+            self._folded = [self._fold(self._folded[0], result) if self._folded else result]
+
+    def all(self, parts: int) -> Any:
+        return self._folded[0] if self._fold is not None else [self._each[number] for number in range(parts)]
+
+
+def _round(
+    pool: Executor, plan: object, task: str, missing: dict[int, tuple[Any, ...]], results: _Results
+) -> BaseException | None:
+    """Runs the parts that are missing once, takes those away that have a result, and gives the last sign of a lost worker."""
     futures: dict[Future[Any], int] = {}
     lost: BaseException | None = None
     try:
-        for number in range(1, parts + 1):
-            if number in results:
-                continue
+        for number, part in missing.items():
             try:
-                futures[pool.submit(_work, plan, task, number, parts)] = number
+                futures[pool.submit(_work, plan, task, part)] = number
             except BrokenExecutor as error:
                 lost = error
                 break
-        for future in as_completed(futures):
+        for future in as_completed(list(futures)):
+            # A future keeps its result: with the last reference to it both go.
+            number = futures.pop(future)
             try:
-                results[futures[future]] = future.result()
+                results.add(number, future.result())
+                del missing[number]
             except BaseException as error:
                 if not isinstance(error, LOST) and type(error).__name__ not in LOST_BY_NAME:
                     raise
@@ -89,5 +165,5 @@ def _round(pool: Executor, plan: Plan, task: str, parts: int, results: dict[int,
     return lost
 
 
-def _work(plan: Plan, task: str, number: int, parts: int) -> Any:
-    return getattr(plan, task)(number, parts)
+def _work(plan: object, task: str, part: tuple[Any, ...]) -> Any:
+    return getattr(plan, task)(*part)

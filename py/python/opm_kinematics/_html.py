@@ -1,13 +1,14 @@
 """What notebooks show of the package's objects."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ._native import Decomposition, Manipulator, Solutions, Sweep
+from ._native import Decomposition, Manipulator, Singularity, Solutions, Sweep, Trajectory
 
-__all__ = ["decomposition", "manipulator", "solutions", "sweep"]
+__all__ = ["decomposition", "manipulator", "singularity", "solutions", "sweep", "trajectory"]
 
 # Rows of a table of results, half of them from its end.
 MOST_ROWS = 10
@@ -46,23 +47,60 @@ def solutions(found: Solutions) -> str:
         values = [_number(value) for value in (*found.imaginary[at], *found.joints[at])]
         return [str(at[0]), *mode, inside, *values]
 
-    count = found.reachable.size
-    half = MOST_ROWS // 2
-    if count <= MOST_ROWS:
-        rows = [cells(row) for row in range(count)]
-    else:
-        rows = [cells(row) for row in range(half)] + [["…"] * len(head)]
-        rows += [cells(row) for row in range(count - half, count)]
-    return _paragraph(escape(repr(found).strip("<>"))) + _table(head, rows)
+    return _paragraph(_summary(found)) + _table(head, _some(found.reachable.size, cells, len(head)))
+
+
+def singularity(found: Singularity) -> str:
+    measures = ["upper_serial", "upper_parallel", "lower_serial", "lower_parallel", "serial", "parallel"]
+    head = ["pose", *measures, "condition"]
+
+    def cells(row: int) -> list[str]:
+        return [str(row), *(_number(getattr(found, name)[row]) for name in head[1:])]
+
+    names = [name.replace("_", " ") for name in head]
+    return _paragraph(_summary(found)) + _table(names, _some(len(found.reachable), cells, len(head)))
+
+
+def trajectory(found: Trajectory) -> str:
+    length = f"{found.rows} samples, {_number(found.times[0])} to {_number(found.times[-1])} s"
+    rows = (
+        [name, found.units[name], *map(_number, _ends(values))]
+        for names, table in ((found.imaginary_names, found.imaginary), (found.joint_names, found.joints))
+        for name, values in zip(names, table.T, strict=True)
+    )
+    told = "".join(f"<li>{escape(violation.message)}</li>\n" for violation in found.violations)
+    return (
+        _paragraph(f"<b>{escape(found.name)}</b>: {length}, mode {escape(found.mode)}")
+        + _table(["joint", "unit", "min", "max"], rows)
+        + (f"<ul>\n{told}</ul>\n" if told else _paragraph("nothing that it cannot follow"))
+    )
 
 
 def sweep(found: Sweep) -> str:
-    summary = f"{found.count} of {found.poses} poses reachable ({found.fraction:.4%}), mode {escape(found.mode)}"
-    axes = ([name, _number(v[0]), _number(v[-1]), str(len(v))] for name, v in found.axes.items())
+    axes = ([name, _number(v[0]), _number(v[-1]), str(len(v))] for name, v in found.grid.items())
     ranges = (
         [name, *(["", ""] if ends is None else map(_number, ends)), ""] for name, ends in found.imaginary_range.items()
     )
-    return _paragraph(summary) + _table(["", "min", "max", "values"], [*axes, *ranges])
+    return _paragraph(_summary(found)) + _table(["", "min", "max", "values"], [*axes, *ranges])
+
+
+def _summary(found: object) -> str:
+    return escape(repr(found).strip("<>"))
+
+
+def _some(count: int, cells: Callable[[int], list[str]], width: int) -> list[list[str]]:
+    """The cells of the first and the last rows, if there are many."""
+    if count <= MOST_ROWS:
+        return [cells(row) for row in range(count)]
+    half = MOST_ROWS // 2
+    rows = [cells(row) for row in (*range(half), *range(count - half, count))]
+    return [*rows[:half], ["…"] * width, *rows[half:]]
+
+
+def _ends(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Lowest and highest value, where there is any."""
+    known = values[~np.isnan(values)]
+    return (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan)
 
 
 def _number(value: float) -> str:

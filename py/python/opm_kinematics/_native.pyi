@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Assembly",
+    "Conditioning",
     "Decomposition",
     "Intersection",
     "LegSplit",
@@ -15,6 +16,7 @@ __all__ = [
     "Measure",
     "Motion",
     "OpmError",
+    "Outline",
     "Singularity",
     "Solid",
     "Solutions",
@@ -407,6 +409,7 @@ class Singularity:
     NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
     """
 
+    def _repr_html_(self) -> str: ...
     @property
     def upper_serial(self) -> NDArray[np.float64]: ...
     @property
@@ -533,46 +536,165 @@ class Measure:
         """Lowest and highest value of every coordinate."""
 
 @final
-class Sweep:
-    """A grid of poses, swept."""
+class Outline:
+    """The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
+
+    They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
+    workspace goes on beyond.
+    """
 
     @property
-    def section(self) -> str:
-        """``"whole"``, or the one section that it is of."""
+    def axes(self) -> tuple[str, str]:
+        """The coordinates of the plane: the columns of the polylines."""
+    @property
+    def at(self) -> dict[str, float]:
+        """The coordinate that it is sliced by, and its value; empty where there is one plane."""
+    @property
+    def rings(self) -> tuple[NDArray[np.float64], ...]:
+        """Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+        pieces of the workspace, clockwise around holes."""
+    @property
+    def outer(self) -> tuple[NDArray[np.float64], ...]:
+        """Those around pieces."""
+    @property
+    def holes(self) -> tuple[NDArray[np.float64], ...]:
+        """Those around holes."""
+    @property
+    def area(self) -> float:
+        """Of the pieces without the holes, in the product of both coordinates' units."""
+
+@final
+class Conditioning:
+    """How well the poses of a workspace are conditioned: their local indices, one over the condition number each."""
+
+    @property
+    def global_index(self) -> float | None:
+        """The mean of the local indices (Gosselin and Angeles); None where no pose has one."""
+    @property
+    def local_min(self) -> float | None:
+        """The least."""
+    @property
+    def local_max(self) -> float | None:
+        """The greatest; one at best."""
+    @property
+    def length(self) -> float:
+        """Characteristic length of the condition numbers, metres."""
+    @property
+    def poses(self) -> int:
+        """Poses that have an index."""
+
+@final
+class Sweep:
+    """A grid, swept: a workspace of some kind, of which a point is a pose, a place or an orientation."""
+
+    @property
+    def kind(self) -> str:
+        """What the workspace is of, as it was asked for."""
     @property
     def mode(self) -> str:
         """The working mode, as it was asked for."""
+    @property
+    def max_condition(self) -> float | None:
+        """The largest condition number at which a pose counts, if there is one."""
+    @property
+    def length(self) -> float:
+        """Characteristic length of condition numbers, metres."""
     def _repr_html_(self) -> str: ...
     @property
     def count(self) -> int:
-        """Poses in reach and within all limits."""
+        """Points of the workspace: of poses, those in reach and within all limits."""
     @property
     def poses(self) -> int:
-        """Poses of the grid."""
+        """Points of the grid that could be in: poses, places of the grid, or orientations of it."""
     @property
     def fraction(self) -> float:
         """``count / poses``."""
     @property
+    def orientations(self) -> int:
+        """Orientations of the grid: values of the upper section's coordinates together."""
+    @property
     def imaginary_range(self) -> dict[str, tuple[float, float] | None]:
-        """Lowest and highest value of every imaginary joint over the reachable poses."""
+        """Lowest and highest value of every imaginary joint over the reachable poses of the grid."""
     @property
     def axes(self) -> dict[str, NDArray[np.float64]]:
-        """The values of every task coordinate, in the order of the mask's axes."""
+        """The values of every coordinate of the points, in the order of the mask's axes."""
+    @property
+    def grid(self) -> dict[str, NDArray[np.float64]]:
+        """The values of every coordinate of the grid; of places and orientations, the others as well."""
     @property
     def units(self) -> dict[str, str]:
-        """``"m"`` or ``"rad"`` of every task coordinate, by name."""
+        """``"m"`` or ``"rad"`` of every coordinate of the grid, by name."""
     def mask(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.bool_]:
-        """Which poses are reachable: an axis a task coordinate, as many values as the grid has.
+        """Which points are in: an axis a coordinate of :attr:`axes`, as many values as the grid has.
 
-        `executor` and `shards` are those of :func:`sweep`.
+        `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
+        already, and nobody is asked again.
         """
     def points(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
-        """(count, d): the reachable poses in the order of the grid, the first coordinate fastest.
+        """(count, d): the points in the order of the grid, the first coordinate fastest; columns as :attr:`axes`."""
+    def visits(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.uint64]:
+        """In how many :attr:`orientations` each place is reached, in the shape of the mask.
 
-        `executor` and `shards` are those of :func:`sweep`.
+        Raises
+        ------
+        OpmError
+            Of another kind than ``"reachable"`` and ``"dexterous"``.
         """
-    def measure(self, *, tolerance: float | None = None, budget: int | None = None) -> Measure:
-        """How much of the box that the grid covers is in reach: :func:`measure` over it."""
+    def boundary(self, *, executor: _Executor | None = None, shards: int | None = None) -> list[Outline]:
+        """The boundary as closed polylines in the first two coordinates that have several values.
+
+        Returns
+        -------
+        list of Outline
+            One; or, where a third coordinate has several values, one for each of these.
+
+        Raises
+        ------
+        OpmError
+            Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
+            says nothing of the imaginary joints.
+        """
+    def components(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.uint64]:
+        """How many points each connected component has, the largest first.
+
+        Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
+        last value next to the first.
+        """
+    def conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> Conditioning:
+        """The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
+
+        Each pose in the first working mode that counts; every pose has the same weight.
+
+        Raises
+        ------
+        OpmError
+            The points are no poses.
+        """
+    def local_conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
+        """The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
+
+        One over the condition number: one at best, zero at a singularity.
+
+        Raises
+        ------
+        OpmError
+            The points are no poses.
+        """
+    def measure(
+        self,
+        *,
+        tolerance: float | None = None,
+        budget: int | None = None,
+        executor: _Executor | None = None,
+        shards: int | None = None,
+    ) -> Measure:
+        """How much of the box that the grid covers is in reach: :func:`measure` over it.
+
+        Raises
+        ------
+        OpmError
+            The points are places or orientations, or there is a `max_condition`, of which a measure knows nothing.
+        """
     def write(
         self,
         path: str | PathLike[str],
@@ -583,7 +705,7 @@ class Sweep:
     ) -> None:
         """Record the points as ``opm workspace -o`` does, byte for byte.
 
-        Of a section alone, as ``--kind upper`` or ``lower`` does: MCAP only.
+        With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only.
 
         Parameters
         ----------
@@ -591,9 +713,10 @@ class Sweep:
             Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
             when it is whole.
         axes : sequence of three str, or "tip", optional
-            The task coordinates that are x, y and z of the cloud, or the platform's point.
+            The coordinates that are x, y and z of the cloud (of kind ``"imaginary"`` imaginary joints), or the platform's point.
         scalars : sequence of str, optional
-            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``.
+            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; of places
+            the ``share`` of orientations in which they are reached.
         color : str, optional
             The one of them that the colour shows.
 
@@ -616,23 +739,37 @@ def sweep(
     manipulator: Manipulator,
     /,
     *,
+    kind: str = "grid",
     mode: str = "home",
-    section: str = "whole",
+    max_condition: float | None = None,
+    length: float | None = None,
     threads: int | None = None,
     executor: _Executor | None = None,
     shards: int | None = None,
     **axes: float | tuple[float, float, int],
 ) -> Sweep:
-    """Find which poses of a grid are reachable and within all limits.
+    """Find which poses of a grid are reachable and within all limits, or another kind of workspace.
 
     Parameters
     ----------
     manipulator : Manipulator
+    kind : str
+        What the workspace is of, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
+        lower one.
+
+        * ``"grid"``: poses.
+        * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the upper or of the lower section held
+          at one value.
+        * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
+        * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
+        * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.
+        * ``"lower"``: the lower section alone, by its task coordinates and the imaginary joints.
     mode : str
         ``"home"``, ``"any"``, or a sign for every two-valued choice.
-    section : str
-        ``"whole"``: poses of the platform. ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the
-        imaginary joints that it needs. ``"lower"``: the lower section alone, by its task coordinates and the imaginary joints.
+    max_condition : float, optional
+        Only poses with a condition number of at most this count, in a mode in which they have it.
+    length : float, optional
+        Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
     threads : int, optional
         How many, here or in each worker; the result does not depend on it. A processor each if not given.
     executor : concurrent.futures.Executor or callable, optional
@@ -644,12 +781,21 @@ def sweep(
         How many parts the executor gets: 64 if not given, fewer for small grids.
     **axes
         Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
-        is not given stays at home.
+        is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
+        on beyond it.
 
     Raises
     ------
     OpmError
-        An axis that is none, ends that are not numbers or reversed, an unknown mode; shards that were lost again and again.
+        An axis that is none, ends that are not numbers or reversed, an unknown kind or mode, a grid that the kind is not of;
+        more places or orientations than fit in memory; shards that were lost again and again.
+
+    Examples
+    --------
+    >>> import opm_kinematics as opm
+    >>> m = opm.examples.load("plano-spherical-5dof")
+    >>> tilt = (-0.2, 0.2, 5)
+    >>> opm.sweep(m, kind="dexterous", x=(-0.1, 0.1, 41), y=(-0.1, 0.1, 41), zeta=tilt, xi=tilt, psi=tilt)
     """
 
 def measure(
@@ -662,6 +808,8 @@ def measure(
     tolerance: float | None = None,
     budget: int | None = None,
     threads: int | None = None,
+    executor: _Executor | None = None,
+    shards: int | None = None,
 ) -> Measure:
     """Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
 
@@ -672,7 +820,7 @@ def measure(
         Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
         workspace, and of the upper section alone every orientation; else one that is not given stays at home.
     section : str
-        ``"whole"``, ``"upper"`` or ``"lower"``, as for :func:`sweep`.
+        ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
     mode : str
         ``"home"``, ``"any"``, or a sign for every two-valued choice.
     tolerance : float, optional
@@ -680,12 +828,19 @@ def measure(
     budget : int, optional
         Boxes to look at, at most: 2**22 if not given.
     threads : int, optional
-        How many; the result does not depend on it. A processor each if not given.
+        How many, here or in each worker; the result does not depend on it. A processor each if not given.
+    executor : concurrent.futures.Executor or callable, optional
+        Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+        more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
+        executor that a function makes serves all rounds.
+    shards : int, optional
+        How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
 
     Raises
     ------
     OpmError
-        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode.
+        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+        and again.
     """
 
 @final
@@ -755,6 +910,7 @@ class Trajectory:
     @property
     def rows(self) -> int:
         """n."""
+    def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""

@@ -202,14 +202,14 @@ def sections(
     share = round(budget * len(upper) / (len(upper) + len(lower)))
     above = minimise(_cost(manipulator, upper, lambda m: _upper_cost(m, orientations, mode)), len(upper), budget=share, seed=seed)
     chosen = manipulator.with_parameters(upper.parameters(above.shares))
-    asked = _swept(chosen, mode, orientations, section="upper").imaginary_range
+    asked = _swept(chosen, mode, orientations, kind="upper").imaginary_range
     ranges = {name: found for name, found in asked.items() if found is not None}
     if len(ranges) < len(asked):
         raise OpmError("the upper section reaches none of the orientations; give it a larger budget or other bounds")
     cuts: Axes = {name: (low, high, values) if low < high else low for name, (low, high) in ranges.items()}
 
     def cost(m: Manipulator) -> float:
-        return _whole_cost(_swept(m, mode, places, cuts, section="lower"), places)
+        return _whole_cost(_swept(m, mode, places, cuts, kind="lower"), places)
 
     below = minimise(_cost(chosen, lower, cost), len(lower), budget=budget - share, seed=seed)
     whole = chosen.with_parameters(lower.parameters(below.shares))
@@ -242,9 +242,9 @@ SOME = 0.01
 WIDTH = 0.01
 
 
-def _swept(manipulator: Manipulator, mode: str, *grids: Axes, section: str = "whole") -> Sweep:
+def _swept(manipulator: Manipulator, mode: str, *grids: Axes, kind: str = "grid") -> Sweep:
     axes: dict[str, Any] = {name: axis for grid in grids for name, axis in grid.items()}
-    return sweep(manipulator, mode=mode, section=section, **axes)
+    return sweep(manipulator, mode=mode, kind=kind, **axes)
 
 
 def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipulator], float]) -> Callable[[Vector], float]:
@@ -266,7 +266,7 @@ def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipu
 
 def _upper_cost(manipulator: Manipulator, orientations: Axes, mode: str) -> float:
     """Orientations out of reach, then how wide the imaginary joints range."""
-    swept = _swept(manipulator, mode, orientations, section="upper")
+    swept = _swept(manipulator, mode, orientations, kind="upper")
     widths = [found[1] - found[0] for found in swept.imaginary_range.values() if found is not None]
     return 1.0 - swept.fraction + (WIDTH * float(np.mean(widths)) if widths else 0.0)
 

@@ -34,6 +34,8 @@ COLORS = {
 }
 CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 
+OUTLINE = "#d55e00"
+
 # Where the light comes from, a little from the left of who looks at it.
 LIGHT = np.array([-0.4, -0.6, 0.8]) / np.sqrt(1.16)
 # Sides of a cylinder, and meridians of a ball.
@@ -109,15 +111,15 @@ def workspace(
     values: Sequence[float] | None = None,
     ax: Axes | Sequence[Axes] | None = None,
 ) -> list[Axes]:
-    """Draw slices of a workspace.
+    """Draw slices of a workspace of any kind.
 
     Parameters
     ----------
     sweep : Sweep
     x, y : str, optional
-        The task coordinates along the axes; the first two with several values if not given.
+        The coordinates along the axes; the first two with several values if not given.
     slices : str, optional
-        The task coordinate that has a panel for each of its values; without it there is one panel.
+        The coordinate that has a panel for each of its values; without it there is one panel.
     values : sequence of float, optional
         For which of them: the nearest on the grid. Six at most, evenly chosen, if not given.
     ax : Axes or sequence of them, optional
@@ -126,7 +128,9 @@ def workspace(
     Returns
     -------
     list of Axes
-        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached.
+        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; of reachable and
+        dexterous places, where more of the orientations are. The boundary is a line, of all kinds but ``"grid"`` and
+        ``"imaginary"``, where the panels show it: two coordinates with several values, or a third one for `slices`.
     """
     pyplot = _pyplot()
     from matplotlib.colors import LinearSegmentedColormap
@@ -138,15 +142,16 @@ def workspace(
     y = y if y is not None else _take(free, "y")
     for name in (x, y, *([slices] if slices is not None else [])):
         if name not in axes:
-            raise OpmError(f"{name}: no such task coordinate, expected one of {', '.join(axes)}")
+            raise OpmError(f"{name}: no such coordinate, expected one of {', '.join(axes)}")
     if len({x, y, slices}) < 3:
-        raise OpmError(f"x, y and slices are {x}, {y} and {slices}, expected different task coordinates")
+        raise OpmError(f"x, y and slices are {x}, {y} and {slices}, expected different coordinates")
 
     order = list(axes)
     kept = [order.index(name) for name in (y, x, *([slices] if slices is not None else []))]
     others = tuple(i for i in range(len(order)) if i not in kept)
+    reached = sweep.visits() / sweep.orientations if sweep.kind in ("reachable", "dexterous") else sweep.mask().astype(np.float64)
     # The mean over no axis would be one over all.
-    share = sweep.mask().astype(np.float64) if not others else sweep.mask().mean(axis=others)
+    share = reached.mean(axis=others) if others else reached
     remaining = [i for i in range(len(order)) if i in kept]
     share = np.transpose(share, [remaining.index(i) for i in kept])
     numbers: list[int | None] = [None]
@@ -157,9 +162,15 @@ def workspace(
     panels = _panels(pyplot, len(numbers), ax)
     units = sweep.units
     shades = LinearSegmentedColormap.from_list("reached", ["#ffffff", "#9ecae1", "#08519c"])
+    shown = [name for name, v in axes.items() if len(v) > 1]
+    planar = shown in ([x, y], [y, x], [x, y, slices], [y, x, slices])
+    outlines = sweep.boundary() if planar and sweep.kind not in ("grid", "imaginary") else []
     for panel, number in zip(panels, numbers, strict=True):
         image = share if number is None else share[:, :, number]
         panel.pcolormesh(axes[x], axes[y], image, shading="nearest", cmap=shades, vmin=0, vmax=1, rasterized=True)
+        for ring in outlines[number or 0].rings if outlines else ():
+            first, second = ring.T if shown[:2] == [x, y] else ring.T[::-1]
+            panel.plot(first, second, color=OUTLINE, linewidth=1.2)
         panel.set(xlabel=f"{x} ({units[x]})", ylabel=f"{y} ({units[y]})")
         if units[x] == units[y]:
             panel.set_aspect("equal")

@@ -1,0 +1,52 @@
+//! Other processes that do some work, and into how many parts it is divided.
+
+use crate::error::wrong;
+use pyo3::prelude::*;
+use std::num::NonZeroU64;
+
+/// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
+/// so that all have work to the end and little is lost with one.
+const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
+
+/// As an object crosses processes: what restores it, and what that is given.
+pub type Pickled<'py, T> = (Bound<'py, PyAny>, T);
+
+/// An executor, and how many parts it gets.
+pub struct Parts<'py> {
+    executor: Bound<'py, PyAny>,
+    shards: NonZeroU64,
+}
+
+impl<'py> Parts<'py> {
+    /// What is asked for: nothing, where there is no executor.
+    pub fn new(
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Option<Self>> {
+        match (executor, shards) {
+            (Some(executor), shards) => {
+                Ok(Some(Self { executor, shards: shards.unwrap_or(SHARDS) }))
+            }
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(wrong("shards are given, but no executor that they are for")),
+        }
+    }
+
+    /// How many parts so much work is worth, each of `least` or more; one at least.
+    pub fn count(&self, work: u64, least: u64) -> u64 {
+        self.shards.get().min(work.div_ceil(least).max(1))
+    }
+
+    /// What comes of work with the executor, which goes through `run` of the workers.
+    pub fn session<T>(
+        &self,
+        py: Python<'py>,
+        work: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> PyResult<T> {
+        let module = py.import("opm_kinematics._executor")?;
+        let workers = module.call_method1("Workers", (&self.executor,))?;
+        let done = work(&workers);
+        workers.call_method0("close")?;
+        done
+    }
+}

@@ -1,0 +1,258 @@
+//! What is known of a workspace beside its points: boundary, components, conditioning.
+
+use crate::error::{failed, wrong};
+use crate::interrupt;
+use crate::parts::Parts;
+use crate::rows::no_memory;
+use crate::sweep::{Sweep, shard, spread};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use opm_cli::recording::Kind;
+use opm_workspace::{
+    ConditionLimit, Conditioned, ConditioningIndex, GridSet, Progress, Shard, boundary, components,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::collections::BTreeMap;
+use std::num::NonZeroU64;
+
+/// The boundary of a workspace in a plane, or of a slice of it.
+#[pyclass(frozen, module = "opm_kinematics")]
+pub struct Outline {
+    /// The coordinates of the plane.
+    #[pyo3(get)]
+    axes: (String, String),
+    /// Where the slice is.
+    #[pyo3(get)]
+    at: BTreeMap<String, f64>,
+    /// What is inside, less the holes.
+    #[pyo3(get)]
+    area: f64,
+    rings: Vec<(f64, Py<PyArray2<f64>>)>,
+}
+
+#[pymethods]
+impl Outline {
+    /// All closed polylines.
+    #[getter]
+    fn rings<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |_| true)
+    }
+
+    /// Those around pieces.
+    #[getter]
+    fn outer<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |area| area >= 0.0)
+    }
+
+    /// Those around holes.
+    #[getter]
+    fn holes<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |area| area < 0.0)
+    }
+
+    fn __repr__(&self) -> String {
+        let (x, y) = &self.axes;
+        let holes = self.rings.iter().filter(|(area, _)| *area < 0.0).count();
+        let at: String =
+            self.at.iter().map(|(name, value)| format!(" at {name} = {value}")).collect();
+        format!("<Outline in {x}, {y}{at}: {} rings, {holes} of them holes>", self.rings.len())
+    }
+}
+
+impl Outline {
+    fn those<'py>(&self, py: Python<'py>, wanted: impl Fn(f64) -> bool) -> Bound<'py, PyTuple> {
+        let rings = self.rings.iter().filter(|(area, _)| wanted(*area));
+        let rings: Vec<_> = rings.map(|(_, ring)| ring.clone_ref(py)).collect();
+        PyTuple::new(py, rings).expect("a list of known length")
+    }
+}
+
+/// How well a workspace is conditioned.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Conditioning {
+    /// The mean of the local indices.
+    global_index: Option<f64>,
+    /// The least of them.
+    local_min: Option<f64>,
+    /// The greatest.
+    local_max: Option<f64>,
+    /// The characteristic length, metres.
+    length: f64,
+    /// Poses that have one.
+    poses: u64,
+}
+
+#[pymethods]
+impl Conditioning {
+    fn __repr__(&self) -> String {
+        let Self { poses, length, .. } = self;
+        match (self.global_index, self.local_min, self.local_max) {
+            (Some(mean), Some(min), Some(max)) => format!(
+                "<Conditioning of {poses} poses: {mean:?} on average, {min:?} to {max:?}, lengths over {length:?} m>"
+            ),
+            _ => "<Conditioning of 0 poses>".to_owned(),
+        }
+    }
+}
+
+/// Of a part: poses that have an index, the least, the greatest, and their sum in parts of 2^-60.
+type Indices = (u64, f64, f64, u128);
+
+#[pymethods]
+impl Sweep {
+    /// The boundary as closed polylines.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn boundary<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Vec<Outline>> {
+        let py = slf.py();
+        if slf.get().asked_kind() == Kind::Imaginary {
+            let message = "the boundary of the orientations says nothing of the imaginary joints";
+            return Err(wrong(format!("{message}; kind imaginary has none")));
+        }
+        let set = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
+        let axes = set.varying();
+        let name = |number: usize| set.axes()[axes[number]].axis.name.clone();
+        let Some(outlines) = py.detach(|| boundary(&set)) else {
+            let several = axes.len();
+            return Err(wrong(format!(
+                "{several} coordinates have several values, expected two, or a third one to slice by"
+            )));
+        };
+        let outline = |outline: opm_workspace::Outline| {
+            let at = outline.slice.map(|number| (name(2), set.axes()[axes[2]].axis.value(number)));
+            let area = outline.area();
+            let rings = outline.rings.into_iter().map(|ring| -> PyResult<_> {
+                let area = ring.area();
+                // Closed for whoever draws it.
+                let corners = ring.points.iter().chain(ring.points.first());
+                let corners: Vec<f64> = corners.flatten().copied().collect();
+                let shape = [corners.len() / 2, 2];
+                Ok((area, corners.into_pyarray(py).reshape(shape)?.unbind()))
+            });
+            let rings = rings.collect::<PyResult<_>>()?;
+            Ok(Outline { axes: (name(0), name(1)), at: at.into_iter().collect(), area, rings })
+        };
+        outlines.into_iter().map(outline).collect()
+    }
+
+    /// How many points each connected component has, the largest first.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn components<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        let set: GridSet = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
+        Ok(slf.py().detach(|| components(&set)).into_pyarray(slf.py()))
+    }
+
+    /// The global conditioning index, and the least and the greatest local one.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn conditioning(
+        slf: &Bound<'_, Self>,
+        executor: Option<Bound<'_, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Conditioning> {
+        let (py, this) = (slf.py(), slf.get());
+        this.check_conditioned()?;
+        let length = this.length();
+        let mut all = ConditioningIndex::nothing(length);
+        let parts: Vec<Indices> = match Parts::new(executor, shards)? {
+            None => vec![this._conditioning(py, 1, 1)?],
+            Some(parts) => spread(slf, &parts, "_conditioning", None)?.extract()?,
+        };
+        for (poses, min, max, sum) in parts {
+            all.add(&ConditioningIndex { length, poses, min, max, sum });
+        }
+        let any = all.poses > 0;
+        Ok(Conditioning {
+            global_index: all.global(),
+            local_min: any.then_some(all.min),
+            local_max: any.then_some(all.max),
+            length,
+            poses: all.poses,
+        })
+    }
+
+    /// The local conditioning index of every pose of the grid.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn local_conditioning<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        this.check_conditioned()?;
+        let flat = match Parts::new(executor, shards)? {
+            None => this._local_conditioning(py, 1, 1)?,
+            Some(parts) => {
+                let parts = spread(slf, &parts, "_local_conditioning", None)?;
+                py.import("numpy")?.call_method1("concatenate", (parts,))?.cast_into()?
+            }
+        };
+        this.shaped(&flat)
+    }
+
+    /// What the poses of one part add to the conditioning index.
+    fn _conditioning(&self, py: Python<'_>, number: u64, of: u64) -> PyResult<Indices> {
+        let (progress, sweep) = (Progress::default(), self.swept(shard(number, of)?));
+        let work = || ConditioningIndex::new(&sweep, self.length(), &progress);
+        let found = interrupt::run(py, self.threads, work, || progress.cancel())?;
+        let ConditioningIndex { poses, min, max, sum, .. } = found.map_err(|e| failed(&e))?;
+        Ok((poses, min, max, sum))
+    }
+
+    /// The local conditioning index of every pose of one part, in their order.
+    fn _local_conditioning<'py>(
+        &self,
+        py: Python<'py>,
+        number: u64,
+        of: u64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let shard: Shard = shard(number, of)?;
+        let range = self.swept(shard).range();
+        let poses = usize::try_from(range.end - range.start).map_err(|error| failed(&error))?;
+        let mut all = Vec::new();
+        let short = |_| no_memory(format_args!("a number for each of {poses} poses"));
+        all.try_reserve_exact(poses).map_err(short)?;
+        all.resize(poses, f64::NAN);
+        let limit = self.limit().unwrap_or(ConditionLimit::none(self.length()));
+        self.visit(
+            py,
+            shard,
+            |hits, (made, conditioned): &mut (Vec<(u64, f64)>, Option<Conditioned<'_>>)| {
+                let conditioned =
+                    conditioned.get_or_insert_with(|| Conditioned::new(&self.manipulator, limit));
+                let mut pose = vec![0.0; hits.others.len() + 1];
+                pose[1..].copy_from_slice(hits.others);
+                let numbers = hits.numbers(&self.grid).flat_map(|run| run.from..run.to);
+                for (number, &first) in numbers.zip(hits.first) {
+                    pose[0] = first;
+                    if let Some(local) = conditioned.local_index(&pose, self.modes) {
+                        made.push((number, local));
+                    }
+                }
+            },
+            |(made, _)| {
+                for (number, local) in made {
+                    all[(number - range.start) as usize] = local;
+                }
+            },
+        )?;
+        Ok(all.into_pyarray(py))
+    }
+}
+
+impl Sweep {
+    fn check_conditioned(&self) -> PyResult<()> {
+        let kind = self.asked_kind();
+        if kind.is_of_poses() {
+            return Ok(());
+        }
+        let points = format!("the {} of kind {} have none", kind.points(), kind.name());
+        Err(wrong(format!("only poses have a condition number; {points}")))
+    }
+}
