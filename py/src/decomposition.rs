@@ -1,6 +1,7 @@
 //! How a mechanism falls into two sections.
 
-use crate::html;
+use crate::html::{self, digits};
+use crate::pickle::pickled;
 use opm_core::decomposition::Freedom;
 use opm_core::leg::Leg;
 use opm_core::manipulator as core;
@@ -8,7 +9,7 @@ use opm_core::subspace::SubspaceClass;
 use pyo3::prelude::*;
 
 /// How the legs of a mechanism were cut in two.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Decomposition {
     name: String,
@@ -23,7 +24,7 @@ pub struct Decomposition {
 }
 
 /// The motion that both sections have in common.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Intersection {
     kind: String,
@@ -33,7 +34,7 @@ pub struct Intersection {
 }
 
 /// Where a leg was cut.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct LegSplit {
     name: String,
@@ -41,6 +42,20 @@ pub struct LegSplit {
     upper: Vec<String>,
     imaginary: Option<String>,
 }
+
+pickled!(Decomposition {
+    name,
+    rank,
+    mobility,
+    imaginary_joints,
+    first_section_motions,
+    lower,
+    upper,
+    intersection,
+    legs,
+});
+pickled!(Intersection { kind, axis, point, pitch });
+pickled!(LegSplit { name, lower, upper, imaginary });
 
 impl Decomposition {
     pub fn of(manipulator: &core::Manipulator) -> Self {
@@ -109,10 +124,10 @@ impl Intersection {
     fn __repr__(&self) -> String {
         let Self { kind, axis, point, .. } = self;
         let text = |v: &Option<(f64, f64, f64)>| match v {
-            Some((x, y, z)) => format!("({x}, {y}, {z})"),
+            Some((x, y, z)) => format!("({}, {}, {})", digits(*x), digits(*y), digits(*z)),
             None => "None".to_owned(),
         };
-        let pitch = self.pitch.map_or_else(|| "None".to_owned(), |pitch| pitch.to_string());
+        let pitch = self.pitch.map_or_else(|| "None".to_owned(), digits);
         format!("Intersection({kind:?}, axis={}, point={}, pitch={pitch})", text(axis), text(point))
     }
 }

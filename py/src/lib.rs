@@ -5,6 +5,7 @@
 // Arguments come from Python by value.
 #![allow(clippy::needless_pass_by_value)]
 
+mod arguments;
 mod command;
 mod decomposition;
 mod error;
@@ -14,6 +15,8 @@ mod interrupt;
 mod manipulator;
 mod measure;
 mod parts;
+mod pickle;
+mod place;
 mod rows;
 mod screws;
 mod shape;

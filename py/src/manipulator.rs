@@ -1,11 +1,12 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
+use crate::arguments::{self, Array};
 use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
 use crate::html;
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::solutions::Solutions;
-use numpy::{AllowTypeChange, PyArrayLike2};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
@@ -13,6 +14,7 @@ use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::{self, MechanismFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -45,6 +47,8 @@ impl TaskCoordinate {
     }
 }
 
+pickled!(TaskCoordinate { name, home, unit });
+
 /// Names of the mechanisms that come with the package.
 #[pyfunction]
 pub fn examples() -> Vec<&'static str> {
@@ -63,9 +67,17 @@ pub fn example(name: &str) -> PyResult<&'static str> {
 impl Manipulator {
     /// Reads a mechanism file.
     #[staticmethod]
-    fn load(path: PathBuf) -> PyResult<Self> {
-        let text = std::fs::read_to_string(&path)?;
-        Self::parse(text, Some(path.display().to_string()))
+    fn load(
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+    ) -> PyResult<Self> {
+        let label = path.display().to_string();
+        let hint = match shipped::find(&label) {
+            Some(_) => format!("; the shipped example is opm.examples.load({label:?})"),
+            None => String::new(),
+        };
+        let text = arguments::text(py, &path, "a mechanism file", &hint)?;
+        Self::parse(text, Some(label))
     }
 
     /// Reads the text of a mechanism file; messages call it `label`.
@@ -126,6 +138,17 @@ impl Manipulator {
             let (text, label) = (OnceLock::new(), self.label.clone());
             Ok(Self { inner: Arc::new(inner), text, label, family: Some(family) })
         })
+    }
+
+    /// Mechanisms are the same if their files are, whatever these are called.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.text() == other.text()
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.text().hash(&mut hasher);
+        hasher.finish()
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
@@ -208,11 +231,12 @@ impl Manipulator {
     fn inverse<'py>(
         &self,
         py: Python<'py>,
-        poses: PyArrayLike2<'py, f64, AllowTypeChange>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
-        let poses = self.poses(&poses)?;
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
         if mode == "all" {
             return self.inverse_all(py, &poses, threads);
         }
@@ -290,7 +314,7 @@ impl Manipulator {
         modes.try_reserve_exact(count).map_err(|_| many())?;
         modes.extend(self.inner.modes());
         let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
-        let mut tables = Tables::fill(
+        let tables = Tables::fill(
             py,
             rows,
             widths,
@@ -311,16 +335,17 @@ impl Manipulator {
                 Ok([true, solution.within_limits])
             },
         )?;
-        Solutions::of_all_modes(py, &self.inner, poses.count, &mut tables)
+        Solutions::of_all_modes(py, &self.inner, poses.count, tables)
     }
 
     /// An array of poses, checked.
-    pub fn poses<'a>(
-        &self,
-        array: &'a PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<Rows<'a>> {
-        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
-        Rows::new(array, "poses", &names)
+    pub fn poses<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        arguments::rows(given, "poses", &self.pose_names())
+    }
+
+    /// The names of the task coordinates.
+    pub fn pose_names(&self) -> Vec<&str> {
+        self.inner.task_coordinates().iter().map(|c| c.name).collect()
     }
 
     /// The working mode that `mode` names.

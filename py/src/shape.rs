@@ -1,8 +1,11 @@
 //! What is known of a workspace beside its points: boundary, components, conditioning.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
+use crate::html::digits;
 use crate::interrupt;
 use crate::parts::Parts;
+use crate::pickle::{frozen, pickled};
 use crate::rows::no_memory;
 use crate::sweep::{Sweep, shard, spread};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -30,6 +33,9 @@ pub struct Outline {
     rings: Vec<(f64, Py<PyArray2<f64>>)>,
 }
 
+/// An outline as it crosses processes.
+type Spec = ((String, String), BTreeMap<String, f64>, f64, Vec<(f64, Py<PyArray2<f64>>)>);
+
 #[pymethods]
 impl Outline {
     /// All closed polylines.
@@ -50,11 +56,34 @@ impl Outline {
         self.those(py, |area| area < 0.0)
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Spec)> {
+        let Self { axes, at, area, rings } = slf.get();
+        let rings = rings.iter().map(|(area, ring)| (*area, ring.clone_ref(slf.py())));
+        let state = (axes.clone(), at.clone(), *area, rings.collect());
+        Ok((slf.get_type().getattr("_restored")?, state))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        py: Python<'_>,
+        axes: (String, String),
+        at: BTreeMap<String, f64>,
+        area: f64,
+        rings: Vec<(f64, Py<PyArray2<f64>>)>,
+    ) -> PyResult<Self> {
+        // Arrays come out of a pickle writable.
+        let rings = rings.into_iter().map(|(area, ring)| Ok((area, frozen(ring.into_bound(py))?)));
+        Ok(Self { axes, at, area, rings: rings.collect::<PyResult<_>>()? })
+    }
+
     fn __repr__(&self) -> String {
         let (x, y) = &self.axes;
         let holes = self.rings.iter().filter(|(area, _)| *area < 0.0).count();
-        let at: String =
-            self.at.iter().map(|(name, value)| format!(" at {name} = {value}")).collect();
+        let at: String = self
+            .at
+            .iter()
+            .map(|(name, value)| format!(" at {name} = {}", digits(*value)))
+            .collect();
         format!("<Outline in {x}, {y}{at}: {} rings, {holes} of them holes>", self.rings.len())
     }
 }
@@ -82,13 +111,19 @@ pub struct Conditioning {
     poses: u64,
 }
 
+pickled!(Conditioning { global_index, local_min, local_max, length, poses });
+
 #[pymethods]
 impl Conditioning {
     fn __repr__(&self) -> String {
         let Self { poses, length, .. } = self;
         match (self.global_index, self.local_min, self.local_max) {
             (Some(mean), Some(min), Some(max)) => format!(
-                "<Conditioning of {poses} poses: {mean:?} on average, {min:?} to {max:?}, lengths over {length:?} m>"
+                "<Conditioning of {poses} poses: {} on average, {} to {}, lengths over {} m>",
+                digits(mean),
+                digits(min),
+                digits(max),
+                digits(*length)
             ),
             _ => "<Conditioning of 0 poses>".to_owned(),
         }
@@ -105,7 +140,7 @@ impl Sweep {
     fn boundary<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Vec<Outline>> {
         let py = slf.py();
         if slf.get().asked_kind() == Kind::Imaginary {
@@ -130,7 +165,7 @@ impl Sweep {
                 let corners = ring.points.iter().chain(ring.points.first());
                 let corners: Vec<f64> = corners.flatten().copied().collect();
                 let shape = [corners.len() / 2, 2];
-                Ok((area, corners.into_pyarray(py).reshape(shape)?.unbind()))
+                Ok((area, frozen(corners.into_pyarray(py).reshape(shape)?)?))
             });
             let rings = rings.collect::<PyResult<_>>()?;
             Ok(Outline { axes: (name(0), name(1)), at: at.into_iter().collect(), area, rings })
@@ -143,7 +178,7 @@ impl Sweep {
     fn components<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let set: GridSet = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
         Ok(slf.py().detach(|| components(&set)).into_pyarray(slf.py()))
@@ -154,7 +189,7 @@ impl Sweep {
     fn conditioning(
         slf: &Bound<'_, Self>,
         executor: Option<Bound<'_, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Conditioning> {
         let (py, this) = (slf.py(), slf.get());
         this.check_conditioned()?;
@@ -182,7 +217,7 @@ impl Sweep {
     fn local_conditioning<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         this.check_conditioned()?;

@@ -1,6 +1,7 @@
 //! What inverse kinematics finds for many poses, as arrays.
 
 use crate::error::failed;
+use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
@@ -32,7 +33,7 @@ pub struct Solutions {
     /// Names of the last axis of `imaginary`.
     imaginary_names: Vec<String>,
     /// `m` or `rad` of every joint and imaginary joint, by name.
-    units: BTreeMap<String, &'static str>,
+    units: BTreeMap<String, String>,
     /// The working mode, or `all`.
     mode: String,
     /// The working modes: of the mode axis, if there is one.
@@ -73,7 +74,7 @@ impl Solutions {
         }
         .solve(py, manipulator, mode, threads)?;
         let tables = [joints, imaginary];
-        Ok(Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits]))
+        Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits])
     }
 
     /// From tables with a row for each mode of each pose, the modes of a pose together.
@@ -81,16 +82,15 @@ impl Solutions {
         py: Python<'_>,
         manipulator: &Manipulator,
         rows: usize,
-        tables: &mut Tables<2>,
+        tables: Tables<'_, 2>,
     ) -> PyResult<Self> {
         let modes = manipulator.modes().count();
         let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
         let [joints, imaginary] = widths.map(|width| vec![rows, modes, width]);
-        let numbers =
-            [tables.take(py, 0)?.reshape(joints)?, tables.take(py, 1)?.reshape(imaginary)?];
-        let [reachable, within_limits] = std::mem::take(&mut tables.answers)
-            .map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
-        Ok(Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?]))
+        let numbers = [tables.table(0).reshape(joints)?, tables.table(1).reshape(imaginary)?];
+        let [reachable, within_limits] =
+            tables.answers.map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
+        Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?])
     }
 
     /// The arrays, and what their axes are called.
@@ -100,13 +100,13 @@ impl Solutions {
         rows: usize,
         [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
-    ) -> Self {
+    ) -> PyResult<Self> {
         let format = |mode| manipulator.format_mode(mode);
-        Self {
-            joints: joints.unbind(),
-            imaginary: imaginary.unbind(),
-            reachable: reachable.unbind(),
-            within_limits: within_limits.unbind(),
+        Ok(Self {
+            joints: frozen(joints)?,
+            imaginary: frozen(imaginary)?,
+            reachable: frozen(reachable)?,
+            within_limits: frozen(within_limits)?,
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
@@ -116,7 +116,7 @@ impl Solutions {
                 None => manipulator.modes().map(format).collect(),
             },
             rows,
-        }
+        })
     }
 }
 
@@ -189,10 +189,13 @@ fn split<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 }
 
 /// The units of all joints and imaginary joints.
-pub fn units(manipulator: &Manipulator) -> BTreeMap<String, &'static str> {
+pub fn units(manipulator: &Manipulator) -> BTreeMap<String, String> {
     let joints = manipulator.coordinates().iter().map(|c| (&c.name, c.quantity));
     let imaginary = manipulator.imaginary().iter().map(|joint| (&joint.name, joint.quantity));
-    joints.chain(imaginary).map(|(name, quantity)| (name.clone(), quantity.unit())).collect()
+    joints
+        .chain(imaginary)
+        .map(|(name, quantity)| (name.clone(), quantity.unit().to_owned()))
+        .collect()
 }
 
 /// The entries of one name, along the last axis of whichever table has it: a view.
@@ -208,6 +211,19 @@ pub fn column<'py>(
     let known = tables.map(|(names, _)| names.join(", ")).join(", ");
     Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
 }
+
+pickled!(Solutions {
+    joints,
+    imaginary,
+    reachable,
+    within_limits,
+    joint_names,
+    imaginary_names,
+    units,
+    mode,
+    modes,
+    rows,
+});
 
 #[pymethods]
 impl Solutions {

@@ -1,5 +1,6 @@
 //! Sweeps of a grid of poses.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::html;
 use crate::interrupt;
@@ -83,9 +84,9 @@ pub fn sweep(
     mode: &str,
     max_condition: Option<f64>,
     length: Option<f64>,
-    threads: Option<NonZeroUsize>,
+    #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
-    shards: Option<NonZeroU64>,
+    #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     axes: Option<BTreeMap<String, Bound<'_, PyAny>>>,
 ) -> PyResult<Sweep> {
     let axes =
@@ -259,7 +260,7 @@ impl Sweep {
     fn mask<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mask = Self::flat_mask(slf, Parts::new(executor, shards)?.as_ref())?;
         slf.get().shaped(&mask)
@@ -270,7 +271,7 @@ impl Sweep {
     fn points<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, this, parts) = (slf.py(), slf.get(), Parts::new(executor, shards)?);
         match (this.least(), parts) {
@@ -296,7 +297,7 @@ impl Sweep {
     fn visits<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
         if !matches!(this.asked.kind, Kind::Reachable | Kind::Dexterous) {
@@ -313,9 +314,9 @@ impl Sweep {
         &self,
         py: Python<'_>,
         tolerance: Option<f64>,
-        budget: Option<u64>,
+        #[pyo3(from_py_with = arguments::budget)] budget: Option<u64>,
         executor: Option<Bound<'_, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Measure> {
         if self.least().is_some() {
             let (kind, points) = (self.kind(), self.asked.kind.points());
@@ -396,9 +397,9 @@ impl Sweep {
     fn write(
         &self,
         py: Python<'_>,
-        path: PathBuf,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         axes: Option<CloudAxes>,
-        scalars: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
         let of = self.of.get();
@@ -429,9 +430,9 @@ impl Sweep {
     fn write_mcap(
         &self,
         py: Python<'_>,
-        path: PathBuf,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         axes: Option<CloudAxes>,
-        scalars: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {

@@ -1,17 +1,15 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
+use crate::arguments;
 use crate::error::wrong;
 use crate::html;
 use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayLike2, PyArrayMethods,
-};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
-
-type Array2<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 
 /// Rates and accelerations of every joint at many poses.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
@@ -38,6 +36,27 @@ pub struct Singularity {
     coordinates: Py<PyArray1<f64>>,
     reachable: Py<PyArray1<bool>>,
 }
+
+pickled!(Motion {
+    joint_rates,
+    joint_accelerations,
+    imaginary_rates,
+    imaginary_accelerations,
+    reachable,
+    regular,
+});
+pickled!(Singularity {
+    upper_serial,
+    upper_parallel,
+    lower_serial,
+    lower_parallel,
+    serial,
+    parallel,
+    condition,
+    manipulability,
+    coordinates,
+    reachable,
+});
 
 #[pymethods]
 impl Motion {
@@ -78,12 +97,13 @@ impl Manipulator {
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
         joints: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
+        let poses = Rows::new(&poses)?;
         let rows: Vec<usize> = match joints {
             "actuated" => self.inner.actuated().to_vec(),
             "all" => (0..self.inner.coordinates().len()).collect(),
@@ -94,7 +114,7 @@ impl Manipulator {
             }
         };
         let columns = self.inner.task_coordinates().len();
-        let mut tables = Tables::fill(
+        let tables = Tables::fill(
             py,
             poses.count,
             [rows.len() * columns],
@@ -120,7 +140,7 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        tables.take(py, 0)?.reshape([poses.count, rows.len(), columns])
+        tables.table(0).reshape([poses.count, rows.len(), columns])
     }
 
     /// Rates and accelerations of every joint, for those of the task coordinates.
@@ -128,15 +148,16 @@ impl Manipulator {
     fn velocity<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
-        rates: Array2<'py>,
-        accelerations: Option<Array2<'py>>,
+        poses: &Bound<'py, PyAny>,
+        rates: &Bound<'py, PyAny>,
+        accelerations: Option<&Bound<'py, PyAny>>,
         mode: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Motion> {
         let mode = self.mode(mode)?;
-        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
-        let poses = self.poses(&poses)?;
+        let names = self.pose_names();
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
         let per_pose = |rows: &Rows<'_>, what: &str| {
             // One row is for all poses.
             if rows.count != poses.count && rows.count != 1 {
@@ -145,12 +166,13 @@ impl Manipulator {
             }
             Ok(())
         };
-        let rates = Rows::new(&rates, "rates", &names)?;
+        let rates = arguments::rows(rates, "rates", &names)?;
+        let rates = Rows::new(&rates)?;
         per_pose(&rates, "rates")?;
         let accelerations = accelerations
-            .as_ref()
-            .map(|array| Rows::new(array, "accelerations", &names))
+            .map(|given| arguments::rows(given, "accelerations", &names))
             .transpose()?;
+        let accelerations = accelerations.as_ref().map(Rows::new).transpose()?;
         accelerations.iter().try_for_each(|rows| per_pose(rows, "accelerations"))?;
         let none = vec![0.0; names.len()];
         let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
@@ -193,14 +215,15 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        let [reachable, regular] = std::mem::take(&mut tables.answers);
+        let [reachable, regular] =
+            std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
         Ok(Motion {
-            joint_rates: tables.take(py, 0)?.unbind(),
-            joint_accelerations: tables.take(py, 1)?.unbind(),
-            imaginary_rates: tables.take(py, 2)?.unbind(),
-            imaginary_accelerations: tables.take(py, 3)?.unbind(),
-            reachable: reachable.into_pyarray(py).unbind(),
-            regular: regular.into_pyarray(py).unbind(),
+            joint_rates: frozen(tables.table(0))?,
+            joint_accelerations: frozen(tables.table(1))?,
+            imaginary_rates: frozen(tables.table(2))?,
+            imaginary_accelerations: frozen(tables.table(3))?,
+            reachable: frozen(reachable)?,
+            regular: frozen(regular)?,
         })
     }
 
@@ -209,12 +232,13 @@ impl Manipulator {
     fn singularity<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
         length: Option<f64>,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Singularity> {
-        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
+        let poses = Rows::new(&poses)?;
         let length = characteristic_length(&self.inner, length)?;
         let mut tables = Tables::fill(
             py,
@@ -247,10 +271,9 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        let [reachable, _] = std::mem::take(&mut tables.answers);
-        let mut take = |number: usize| -> PyResult<Py<PyArray1<f64>>> {
-            Ok(tables.take(py, number)?.reshape([poses.count])?.unbind())
-        };
+        let [reachable, _] =
+            std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
+        let take = |number: usize| frozen(tables.table(number).reshape([poses.count])?);
         Ok(Singularity {
             upper_serial: take(0)?,
             upper_parallel: take(1)?,
@@ -261,7 +284,7 @@ impl Manipulator {
             condition: take(6)?,
             manipulability: take(7)?,
             coordinates: take(8)?,
-            reachable: reachable.into_pyarray(py).unbind(),
+            reachable: frozen(reachable)?,
         })
     }
 }
