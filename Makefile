@@ -30,7 +30,7 @@ test-rust: ## Run the Rust tests, build the examples
 # The module as the Rust tests are built: optimised, without the minutes that linking for release takes.
 test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
 	MATURIN_PEP517_ARGS="--profile dev" $(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
-	$(TESTS_VENV)/bin/python -m pytest -q tests/python py/tests
+	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal tests/python py/tests
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
 	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py

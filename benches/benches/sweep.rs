@@ -51,7 +51,7 @@ fn per_pose(manipulator: &Manipulator, grid: &Grid) -> u64 {
     let (mode, mut drives) = (manipulator.home_mode(), manipulator.drives());
     let mut pose = [0.0; 5];
     let reached = (0..grid.poses()).filter(|&index| {
-        take(grid, index, &mut pose);
+        grid.pose_into(index, &mut pose);
         let reached = manipulator.inverse_drives(&pose, mode, &mut drives);
         reached.expect("a finite pose") && drives.within_limits
     });
@@ -66,7 +66,7 @@ fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
     for slice in 0..grid.slices() {
         let Some(ways) = ways(manipulator, grid, slice) else { continue };
         for index in slice * in_slice..(slice + 1) * in_slice {
-            take(grid, index, &mut pose);
+            grid.pose_into(index, &mut pose);
             let v = task.lower(&pose[..grid.lower()]);
             count += u64::from(ways.iter().all(|way| manipulator.follows(way, &v)));
         }
@@ -77,21 +77,13 @@ fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
 /// How each leg follows in a slice, in the home mode; `None` where one does not.
 fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<Follow>> {
     let mut pose = [0.0; 5];
-    take(grid, slice * (grid.poses() / grid.slices()), &mut pose);
+    grid.pose_into(slice * (grid.poses() / grid.slices()), &mut pose);
     let b = manipulator.task().upper(&pose[grid.lower()..]);
     let mut ways = Vec::new();
     for leg in 0..manipulator.legs() {
         manipulator.follow(leg, &b, Some(manipulator.home_mode()), &mut ways);
     }
     (ways.len() == manipulator.legs()).then_some(ways)
-}
-
-/// A pose without the allocation of [`Grid::pose`].
-fn take(grid: &Grid, mut index: u64, pose: &mut [f64; 5]) {
-    for (value, axis) in pose.iter_mut().zip(grid.axes()) {
-        *value = axis.value(index % axis.count);
-        index /= axis.count;
-    }
 }
 
 /// A way of counting a grid, held to what it must count.

@@ -337,7 +337,7 @@ pub struct TrajectoryArgs {
 /// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
 ///
 /// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
-/// is nothing to do. `opm merge` joins the parts, and takes --axes, --color and --scalars.
+/// is nothing to do. `opm merge` joins the parts, and takes --axes, --color, --scalars and --shape.
 ///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
 /// more than one value. `seconds` is the time of the count.
@@ -384,7 +384,7 @@ pub struct WorkspaceArgs {
         long,
         value_name = "I/N",
         requires = "output",
-        conflicts_with_all = ["axes", "color", "scalars"]
+        conflicts_with_all = ["axes", "color", "scalars", "shape"]
     )]
     pub shard: Option<Shard>,
     /// Sweep a shard again, and replace whatever file there is
@@ -433,6 +433,9 @@ pub struct MergeArgs {
     /// The files of all shards
     #[arg(value_name = "PART.mcap", required = true, value_hint = ValueHint::FilePath)]
     pub parts: Vec<PathBuf>,
+    /// Also find the boundary and the connected components, as of all kinds but `grid`
+    #[arg(long)]
+    pub shape: bool,
     /// Where the points go, and what of them
     #[command(flatten)]
     pub cloud: CloudArgs,

@@ -7,8 +7,9 @@ use crate::source::Source;
 use crate::workspace::Run;
 use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
 use opm_mcap::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use opm_mcap::{CloudLayout, Packer};
-use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Progress};
+use opm_mcap::{CloudLayout, Packer, RecordError};
+use opm_workspace::{Axis, ConditionLimit, Conditioned, Count, Grid, Hits, Modes, Poses, Progress};
+use std::sync::{Mutex, PoisonError};
 
 /// The name of the platform's point among the axes.
 const TIP: &str = "tip";
@@ -255,18 +256,44 @@ fn column(manipulator: &Manipulator, name: &str, flag: &str) -> Result<Named, Fa
 }
 
 /// Points of one slice: values, or bytes of a cloud where there is a packer.
-#[derive(Default)]
 pub struct Portion {
     pub slice: u64,
     pub values: Vec<f64>,
     pub packed: Vec<u8>,
 }
 
+/// Packs points, into buffers that are used again: those of the system are cleared first, page by page,
+/// which takes a third as long as everything else.
+pub struct Packing {
+    packer: Packer,
+    buffers: Mutex<Vec<Vec<u8>>>,
+}
+
+impl Packing {
+    /// For the points of this layout.
+    pub fn new(layout: &CloudLayout) -> Result<Self, RecordError> {
+        Ok(Self { packer: Packer::new(layout)?, buffers: Mutex::default() })
+    }
+
+    /// An empty buffer.
+    fn buffer(&self) -> Vec<u8> {
+        let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        buffers.pop().unwrap_or_default()
+    }
+
+    /// Takes back the buffer of points that are written.
+    pub fn reuse(&self, portion: Portion) {
+        let mut buffer = portion.packed;
+        buffer.clear();
+        self.buffers.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
+    }
+}
+
 /// Points of a cloud in the making, in portions of one slice.
 pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
-    packer: Option<&'a Packer>,
+    packing: Option<&'a Packing>,
     /// All columns are task coordinates.
     plain: bool,
     joints: Joints<'a>,
@@ -288,7 +315,7 @@ enum Joints<'a> {
 }
 
 impl<'a> Points<'a> {
-    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packer: Option<&'a Packer>) -> Self {
+    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packing: Option<&'a Packing>) -> Self {
         let manipulator = cloud.manipulator;
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
         let condition = columns.contains(&Column::InverseCondition);
@@ -310,7 +337,7 @@ impl<'a> Points<'a> {
         };
         let plain = columns.iter().all(|column| matches!(column, Column::Task(_)));
         let (pose, portions) = (Vec::new(), Vec::new());
-        Self { cloud, columns, packer, plain, joints, pose, portions, wrong: None }
+        Self { cloud, columns, packing, plain, joints, pose, portions, wrong: None }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
@@ -318,8 +345,8 @@ impl<'a> Points<'a> {
         pose.clear();
         pose.push(0.0);
         pose.extend(hits.others);
-        match self.packer {
-            Some(packer) if self.plain => self.line(packer, hits, &pose),
+        match self.packing {
+            Some(packing) if self.plain => self.line(&packing.packer, hits, &pose),
             _ => {
                 for &first in hits.first {
                     pose[0] = first;
@@ -348,8 +375,10 @@ impl<'a> Points<'a> {
 
     /// Packs the values so far.
     fn pack(&mut self) {
-        let (Some(packer), Some(portion)) = (self.packer, self.portions.last_mut()) else { return };
-        if let Err(error) = packer.pack(&portion.values, &mut portion.packed) {
+        let (Some(packing), Some(portion)) = (self.packing, self.portions.last_mut()) else {
+            return;
+        };
+        if let Err(error) = packing.packer.pack(&portion.values, &mut portion.packed) {
             self.wrong.get_or_insert(Failure::at("a point", &error));
         }
         portion.values.clear();
@@ -358,7 +387,8 @@ impl<'a> Points<'a> {
     /// Makes the last portion one of this slice.
     fn open(&mut self, slice: u64) {
         if self.portions.last().is_none_or(|last| last.slice != slice) {
-            self.portions.push(Portion { slice, ..Default::default() });
+            let packed = self.packing.map_or_else(Vec::new, Packing::buffer);
+            self.portions.push(Portion { slice, values: Vec::new(), packed });
         }
     }
 

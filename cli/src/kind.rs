@@ -12,8 +12,8 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline, Progress,
-    Sections, SetError, Sweep, Visits, boundary, components,
+    Axis, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline, Poses,
+    Progress, Sections, Visits, boundary, components,
 };
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -182,11 +182,6 @@ impl Kind {
 
     /// Refuses flags that make no sense with it.
     pub fn check_flags(self, args: &WorkspaceArgs) -> Result<(), Failure> {
-        let whole = self == Self::Grid && !args.shape && !args.conditioning;
-        if args.shard.is_some() && !whole {
-            let problem = "shards are of --kind grid, without --shape and --conditioning";
-            return Err(Failure::flag("--shard", problem));
-        }
         if args.conditioning && !self.is_of_poses() {
             let problem = "only poses have a condition number; ask for it of grid, \
                            constant-orientation or orientation";
@@ -246,14 +241,12 @@ pub struct Questions {
     pub kind: Kind,
     /// Its boundary and its components.
     pub shape: bool,
-    /// Characteristic length of the conditioning index.
-    pub conditioning: Option<f64>,
 }
 
 impl Questions {
-    /// How often the grid is swept for the answers.
-    pub fn passes(&self) -> u64 {
-        u64::from(self.shape || !self.kind.is_of_poses()) + u64::from(self.conditioning.is_some())
+    /// Whether the answers take all poses.
+    pub fn need_poses(&self) -> bool {
+        self.shape || !self.kind.is_of_poses()
     }
 }
 
@@ -263,32 +256,38 @@ pub struct Study {
     /// The points, where they are held in memory.
     pub set: Option<GridSet>,
     pub visits: Option<Visits>,
-    shape: Option<Shape>,
-    conditioning: Option<ConditioningIndex>,
+    pub conditioning: Option<ConditioningIndex>,
+    pub shape: Option<Shape>,
 }
 
-struct Shape {
+/// A set's parts and its outline.
+pub struct Shape {
     components: Vec<u64>,
     boundary: Option<Vec<Outline>>,
 }
 
 impl Study {
-    /// Sweeps as often as it takes.
-    pub fn new(
-        questions: &Questions,
-        sweep: &Sweep<'_>,
+    /// Nothing yet.
+    pub fn nothing(kind: Kind) -> Self {
+        Self { kind, set: None, visits: None, conditioning: None, shape: None }
+    }
+
+    /// What follows from the poses, which are gone through once if that is needed.
+    pub fn new<P: Poses>(
+        questions: Questions,
+        poses: &P,
         progress: &Progress,
-    ) -> Result<Self, SetError> {
-        let Questions { kind, shape, conditioning } = *questions;
+    ) -> Result<Self, P::Error> {
+        let Questions { kind, shape } = questions;
         let visits = match kind {
-            Kind::Reachable | Kind::Dexterous => Some(Visits::new(sweep, progress)?),
+            Kind::Reachable | Kind::Dexterous => Some(Visits::new(poses, progress)?),
             _ => None,
         };
         let set = match (kind, &visits) {
             (Kind::Dexterous, Some(visits)) => Some(visits.dexterous()?),
             (_, Some(visits)) => Some(visits.reachable()?),
-            (Kind::Imaginary, None) => Some(GridSet::slices(sweep, progress)?),
-            _ if shape || !kind.is_of_poses() => Some(GridSet::reached(sweep, progress)?),
+            (Kind::Imaginary, None) => Some(GridSet::slices(poses, progress)?),
+            _ if questions.need_poses() => Some(GridSet::reached(poses, progress)?),
             _ => None,
         };
         let shape = set.as_ref().filter(|_| shape).map(|set| Shape {
@@ -296,10 +295,7 @@ impl Study {
             // That of the orientations says nothing of the imaginary joints.
             boundary: if kind == Kind::Imaginary { None } else { boundary(set) },
         });
-        let conditioning = conditioning
-            .map(|length| ConditioningIndex::new(sweep, length, progress))
-            .transpose()?;
-        Ok(Self { kind, set, visits, shape, conditioning })
+        Ok(Self { kind, set, visits, conditioning: None, shape })
     }
 
     /// The boundary, slice by slice, where it is known.

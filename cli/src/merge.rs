@@ -1,18 +1,17 @@
 //! `opm merge`: the shards of a sweep as the one run that they are parts of.
 
 use crate::args::{MergeArgs, Output};
-use crate::cloud::Wishes;
 use crate::failure::Failure;
-use crate::kind::Kind;
+use crate::kind::{Kind, Study};
 use crate::load::{self, Loaded};
 use crate::progress::{interruptible, watch_reading};
 use crate::record::{PROGRAM, Recorder};
-use crate::shard::Stored;
+use crate::shard::{self, CONDITIONING, Stored};
 use crate::source::Source;
-use crate::workspace::{Effort, Outcome, Run, Work, grid_flags, threads};
+use crate::workspace::{AnyWishes, Effort, Outcome, Run, Work, grid_flags, threads};
 use opm_core::manipulator::Manipulator;
 use opm_mcap::Metadata;
-use opm_workspace::{Axis, ConditionLimit, Count, Grid, Modes};
+use opm_workspace::{Axis, ConditionLimit, ConditioningIndex, Count, Grid, Modes};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -43,31 +42,38 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = whole.loaded.compile()?;
     let described = Described::new(&whole.record, &manipulator)
         .ok_or_else(|| first.wrong("not a run that this program knows"))?;
-    let Described { grid, modes, limit } = &described;
+    let Described { kind, grid, modes, limit, conditioning } = &described;
     let run = Run {
         loaded: &whole.loaded,
         manipulator: &manipulator,
-        kind: Kind::Grid,
+        kind: *kind,
         grid,
         modes: *modes,
         limit: *limit,
+        conditioning: *conditioning,
     };
-    let found = join(&run, &whole, &parts)?;
+    let Joined { mut found, conditioning } = join(&run, &whole, &parts)?;
 
     let work = Work { output, pool: &pool, progress: &progress };
-    let length = limit.map_or_else(|| manipulator.characteristic_length(), |limit| limit.length);
-    let wishes = Wishes::new(&args.cloud, length, &manipulator)?;
+    let length = limit.map(|limit| limit.length).or(run.conditioning);
+    let length = length.unwrap_or_else(|| manipulator.characteristic_length());
+    let wishes = AnyWishes::new(*kind, &args.cloud, length, &manipulator)?;
+    let mut recorder = None;
     if let Some(path) = &args.cloud.output {
         let inputs: Vec<&Path> = parts.iter().map(|part| &*part.path).collect();
         whole.loaded.refuse_as_output(path, &inputs)?;
-        Recorder::check(path, grid)?;
-        let recorder = Recorder::create(path)?;
-        let files = parts.iter().map(|part| part.path.clone()).collect();
-        work.record(recorder, wishes, &run, &found, &Source::Shards { grid, files }, None)?;
+        Recorder::check_run(path, *kind, Some(grid))?;
+        recorder = Some(Recorder::create(path)?);
     }
+    let files = parts.iter().map(|part| part.path.clone()).collect();
+    let source = Source::Shards { grid, files };
+    let study = Study { conditioning, ..work.study(&run, args.shape, &source, &mut found)? };
     work.warn_of_nothing(&run, &found);
+    if let Some(recorder) = recorder {
+        work.record(recorder, wishes, &run, &found, &source, &study)?;
+    }
     let effort = Effort::Merged { shards: parts.len() as u64 };
-    let outcome = Outcome { run: &run, found: &found, study: None, effort, shard: None };
+    let outcome = Outcome { run: &run, found: &found, study: &study, effort, shard: None };
     output.print(&outcome.json(), outcome.text())
 }
 
@@ -112,22 +118,27 @@ impl Whole {
 
 /// A run, read back from its record.
 struct Described {
+    kind: Kind,
     grid: Grid,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    conditioning: Option<f64>,
 }
 
 impl Described {
     /// `None` where the record is not one of a run of this manipulator.
     fn new(record: &Metadata, manipulator: &Manipulator) -> Option<Self> {
-        let axes = manipulator.task_coordinates().iter().map(|coordinate| {
+        let kind = Kind::named(record.get("kind")?)?;
+        let sections = kind.sections();
+        let coordinates = sections.coordinates(manipulator);
+        let axes = coordinates.into_iter().map(|coordinate| {
             let values = record.get(&format!("grid.{}", coordinate.name))?;
             let mut values = values.split(':');
             let mut next = || values.next();
             let [min, max] = [next()?.parse().ok()?, next()?.parse().ok()?];
             Some(Axis::new(coordinate.name, min, max, next()?.parse().ok()?))
         });
-        let grid = Grid::new(manipulator, axes.collect::<Option<_>>()?).ok()?;
+        let grid = Grid::of(sections, manipulator, axes.collect::<Option<_>>()?).ok()?;
         let modes = match &**record.get("mode")? {
             "any" => Modes::Any,
             signs => Modes::One(manipulator.parse_mode(signs).ok()?),
@@ -137,12 +148,19 @@ impl Described {
             (None, None) => None,
             (most, length) => Some(ConditionLimit { most: most??, length: length?? }),
         };
-        Some(Self { grid, modes, limit })
+        let conditioning = match number(CONDITIONING) {
+            None => None,
+            Some(length) => Some(length?),
+        };
+        Some(Self { kind, grid, modes, limit, conditioning })
     }
 }
 
+/// What all shards found together.
+type Joined = shard::Part;
+
 /// What all shards found, if they are the parts of one run, each of them once.
-fn join(run: &Run<'_>, whole: &Whole, parts: &[Part]) -> Result<Count, Failure> {
+fn join(run: &Run<'_>, whole: &Whole, parts: &[Part]) -> Result<Joined, Failure> {
     for part in parts {
         part.stored.belongs(&whole.record, &whole.loaded.text)?;
     }
@@ -162,8 +180,14 @@ fn join(run: &Run<'_>, whole: &Whole, parts: &[Part]) -> Result<Count, Failure> 
     if (there.len() as u64) < of {
         return Err(missing(run, parts, &there, of));
     }
-    parts.iter().try_fold(Count::nothing(run.manipulator), |found, part| {
-        Ok(found.merge(&part.stored.count(run)?))
+    let conditioning = run.conditioning.map(ConditioningIndex::nothing);
+    let nothing = Joined { found: Count::nothing(run.manipulator), conditioning };
+    parts.iter().try_fold(nothing, |Joined { found, mut conditioning }, part| {
+        let part = part.stored.part(run)?;
+        if let (Some(all), Some(index)) = (&mut conditioning, &part.conditioning) {
+            all.add(index);
+        }
+        Ok(Joined { found: found.merge(&part.found), conditioning })
     })
 }
 
@@ -202,12 +226,21 @@ fn gaps(there: &BTreeSet<u64>, of: u64) -> Vec<[u64; 2]> {
 /// The command that makes a shard.
 fn command(run: &Run<'_>, part: &Part, number: u64, of: u64) -> String {
     let mut command = format!("opm workspace {}", quoted(&run.loaded.label));
+    if run.kind != Kind::Grid {
+        command += &format!(" --kind {}", run.kind.name());
+    }
     command += &format!(" {}", grid_flags(run.grid));
     if !run.mode().is_empty() {
         command += &format!(" --mode {}", quoted(&run.mode()));
     }
-    if let Some(ConditionLimit { most, length }) = run.limit {
-        command += &format!(" --max-condition {most} --length {length}");
+    if let Some(ConditionLimit { most, .. }) = run.limit {
+        command += &format!(" --max-condition {most}");
+    }
+    if run.conditioning.is_some() {
+        command += " --conditioning";
+    }
+    if let Some(length) = run.conditioning.or(run.limit.map(|limit| limit.length)) {
+        command += &format!(" --length {length}");
     }
     let output = named_like(part, number);
     command + &format!(" --shard {number}/{of} -o {}", quoted(&output.display().to_string()))

@@ -1,17 +1,17 @@
 //! The recording of a sweep: the passes that write it, and what it says of the run.
 
-use crate::cloud::{Cloud, Points, Portion};
+use crate::cloud::{Cloud, Packing, Points, Portion};
 use crate::failure::Failure;
-use crate::kind::{SetRecording, Study, pose_boundary};
+use crate::kind::{Kind, SetRecording, Study, pose_boundary};
 use crate::source::Source;
 use crate::text::count;
 use crate::workspace::Run;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::{
-    CloudLayout, MAX_SLICES, Metadata, Packer, PartialFile, RecordError, TableFormat,
-    TableRecorder, Workspace, WorkspaceRecorder, table_columns,
+    CloudLayout, MAX_SLICES, Metadata, PartialFile, RecordError, TableFormat, TableRecorder,
+    Workspace, WorkspaceRecorder, table_columns,
 };
-use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Progress};
+use opm_workspace::{Axis, Cancelled, ConditionLimit, Count, Grid, Poses, Progress};
 use std::path::{Path, PathBuf};
 
 /// What writes the files.
@@ -73,6 +73,14 @@ impl Format {
 }
 
 impl Recorder {
+    /// Refuses a name, or a grid, that a recording of this kind does not have.
+    pub fn check_run(path: &Path, kind: Kind, grid: Option<&Grid>) -> Result<(), Failure> {
+        match kind.is_of_poses() {
+            true => grid.map_or(Ok(()), |grid| Self::check(path, grid)),
+            false => Self::check_set(path, &kind.name()),
+        }
+    }
+
     /// Refuses a name of no known ending, and for MCAP a grid whose slowest axis alone has more values
     /// than a recording may have slices.
     pub fn check(path: &Path, grid: &Grid) -> Result<(), Failure> {
@@ -202,9 +210,9 @@ impl Job<'_> {
     fn table(&self, file: PartialFile, format: TableFormat) -> Result<(), Failure> {
         let Self { run, cloud, layout, .. } = self;
         let failed = |error| self.failed(&error);
-        let packer = match format {
+        let packing = match format {
             TableFormat::Npy => None,
-            TableFormat::Ply => Some(Packer::new(layout).map_err(failed)?),
+            TableFormat::Ply => Some(Packing::new(layout).map_err(failed)?),
         };
         let mut columns = cloud.columns();
         if format == TableFormat::Npy {
@@ -216,20 +224,24 @@ impl Job<'_> {
         let points = self.found.reachable;
         let table = TableRecorder::new(file, format, layout, points, &describe(run));
         let mut table = table.map_err(failed)?;
-        let made = || Points::new(cloud, &columns, packer.as_ref());
+        let made = || Points::new(cloud, &columns, packing.as_ref());
         let mut bytes = Vec::new();
-        let mut write = |portion: &Portion| {
+        let mut write = |portion: Portion| {
             bytes.clear();
             bytes.extend(portion.values.iter().flat_map(|value| value.to_le_bytes()));
-            bytes.extend_from_slice(&portion.packed);
-            table.push(&bytes).map_err(failed)
+            table.push(&bytes).map_err(failed)?;
+            table.push(&portion.packed).map_err(failed)?;
+            if let Some(packing) = &packing {
+                packing.reuse(portion);
+            }
+            Ok(())
         };
         self.source
             .points(
                 self.progress,
                 |hits, points: &mut Points<'_>| points.add(hits),
                 made,
-                |mut points| points.take()?.iter().try_for_each(&mut write),
+                |mut points| points.take()?.into_iter().try_for_each(&mut write),
             )
             .map_err(|failure| self.interrupted(failure))?;
         table.finish().map_err(failed)
@@ -263,7 +275,7 @@ impl Job<'_> {
             points: found.reachable,
             slices: run.grid.slices() / together(run.grid),
         };
-        let packer = Packer::new(&workspace.layout).map_err(failed)?;
+        let packing = Packing::new(&workspace.layout).map_err(failed)?;
         let mut recorder = WorkspaceRecorder::new(file, &workspace).map_err(failed)?;
         let together = together(run.grid);
         let lines = study
@@ -275,7 +287,8 @@ impl Job<'_> {
         let every = recorder.overview_every();
         // Of all points, how many there were, and which is the overview's next.
         let (mut seen, mut next) = (0, 0);
-        let mut overview = Points::new(cloud, &columns, Some(&packer));
+        let mut overview = Points::new(cloud, &columns, Some(&packing));
+        let mut pose = vec![0.0; run.grid.axes().len()];
         source
             .points(
                 progress,
@@ -285,14 +298,17 @@ impl Job<'_> {
                     for opm_workspace::Run { from, to } in runs {
                         let end = seen + (to - from);
                         while next < end {
-                            overview.point(0, &run.grid.pose(from + (next - seen)));
+                            run.grid.pose_into(from + (next - seen), &mut pose);
+                            overview.point(0, &pose);
                             next += every;
                         }
                         seen = end;
                     }
-                    let made = overview.take()?;
-                    made.iter()
-                        .try_for_each(|p| recorder.overview_packed(&p.packed).map_err(failed))
+                    overview.take()?.into_iter().try_for_each(|portion| {
+                        recorder.overview_packed(&portion.packed).map_err(failed)?;
+                        packing.reuse(portion);
+                        Ok(())
+                    })
                 },
             )
             .map_err(interrupted)?;
@@ -300,10 +316,13 @@ impl Job<'_> {
             .points(
                 progress,
                 |hits, points: &mut Points<'_>| points.add(hits),
-                || Points::new(cloud, &columns, Some(&packer)),
+                || Points::new(cloud, &columns, Some(&packing)),
                 |mut points| {
-                    points.take()?.iter().try_for_each(|Portion { slice, packed, .. }| {
-                        recorder.push_packed(slice / together, packed).map_err(failed)
+                    points.take()?.into_iter().try_for_each(|portion| {
+                        let slice = portion.slice / together;
+                        recorder.push_packed(slice, &portion.packed).map_err(failed)?;
+                        packing.reuse(portion);
+                        Ok(())
                     })
                 },
             )
@@ -356,7 +375,7 @@ pub fn describe(run: &Run<'_>) -> Metadata {
 
 /// What came of it.
 fn result(run: &Run<'_>, found: &Count) -> Metadata {
-    let (measure, units) = run.measure(found, FileUnits::SI);
+    let (measure, units) = run.measure(run.kind, found, FileUnits::SI);
     let mut record: Metadata = [
         ("reachable", found.reachable.to_string()),
         ("fraction", (found.reachable as f64 / found.poses as f64).to_string()),

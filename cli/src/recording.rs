@@ -15,7 +15,7 @@ use crate::trajectory;
 use crate::workspace::Run;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::Motion;
-use opm_workspace::{ConditionLimit, Count, Grid, Modes, Progress, SetError};
+use opm_workspace::{ConditionLimit, Count, Grid, Modes, Progress};
 use std::path::Path;
 use std::sync::atomic::AtomicU64;
 
@@ -108,17 +108,14 @@ impl<'a> Swept<'a> {
         'a: 'b,
     {
         let Self { manipulator, kind, grid, modes, limit, .. } = *self;
-        Run { loaded, manipulator, kind, grid, modes, limit }
+        Run { loaded, manipulator, kind, grid, modes, limit, conditioning: None }
     }
 }
 
 /// The shape of a set, by sweeping.
 fn shape(run: &Run<'_>, progress: &Progress) -> Result<Study, Failure> {
-    let questions = Questions { kind: run.kind, shape: true, conditioning: None };
-    Study::new(&questions, &run.sweep(), progress).map_err(|error| match error {
-        SetError::Cancelled(cancelled) => Failure::from(cancelled),
-        SetError::Size { .. } => Failure::Work(error.to_string()),
-    })
+    let questions = Questions { kind: run.kind, shape: true };
+    Study::new(questions, &Source::Sweep(run.sweep()), progress)
 }
 
 fn record_poses(

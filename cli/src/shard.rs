@@ -1,12 +1,13 @@
 //! Shards of a sweep: which run one belongs to, its file, and what that says.
 
 use crate::failure::Failure;
+use crate::kind::Study;
 use crate::record::{create, describe, partial, range_key, ranges};
 use crate::source::runs_of;
 use crate::text::count;
 use crate::workspace::{Effort, Outcome, Run, Work};
 use opm_mcap::{Metadata, RecordError, Recording, ShardRecorder, shard::RUNS_TOPIC};
-use opm_workspace::{Count, Progress, Shard, Sweep};
+use opm_workspace::{ConditioningIndex, Count, Progress, Shard, Sweep};
 use std::path::Path;
 
 /// Sweeps a shard and writes its file, unless that is there.
@@ -17,8 +18,9 @@ pub fn run(
     force: bool,
     work: &Work<'_>,
 ) -> Result<(), Failure> {
-    let outcome = |found, effort| {
-        let outcome = Outcome { run, found, study: None, effort, shard: Some(shard) };
+    let outcome = |Part { found, conditioning }: &Part, effort| {
+        let study = &Study { conditioning: *conditioning, ..Study::nothing(run.kind) };
+        let outcome = Outcome { run, found, study, effort, shard: Some(shard) };
         work.output.print(&outcome.json(), outcome.text())
     };
     if path.is_file() && !force {
@@ -36,11 +38,12 @@ pub fn run(
     let file = create(path)?;
     let sweep = run.sweep().shard(shard);
     let (found, effort) = work.count(&sweep)?;
+    let conditioning = work.conditioning(run, &sweep)?;
     let failed = |error: RecordError| Failure::at(path.display(), &error);
     let header = opm_mcap::Shard {
         mechanism_name: &run.loaded.file_name,
         mechanism: run.loaded.text.as_bytes(),
-        run: describe(run),
+        run: describe_whole(run),
         shard: describe_shard(run, shard),
     };
     let mut recorder = ShardRecorder::new(file, &header).map_err(failed)?;
@@ -53,14 +56,41 @@ pub fn run(
         other => other,
     })?;
     let mut result = ranges(run, &found);
+    result.extend(conditioning.iter().flat_map(describe_conditioning));
     result.insert("poses".into(), found.poses.to_string());
     result.insert("reachable".into(), found.reachable.to_string());
     recorder.finish(&result).map_err(failed)?;
     let (reachable, poses) = (count(found.reachable), count(found.poses));
     let path = path.display();
     work.output.note(format_args!("{path}: shard {shard}, {reachable} of {poses} poses"));
-    outcome(&found, effort)
+    outcome(&Part { found, conditioning }, effort)
 }
+
+/// What a shard found.
+pub struct Part {
+    pub found: Count,
+    pub conditioning: Option<ConditioningIndex>,
+}
+
+/// What is known of the whole run before it: nothing that a merge can still ask for.
+fn describe_whole(run: &Run<'_>) -> Metadata {
+    let length = run.conditioning.map(|length| (CONDITIONING.to_owned(), length.to_string()));
+    describe(run).into_iter().chain(length).collect()
+}
+
+/// The key of the characteristic length of a conditioning index, and the beginning of those of its parts.
+pub const CONDITIONING: &str = "conditioning";
+
+/// A conditioning index to the last digit.
+fn describe_conditioning(index: &ConditioningIndex) -> Metadata {
+    let ConditioningIndex { length: _, poses, min, max, sum } = index;
+    let parts = [poses.to_string(), min.to_string(), max.to_string(), sum.to_string()];
+    let keys = CONDITIONING_PARTS.map(|key| format!("{CONDITIONING}.{key}"));
+    keys.into_iter().zip(parts).collect()
+}
+
+/// `sum` counts units of 2⁻⁶⁰.
+const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
 
 /// Writes the numbers of the poses, runs that go on from row to row as one.
 fn write(
@@ -165,12 +195,12 @@ impl Stored {
     }
 
     /// What it found, if it is this shard of this run.
-    pub fn of(&self, run: &Run<'_>, shard: Shard) -> Result<Count, Failure> {
+    pub fn of(&self, run: &Run<'_>, shard: Shard) -> Result<Part, Failure> {
         if self.shard != shard {
             return Err(self.wrong(&format!("shard {}, expected {shard}", self.shard)));
         }
-        self.belongs(&describe(run), &run.loaded.text)?;
-        self.count(run)
+        self.belongs(&describe_whole(run), &run.loaded.text)?;
+        self.part(run)
     }
 
     /// Refuses a shard of another run.
@@ -194,7 +224,26 @@ impl Stored {
     }
 
     /// What it found, once it is known to be of this run.
-    pub fn count(&self, run: &Run<'_>) -> Result<Count, Failure> {
+    pub fn part(&self, run: &Run<'_>) -> Result<Part, Failure> {
+        let conditioning = run.conditioning.map(|length| self.conditioning(length)).transpose()?;
+        Ok(Part { found: self.count(run)?, conditioning })
+    }
+
+    fn conditioning(&self, length: f64) -> Result<ConditioningIndex, Failure> {
+        let result = self.record("result");
+        let [poses, min, max, sum] =
+            CONDITIONING_PARTS.map(|key| result.get(&format!("{CONDITIONING}.{key}")));
+        let index = || {
+            let (poses, sum) = (poses?.parse().ok()?, sum?.parse().ok()?);
+            let (min, max) = (min?.parse().ok()?, max?.parse().ok()?);
+            Some(ConditioningIndex { length, poses, min, max, sum })
+        };
+        index()
+            .filter(|index| index.poses == self.reachable)
+            .ok_or_else(|| self.wrong("its conditioning index is not that of its poses"))
+    }
+
+    fn count(&self, run: &Run<'_>) -> Result<Count, Failure> {
         let result = self.record("result");
         let sweep = run.sweep().shard(self.shard);
         let mut count = Count::nothing(run.manipulator);

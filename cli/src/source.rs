@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use opm_mcap::read;
-use opm_workspace::{Grid, Hits, Progress, Run, Sweep, replay};
+use opm_workspace::{Grid, Hits, Poses, Progress, Run, SetError, Sweep, replay};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread;
@@ -18,9 +18,17 @@ pub enum Source<'a> {
     Shards { grid: &'a Grid, files: Vec<PathBuf> },
 }
 
-impl Source<'_> {
-    /// As [`Sweep::points`].
-    pub fn points<T: Send>(
+impl Poses for Source<'_> {
+    type Error = Failure;
+
+    fn grid(&self) -> &Grid {
+        match self {
+            Self::Sweep(sweep) => sweep.grid(),
+            Self::Shards { grid, .. } => grid,
+        }
+    }
+
+    fn points<T: Send>(
         &self,
         progress: &Progress,
         make: impl Fn(&Hits<'_>, &mut T) + Sync,
@@ -44,6 +52,15 @@ impl Source<'_> {
                 });
                 replay(grid, runs.into_iter().flatten(), progress, make, empty, visit)
             }),
+        }
+    }
+}
+
+impl From<SetError> for Failure {
+    fn from(error: SetError) -> Self {
+        match error {
+            SetError::Cancelled(cancelled) => cancelled.into(),
+            SetError::Size { .. } => Self::Work(error.to_string()),
         }
     }
 }

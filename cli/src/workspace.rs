@@ -1,6 +1,6 @@
 //! `opm workspace`: sweeps of the workspace.
 
-use crate::args::{Output, WorkspaceArgs};
+use crate::args::{CloudArgs, Output, WorkspaceArgs};
 use crate::cloud::{Cloud, Wishes};
 use crate::failure::Failure;
 use crate::kind::{self, Kind, Questions, SetRecording, SetWishes, Study};
@@ -16,13 +16,12 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Count, Grid, Modes, Progress, Sections, SetError, Shard,
-    Sweep, default_grid,
+    Axis, Cancelled, ConditionLimit, ConditioningIndex, Count, Grid, Modes, Progress, Sections,
+    Shard, Sweep, default_grid,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
-use std::path::Path;
 use std::time::Instant;
 
 pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
@@ -38,17 +37,11 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let limit = args.max_condition.map(|most| ConditionLimit { most, length });
     kind.check_run(&manipulator, modes, limit)?;
     let given = given_grid(&args.grid, kind, &manipulator)?;
-    let wishes = match kind.is_of_poses() {
-        true => AnyWishes::Poses(Wishes::new(&args.cloud, length, &manipulator)?),
-        false => AnyWishes::Set(SetWishes::new(kind, &args.cloud, &manipulator)?),
-    };
+    let wishes = AnyWishes::new(kind, &args.cloud, length, &manipulator)?;
     wishes.check_length(args)?;
     if let Some(path) = &args.cloud.output {
         loaded.refuse_as_output(path, &[])?;
-        match kind.is_of_poses() {
-            true => given.as_ref().map_or(Ok(()), |grid| Recorder::check(path, grid))?,
-            false => Recorder::check_set(path, &kind.name())?,
-        }
+        Recorder::check_run(path, kind, given.as_ref())?;
     }
     let recorder = match (&args.cloud.output, args.shard) {
         (Some(path), None) => Some(Recorder::create(path)?),
@@ -67,7 +60,16 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
              be out of reach, which no section alone is asked for: the whole reaches less than both",
         );
     }
-    let run = Run { loaded: &loaded, manipulator: &manipulator, kind, grid: &grid, modes, limit };
+    let conditioning = args.conditioning.then_some(length);
+    let run = Run {
+        loaded: &loaded,
+        manipulator: &manipulator,
+        kind,
+        grid: &grid,
+        modes,
+        limit,
+        conditioning,
+    };
     let work = Work { output, pool: &pool, progress: &progress };
     if let (Some(shard), Some(path)) = (args.shard, &args.cloud.output) {
         return shard::run(&run, shard, path, args.force, &work);
@@ -75,24 +77,14 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
 
     let sweep = run.sweep();
     let (mut found, effort) = work.count(&sweep)?;
-    let conditioning = args.conditioning.then_some(length);
-    let questions = Questions { kind, shape: args.shape || kind != Kind::Grid, conditioning };
-    let study = work.study(&questions, &sweep, &mut found)?;
+    let conditioning = work.conditioning(&run, &sweep)?;
+    let source = Source::Sweep(sweep);
+    let study = Study { conditioning, ..work.study(&run, args.shape, &source, &mut found)? };
     work.warn_of_nothing(&run, &found);
     if let Some(recorder) = recorder {
-        match wishes {
-            AnyWishes::Poses(wishes) => {
-                work.record(recorder, wishes, &run, &found, &Source::Sweep(sweep), Some(&study))?;
-            }
-            AnyWishes::Set(wishes) => {
-                let set = SetRecording::new(wishes, &run, &study)?;
-                let path = recorder.record_set(&run, &set, &found, &progress)?;
-                work.tell_recorded(&path, &found);
-            }
-        }
+        work.record(recorder, wishes, &run, &found, &source, &study)?;
     }
-    let study = Some(&study);
-    let result = Outcome { run: &run, found: &found, study, effort, shard: None };
+    let result = Outcome { run: &run, found: &found, study: &study, effort, shard: None };
     output.print(&result.json(), result.text())
 }
 
@@ -118,22 +110,32 @@ impl Work<'_> {
         Ok((found, Effort::Counted { poses: sweep.poses(), seconds }))
     }
 
-    /// Finds out what else is asked of the poses; of a set that is not theirs, its points are what
-    /// is found.
-    fn study(
+    /// Sums up the conditioning of the poses of a sweep, if that is asked for.
+    pub fn conditioning(
         &self,
-        questions: &Questions,
+        run: &Run<'_>,
         sweep: &Sweep<'_>,
+    ) -> Result<Option<ConditioningIndex>, Failure> {
+        let Some(length) = run.conditioning else { return Ok(None) };
+        let job = || ConditioningIndex::new(sweep, length, self.progress);
+        Ok(Some(self.watch("conditioning", sweep.poses(), job)?))
+    }
+
+    /// Finds out what else is asked of the poses; of a set that is not theirs, its points are what
+    /// is found. All kinds but the poses themselves are asked for their shape.
+    pub fn study(
+        &self,
+        run: &Run<'_>,
+        shape: bool,
+        source: &Source<'_>,
         found: &mut Count,
     ) -> Result<Study, Failure> {
-        let total = questions.passes() * sweep.poses();
-        let job = || Study::new(questions, sweep, self.progress);
-        let study = self.watch("studying", total, job).map_err(|error| match error {
-            SetError::Cancelled(cancelled) => cancelled.into(),
-            SetError::Size { .. } => {
-                Failure::Work(format!("--kind {}: {error}", questions.kind.name()))
-            }
-        })?;
+        let questions = Questions { kind: run.kind, shape: shape || run.kind != Kind::Grid };
+        if !questions.need_poses() {
+            return Ok(Study::nothing(run.kind));
+        }
+        let job = || Study::new(questions, source, self.progress);
+        let study = self.watch("studying", run.grid.poses(), job)?;
         if let Some(set) = &study.set {
             (found.poses, found.reachable) = (set.points(), set.count());
         }
@@ -144,22 +146,27 @@ impl Work<'_> {
     pub fn record(
         &self,
         recorder: Recorder,
-        wishes: Wishes,
+        wishes: AnyWishes,
         run: &Run<'_>,
         found: &Count,
         source: &Source<'_>,
-        study: Option<&Study>,
+        study: &Study,
     ) -> Result<(), Failure> {
-        let cloud = Cloud::new(wishes, run);
-        let total = recorder.passes(&cloud) * run.grid.poses();
-        let job = || recorder.record(run, &cloud, source, found, study, self.progress);
-        let path = self.watch("recording", total, job)?;
-        self.tell_recorded(&path, found);
-        Ok(())
-    }
-
-    fn tell_recorded(&self, path: &Path, found: &Count) {
+        let path = match wishes {
+            AnyWishes::Poses(wishes) => {
+                let cloud = Cloud::new(wishes, run);
+                let total = recorder.passes(&cloud) * run.grid.poses();
+                let job =
+                    || recorder.record(run, &cloud, source, found, Some(study), self.progress);
+                self.watch("recording", total, job)?
+            }
+            AnyWishes::Set(wishes) => {
+                let set = SetRecording::new(wishes, run, study)?;
+                recorder.record_set(run, &set, found, self.progress)?
+            }
+        };
         self.output.note(format_args!("{}: {} points", path.display(), count(found.reachable)));
+        Ok(())
     }
 
     /// Says so where there is nothing in reach.
@@ -183,12 +190,25 @@ impl Work<'_> {
 }
 
 /// What the points of a recording are asked to be made of.
-enum AnyWishes {
+pub enum AnyWishes {
     Poses(Wishes),
     Set(SetWishes),
 }
 
 impl AnyWishes {
+    /// From the flags, each of which is checked; condition numbers have this characteristic length.
+    pub fn new(
+        kind: Kind,
+        args: &CloudArgs,
+        length: f64,
+        manipulator: &Manipulator,
+    ) -> Result<Self, Failure> {
+        Ok(match kind.is_of_poses() {
+            true => Self::Poses(Wishes::new(args, length, manipulator)?),
+            false => Self::Set(SetWishes::new(kind, args, manipulator)?),
+        })
+    }
+
     /// Refuses a characteristic length of nothing.
     fn check_length(&self, args: &WorkspaceArgs) -> Result<(), Failure> {
         let valued = matches!(self, Self::Poses(wishes) if wishes.asks_condition());
@@ -268,6 +288,8 @@ pub struct Run<'a> {
     pub grid: &'a Grid,
     pub modes: Modes,
     pub limit: Option<ConditionLimit>,
+    /// Characteristic length of the conditioning index, where that is asked for.
+    pub conditioning: Option<f64>,
 }
 
 impl<'a> Run<'a> {
@@ -284,10 +306,10 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The counted share of the box of the set's axes, those with more than one value. (Those of
-    /// shards add up.)
-    pub fn measure(&self, found: &Count, units: FileUnits) -> (f64, String) {
-        let Self { kind, grid, .. } = self;
+    /// The counted share of the box of the axes of a set of some kind, those with more than one value.
+    /// (Those of shards add up.)
+    pub fn measure(&self, kind: Kind, found: &Count, units: FileUnits) -> (f64, String) {
+        let grid = self.grid;
         let points: u64 = grid.axes()[kind.axes(grid)].iter().map(|axis| axis.count).product();
         let axes = kind.axes(grid).map(|i| (&grid.axes()[i], grid.coordinates()[i].quantity));
         kind::measure(found.reachable as f64 / points as f64, axes, units)
@@ -310,13 +332,21 @@ pub struct Outcome<'a> {
     pub run: &'a Run<'a>,
     pub found: &'a Count,
     /// What else is known of it.
-    pub study: Option<&'a Study>,
+    pub study: &'a Study,
     pub effort: Effort,
     /// The part of the run that this is of, if it is not the whole.
     pub shard: Option<Shard>,
 }
 
 impl Outcome<'_> {
+    /// What was counted: by a shard poses, whatever they are of when all are merged.
+    fn counted(&self) -> Kind {
+        match (self.shard, self.run.kind.sections()) {
+            (Some(_), Sections::Whole) => Kind::Grid,
+            _ => self.run.kind,
+        }
+    }
+
     pub fn json(&self) -> Value {
         let Self { run, found, .. } = self;
         let axis = |a: &Axis| json!({ "min": a.min, "max": a.max, "count": a.count });
@@ -326,7 +356,7 @@ impl Outcome<'_> {
             .zip(&found.imaginary)
             .map(|(joint, range)| (joint.name.clone(), json!(range)))
             .collect();
-        let (value, units) = run.measure(found, FileUnits::SI);
+        let (value, units) = run.measure(self.counted(), found, FileUnits::SI);
         let mut json = json!({
             "poses": found.poses,
             "reachable": found.reachable,
@@ -339,9 +369,7 @@ impl Outcome<'_> {
             "poses_per_second": self.rate(),
         });
         json["kind"] = run.kind.name().into();
-        if let Some(study) = self.study {
-            study.json(&mut json);
-        }
+        self.study.json(&mut json);
         if let Some(shard) = self.shard {
             json["shard"] = shard.to_string().into();
         }
@@ -379,18 +407,16 @@ impl Outcome<'_> {
         }
 
         let share = 100.0 * found.reachable as f64 / found.poses as f64;
-        let (value, measured) = run.measure(found, units);
-        let points = [run.kind.points(), &format!(">{}", count(found.poses)), ">"];
+        let (value, measured) = run.measure(self.counted(), found, units);
+        let points = [self.counted().points(), &format!(">{}", count(found.poses)), ">"];
         let mut results = Table::new(points);
-        let reached = run.kind.reached().to_owned();
+        let reached = self.counted().reached().to_owned();
         results.row([reached, count(found.reachable), format!("{} %", short(share))]);
         let _ = write!(text, "{results}");
         if run.grid.poses() > 1 {
             let _ = writeln!(text, "measure {} {measured}", short(value));
         }
-        if let Some(study) = self.study {
-            text += &study.text(units);
-        }
+        text += &self.study.text(units);
 
         if found.imaginary.iter().any(Option::is_some) {
             let mut ranges = Table::new(["imaginary joint", ">min", ">max", "unit"]);

@@ -41,7 +41,7 @@ mod _native {
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
-    use crate::measure::{Boxes, Measure, measure};
+    use crate::measure::{Measure, measure};
     #[pymodule_export]
     use crate::shape::{Conditioning, Outline};
     #[pymodule_export]
@@ -58,6 +58,8 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // For pickling alone: no export.
+        module.setattr("_Boxes", module.py().get_type::<crate::measure::Boxes>())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

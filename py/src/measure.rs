@@ -5,7 +5,7 @@ use crate::error::{failed, wrong};
 use crate::html::digits;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::parts::Parts;
+use crate::parts::{Parts, Pickled};
 use crate::sweep::modes;
 use opm_workspace::measure::{
     self as workspace, Asker, Bounds, Cell, Domain, Goal, Measured, Over, Search, Stop,
@@ -218,9 +218,7 @@ impl Boxes {
         Ok(PyBytes::new(py, &known))
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Py<Manipulator>, Spec))> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec)>> {
         let Self { asked: Asked { of, sections, modes, threads }, domain } = slf.get();
         let mode = match modes {
             Modes::Any => "any".to_owned(),

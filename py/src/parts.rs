@@ -8,6 +8,9 @@ use std::num::NonZeroU64;
 /// so that all have work to the end and little is lost with one.
 const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
 
+/// As an object crosses processes: what restores it, and what that is given.
+pub type Pickled<'py, T> = (Bound<'py, PyAny>, T);
+
 /// An executor, and how many parts it gets.
 pub struct Parts<'py> {
     executor: Bound<'py, PyAny>,

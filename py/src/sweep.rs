@@ -6,7 +6,7 @@ use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::measure::{self, Measure, goal};
-use crate::parts::Parts;
+use crate::parts::{Parts, Pickled};
 use crate::rows::no_memory;
 use crate::velocity::characteristic_length;
 use numpy::npyffi::NPY_ORDER;
@@ -337,7 +337,7 @@ impl Sweep {
     /// Pickling: with the manipulator, not with what the grid holds.
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Py<Manipulator>, Spec, Counted))> {
+    ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
         let this = slf.get();
         let axes = this.grid.axes().iter().map(|a| (a.name.clone(), a.min, a.max, a.count));
         let Count { poses, reachable, imaginary } = this.count.clone();

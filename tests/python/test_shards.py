@@ -1,12 +1,16 @@
-"""Shards, read by public decoders as docs/scaling.md says."""
+"""Shards, read by public decoders as docs/scaling.md says, and made by its scripts."""
 
 import json
+import os
+import re
+import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from check_recording import doctor
+from conftest import REPOSITORY
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
@@ -67,3 +71,82 @@ def test_a_shard_says_what_it_is_of(opm, parts):
     assert record["run"]["mode"] == "++ ++ ++ +"
     assert int(record["result"]["poses"]) < int(record["run"]["poses"])
     assert [a["name"] for a in inspected["attachments"]] == [Path(f"{PLANO}.toml").name]
+
+
+def scripts(heading):
+    """The shell scripts of a section of docs/scaling.md, as they stand there."""
+    text = (REPOSITORY / "docs" / "scaling.md").read_text()
+    section = re.search(rf"^## {heading}\n(.*?)(?=^## )", text, re.DOTALL | re.MULTILINE)
+    assert section, heading
+    found = re.findall(r"^```sh\n(.*?)^```", section[1], re.DOTALL | re.MULTILINE)
+    assert found, heading
+    return found
+
+
+@pytest.fixture(scope="module")
+def one_run(opm, tmp_path_factory):
+    path = tmp_path_factory.mktemp("one") / "cloud.mcap"
+    subprocess.run([opm, "workspace", PLANO, "-o", path, "-q"], check=True, capture_output=True)
+    return path.read_bytes()
+
+
+@pytest.fixture
+def shell(opm, tmp_path):
+    """Runs a script in a folder of its own, with the program in the path."""
+    path = f"{Path(opm).parent}{os.pathsep}{os.environ['PATH']}"
+
+    def run(script, **variables):
+        done = subprocess.run(
+            ["sh", "-c", script],
+            cwd=tmp_path,
+            env={**os.environ, "PATH": path, **variables},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+
+    return run
+
+
+def parts_in(folder):
+    return sorted(path.name for path in folder.glob("part-*.mcap"))
+
+
+EIGHT = [f"part-{i}.mcap" for i in range(1, 9)]
+
+
+def test_what_the_document_runs_side_by_side(shell, one_run, tmp_path):
+    side_by_side, _ = scripts("With a shell")
+    shell(side_by_side)
+    assert parts_in(tmp_path) == EIGHT
+    assert (tmp_path / "cloud.mcap").read_bytes() == one_run
+
+
+def test_what_the_document_runs_in_a_loop(shell, one_run, tmp_path):
+    side_by_side, loop = scripts("With a shell")
+    shell(loop)
+    assert parts_in(tmp_path) == EIGHT
+    merge = side_by_side.splitlines()[-1]
+    assert merge.startswith("opm merge")
+    shell(merge)
+    assert (tmp_path / "cloud.mcap").read_bytes() == one_run
+
+
+@pytest.mark.skipif(not shutil.which("parallel"), reason="GNU parallel is not installed")
+def test_what_the_document_gives_to_parallel(shell, one_run, tmp_path):
+    (script,) = scripts("With GNU parallel")
+    shell(script)
+    assert parts_in(tmp_path) == EIGHT
+    assert (tmp_path / "cloud.mcap").read_bytes() == one_run
+
+
+def test_what_the_document_gives_to_slurm(shell, one_run, tmp_path):
+    """Without Slurm: a process for each number of the array, as it would start them."""
+    task, submission = scripts("With Slurm")
+    assert task.startswith("#!/bin/sh\n")
+    first, last = map(int, re.search(r"^#SBATCH --array=(\d+)-(\d+)$", task, re.MULTILINE).groups())
+    for number in range(last, first - 1, -1):
+        shell(task, SLURM_ARRAY_TASK_ID=str(number), SLURM_CPUS_PER_TASK="2")
+    assert parts_in(tmp_path) == EIGHT
+    shell(re.search(r"--wrap '(.*)'", submission)[1])
+    assert (tmp_path / "cloud.mcap").read_bytes() == one_run

@@ -68,6 +68,66 @@ fn merged_shards_are_the_one_run_byte_for_byte() {
     }
 }
 
+/// Sets other than that of the poses are made when all poses are together, indices by each shard.
+#[test]
+fn merged_shards_are_the_one_run_of_every_kind() {
+    let plane = ["--grid", "x=-0.25:0.25:301", "--grid", "y=-0.2:0.2:301"];
+    let tilted = [&plane[..], &["--grid", "xi=0.3"]].concat();
+    let sphere = ["--grid", "zeta=-1:1:31", "--grid", "xi=-1.7:1.7:61", "--grid", "psi=-1:1:41"];
+    let few = ["--grid", "zeta=0:0.2:9", "--grid", "xi=-0.2:0.2:15"];
+    let places = [&GRID[..4], &few, &["--grid", "psi=0:0.2:2"]].concat();
+    let long = ["--grid", "x=-0.25:0.25:2001", "--grid", "xi=-1:1:33"];
+    let cuts = ["--grid", "theta11=-0.7:0.9:17", "--grid", "theta12=-0.7:0.7:5"];
+    let lower = [&GRID[..4], &cuts].concat();
+    // What a shard is asked for, what is asked when all are there, what only the recording is asked for.
+    let cases: [[&[&str]; 4]; 10] = [
+        [&["--kind", "constant-orientation"], &tilted, &[], &[]],
+        [&["--kind", "orientation", "--mode", "any"], &sphere, &[], &["--color", "psi"]],
+        [&["--kind", "reachable"], &GRID, &[], &["--axes", "x,y,share"]],
+        [&["--kind", "dexterous"], &places, &[], &[]],
+        [&["--kind", "imaginary"], &places, &[], &["--color", "theta11"]],
+        [&["--kind", "upper"], &sphere, &[], &["--scalars", "theta12"]],
+        [&["--kind", "lower"], &lower, &[], &[]],
+        [&[], &GRID, &["--shape"], &["--axes", "x,y,xi"]],
+        [&["--conditioning"], &long, &[], &["--scalars", "inverse_condition"]],
+        [
+            &["--conditioning", "--length", "80mm", "--max-condition", "20"],
+            &long,
+            &["--shape"],
+            &["--color", "inverse_condition"],
+        ],
+    ];
+    for [asked, grid, later, cloud] in cases {
+        let folder = Folder::new();
+        let one = folder.arg("one.mcap");
+        let run = [&["workspace", PLANO, "--format", "json", "-q"], asked, grid].concat();
+        let whole = opm(&[&run[..], later, cloud, &["-o", &one]].concat()).json();
+        for of in [1, 2, 3, 7] {
+            let name = |i: u64| folder.arg(&format!("part-{i}-of-{of}.mcap"));
+            let parts: Vec<String> = (1..=of).map(name).collect();
+            let mut filled = 0;
+            for (number, part) in (1_u64..).zip(&parts) {
+                let shard = format!("{number}/{of}");
+                let found = opm(&[&run[..], &["--shard", &shard, "-o", part]].concat()).json();
+                filled += u64::from(found["reachable"].as_u64() > Some(0));
+                if of == 2 {
+                    // There already: the same is told of it.
+                    let again = opm(&[&run[..], &["--shard", &shard, "-o", part]].concat()).json();
+                    assert_eq!(timeless(again), timeless(found), "{run:?} {shard}");
+                }
+            }
+            assert!(filled >= of.min(2), "{run:?}: points in {filled} of {of} shards");
+            let joined = folder.arg("joined.mcap");
+            let merge = ["merge", "--format", "json", "-q", "-o", &joined];
+            let parts: Vec<&str> = parts.iter().map(|part| &**part).collect();
+            let merged = opm(&[&merge[..], later, cloud, &parts].concat()).json();
+            assert_eq!(timeless(merged), timeless(whole.clone()), "{run:?} {of}");
+            let same = fs::read(&one).unwrap() == fs::read(&joined).unwrap();
+            assert!(same, "{run:?} {later:?} {cloud:?} {of}");
+        }
+    }
+}
+
 /// As a queue does it: processes side by side, of which one is killed and run again.
 #[cfg(unix)]
 #[test]
@@ -164,6 +224,12 @@ fn shards_that_do_not_belong_together_are_refused() {
     let others = Folder::new();
     let third = shard(&others, 3, 3, &SMALL);
     refused(&[&one, &third], &["part-3.mcap: shard 3/3, but ", "part-1.mcap is 1/2"]);
+    let others = Folder::new();
+    let places = shard(&others, 2, 2, &[&SMALL[..], &["--kind", "reachable"]].concat());
+    refused(&[&one, &places], &["part-2.mcap: a shard of another run: kind is \"reachable\", not"]);
+    let others = Folder::new();
+    let told = shard(&others, 2, 2, &[&SMALL[..], &["--conditioning"]].concat());
+    refused(&[&one, &told], &["a shard of another run: it has conditioning, \"0.09"]);
 
     // A comment more in the mechanism.
     let others = Folder::new();
@@ -192,6 +258,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     opm(&["workspace", PLANO, "--shard", "1/3"]).fails(2, &["--output"]);
     opm(&["workspace", PLANO, "--shard", "1/3", "-o", "p.mcap", "--color", "x"])
         .fails(2, &["--color"]);
+    opm(&["workspace", PLANO, "--shard", "1/3", "-o", "p.mcap", "--shape"]).fails(2, &["--shape"]);
     opm(&["merge"]).fails(2, &["PART.mcap"]);
 }
 
@@ -199,9 +266,18 @@ fn shards_that_do_not_belong_together_are_refused() {
 #[cfg(unix)]
 #[test]
 fn missing_shards_are_named_with_their_commands() {
+    let limited = ["--mode", "-+ +- -- -", "--max-condition", "9.5"];
+    let index = ["--kind", "constant-orientation", "--conditioning", "--length", "80mm"];
+    let both = ["--conditioning", "--max-condition", "9.5", "--length", "80mm"];
+    missing_shards_are_made(&[&SMALL[..], &limited].concat());
+    missing_shards_are_made(&[&SMALL[..2], &index].concat());
+    missing_shards_are_made(&[&SMALL[..], &both].concat());
+    missing_shards_are_made(&[&SMALL[..], &["--kind", "dexterous"]].concat());
+}
+
+fn missing_shards_are_made(flags: &[&str]) {
     let folder = Folder::new();
-    let flags = [&SMALL[..], &["--mode", "-+ +- -- -", "--max-condition", "9.5"]].concat();
-    let parts: Vec<String> = [1, 4].into_iter().map(|i| shard(&folder, i, 5, &flags)).collect();
+    let parts: Vec<String> = [1, 4].into_iter().map(|i| shard(&folder, i, 5, flags)).collect();
     let parts: Vec<&str> = parts.iter().map(|part| &**part).collect();
     let merge = [&["merge"], &parts[..]].concat();
     let failed = opm(&merge);

@@ -180,8 +180,8 @@ impl Packer {
         values: &[f64],
         points: &mut Vec<u8>,
     ) -> Result<(), RecordError> {
-        let mut row = row.to_vec();
         if column == Some(self.color_column) {
+            let mut row = row.to_vec();
             return values.iter().try_for_each(|&value| {
                 row[self.color_column] = value;
                 self.pack(&row, points)
@@ -190,7 +190,7 @@ impl Packer {
         let Some(count) = values.len().checked_sub(1) else { return Ok(()) };
         let (start, end) = (points.len(), points.len() + values.len() * self.stride);
         points.reserve(end - start);
-        self.pack(&row, points)?;
+        self.pack(row, points)?;
         // What is there is copied behind itself, twice as much every time.
         let mut there = 1;
         while there <= count {
@@ -209,6 +209,7 @@ impl Packer {
             return Ok(());
         }
         let bad = values.iter().find(|value| !(**value as f32).is_finite());
+        let mut row = row.to_vec();
         row[column] = bad.copied().unwrap_or_default();
         Err(self.non_finite(&row, start / self.stride))
     }

@@ -21,7 +21,7 @@ pub struct ConditioningIndex {
     pub min: f64,
     /// The greatest, one at most.
     pub max: f64,
-    /// Of all, in parts of 2^-60.
+    /// Of all, in units of 2⁻⁶⁰: a whole number, so that however a sweep is cut, the parts add up to it.
     pub sum: u128,
 }
 

@@ -304,8 +304,13 @@ impl Grid {
     /// The pose with this number.
     pub fn pose(&self, index: u64) -> Vec<f64> {
         let mut pose = vec![0.0; self.axes.len()];
-        fill(&self.axes, index, &mut pose);
+        self.pose_into(index, &mut pose);
         pose
+    }
+
+    /// Puts the pose with this number, a value an axis, into `pose`.
+    pub fn pose_into(&self, index: u64, pose: &mut [f64]) {
+        fill(&self.axes, index, pose);
     }
 }
 

@@ -1,8 +1,9 @@
 //! Sets of points of a grid: which are in, row by row.
 
 use crate::grid::{Axis, Grid};
+use crate::poses::Poses;
 use crate::progress::{Cancelled, Progress};
-use crate::sweep::{Run, Sweep};
+use crate::sweep::Run;
 use std::ops::Range;
 
 /// Most rows and most runs of a set: some GiB of memory.
@@ -54,15 +55,15 @@ impl GridSet {
     /// The set that a sweep reaches, of poses or of one section alone.
     ///
     /// # Errors
-    /// A set that does not fit in memory, or when told to stop.
-    pub fn reached(sweep: &Sweep<'_>, progress: &Progress) -> Result<Self, SetError> {
-        let grid = sweep.grid();
+    /// A set that does not fit in memory, or poses that cannot be had.
+    pub fn reached<P: Poses>(poses: &P, progress: &Progress) -> Result<Self, P::Error> {
+        let grid = poses.grid();
         let mut set = SetBuilder::new(set_axes(grid, 0..grid.axes().len()))?;
-        sweep.points(
+        poses.points(
             progress,
             |hits, made: &mut Vec<Run>| made.extend(hits.numbers(grid)),
             Vec::new,
-            |made| made.into_iter().try_for_each(|run| set.push(run)),
+            |made| Ok(made.into_iter().try_for_each(|run| set.push(run))?),
         )?;
         Ok(set.finish())
     }
@@ -72,11 +73,11 @@ impl GridSet {
     ///
     /// # Errors
     /// As [`GridSet::reached`].
-    pub fn slices(sweep: &Sweep<'_>, progress: &Progress) -> Result<Self, SetError> {
-        let grid = sweep.grid();
+    pub fn slices<P: Poses>(poses: &P, progress: &Progress) -> Result<Self, P::Error> {
+        let grid = poses.grid();
         let mut set = SetBuilder::new(set_axes(grid, grid.lower()..grid.axes().len()))?;
         let mut last = None;
-        sweep.points(
+        poses.points(
             progress,
             |hits, made: &mut Vec<u64>| {
                 if made.last() != Some(&hits.slice) {
@@ -85,10 +86,8 @@ impl GridSet {
             },
             Vec::new,
             |made| {
-                made.into_iter().try_for_each(|slice| {
-                    let new = last.replace(slice) != Some(slice);
-                    if new { set.push(Run { from: slice, to: slice + 1 }) } else { Ok(()) }
-                })
+                let mut new = made.into_iter().filter(|&slice| last.replace(slice) != Some(slice));
+                Ok(new.try_for_each(|slice| set.push(Run { from: slice, to: slice + 1 }))?)
             },
         )?;
         Ok(set.finish())

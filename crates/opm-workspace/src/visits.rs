@@ -1,8 +1,9 @@
 //! How many orientations reach each place: what the reachable and the dexterous workspace are made of.
 
+use crate::poses::Poses;
 use crate::progress::Progress;
 use crate::set::{GridSet, SetAxis, SetError, set_axes};
-use crate::sweep::{Run, Sweep};
+use crate::sweep::Run;
 
 /// Most places: a GiB of memory.
 const MOST: u64 = 1 << 27;
@@ -17,19 +18,19 @@ pub struct Visits {
 }
 
 impl Visits {
-    /// Sweeps a grid. Memory is that of a number a place.
+    /// Those that a sweep makes, or a shard of it. Memory is that of a number a place.
     ///
     /// # Errors
-    /// More places than fit in memory, or when told to stop.
-    pub fn new(sweep: &Sweep<'_>, progress: &Progress) -> Result<Self, SetError> {
-        let grid = sweep.grid();
+    /// More places than fit in memory, or poses that cannot be had.
+    pub fn new<P: Poses>(poses: &P, progress: &Progress) -> Result<Self, P::Error> {
+        let grid = poses.grid();
         let places = grid.poses() / grid.slices();
         if places > MOST {
-            return Err(SetError::Size { what: "places", given: places, most: MOST });
+            return Err(SetError::Size { what: "places", given: places, most: MOST }.into());
         }
         // Differences from place to place: a run adds one where it starts and takes it where it ends.
         let mut counts = vec![0_u64; places as usize + 1];
-        sweep.points::<_, SetError>(
+        poses.points(
             progress,
             |hits, made: &mut Vec<Run>| {
                 let first = hits.slice * places;

@@ -59,6 +59,9 @@ pub struct Scratch<'a> {
     union: Vec<Run>,
     next_runs: Vec<Run>,
     hits: Vec<f64>,
+    /// The window that rows were last decided in, and the first coordinates of its poses.
+    window: Run,
+    values: Vec<f64>,
     limit: Option<Conditioned<'a>>,
     pose: Vec<f64>,
     arch: Arch,
@@ -106,6 +109,8 @@ impl<'a> Scratch<'a> {
             union: Vec::new(),
             next_runs: Vec::new(),
             hits: Vec::new(),
+            window: Run { from: 0, to: 0 },
+            values: Vec::new(),
             limit: sweep.limit.map(|limit| Conditioned::new(manipulator, limit)),
             pose: vec![0.0; axes.len()],
             arch: Arch::new(),
@@ -206,6 +211,11 @@ impl<'a> Scratch<'a> {
         }
         let axes = sweep.grid.axes();
         let planar = sweep.grid.lower() > 1;
+        if hit.is_some() && self.window != window {
+            self.window = window;
+            self.values.clear();
+            self.values.extend((window.from..window.to).map(|pose| axes[0].value(pose)));
+        }
         self.rows.clear();
         // To within the rounding that the cuts allow for.
         let height = |row: u64| self.first_row + self.row_step * row as f64;
@@ -250,7 +260,10 @@ impl<'a> Scratch<'a> {
             reachable += count;
             if let Some(hit) = hit {
                 self.hits.clear();
-                self.hits.extend(runs::poses(&self.runs).map(|pose| axes[0].value(pose)));
+                for &Run { from, to } in &self.runs {
+                    let [from, to] = [from, to].map(|pose| (pose - window.from) as usize);
+                    self.hits.extend_from_slice(&self.values[from..to]);
+                }
                 let slice = self.slice.unwrap_or_default();
                 let (runs, first, others) = (&self.runs[..], &self.hits[..], &self.others[..]);
                 hit(&Hits { slice, row: self.row + row, runs, first, others });
