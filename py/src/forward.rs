@@ -17,11 +17,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// One way in which a mechanism can be assembled for given actuated joints.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Assembly {
+    /// (d,): task coordinates, metres and radians.
     pose: Py<PyArray1<f64>>,
+    /// The working mode that it is in.
     mode: String,
+    /// (k,): every joint coordinate, metres and radians.
     joints: Py<PyArray1<f64>>,
+    /// (j,): every imaginary joint, metres and radians.
     imaginary: Py<PyArray1<f64>>,
+    /// Whether all joints are within their limits.
     within_limits: bool,
+    /// How far the legs fail to close: radians, and lengths over the mechanism's size.
     residual: f64,
 }
 
@@ -57,7 +63,30 @@ struct Near<'a> {
 
 #[pymethods]
 impl Manipulator {
-    /// Every assembly, for each row of actuated joints; or the one that Newton's method finds.
+    /// Every assembly for each row of actuated joint values; or, near a pose, the one that Newton's method finds.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints : (n, a) array_like
+    ///     A row of actuated joint values each, in the order of `actuated`; metres and radians.
+    /// near : (d,) or (n, d) array_like, optional
+    ///     From which pose Newton's method begins, metres and radians; one row is for all. It works for every mechanism, the
+    ///     closed form not for all.
+    /// mode : str, optional
+    ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Of Newton's method the mode
+    ///     that it stays in: home if not given.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// list of list of Assembly
+    ///     A list a row: empty where there is none, or where Newton's method ends nowhere.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or that is out of reach.
     #[pyo3(signature = (joints, *, near = None, mode = None, threads = None))]
     fn forward(
         &self,

@@ -4,6 +4,8 @@
 
 // Arguments come from Python by value.
 #![allow(clippy::needless_pass_by_value)]
+// What has a docstring is documented for Python, in numpydoc.
+#![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
 mod arguments;
 mod command;

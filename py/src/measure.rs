@@ -23,11 +23,16 @@ const LEAST_BOXES: u64 = 1 << 12;
 const SECTIONS: [(Sections, &str); 3] =
     [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
-/// How much of a box is in reach, between two bounds.
+/// How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+///
+/// In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
+/// orientations is Haar's.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Measure {
     found: Measured,
+    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     units: String,
+    /// Lowest and highest value of every coordinate.
     over: Vec<(String, f64, f64)>,
 }
 
@@ -40,7 +45,7 @@ const STOPS: [(Stop, &str); 4] = [
 ];
 
 /// A measure as it crosses processes: bounds and whole, boxes, why it stopped, units, ranges.
-type Pickled = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
+type Told = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// A value, or lowest and highest value.
 #[derive(FromPyObject)]
@@ -49,7 +54,36 @@ enum Range {
     Between((f64, f64)),
 }
 
-/// Measures the workspace over a box: `measure(m, over={"x": (min, max), "y": value})`.
+/// Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
+///
+/// Parameters
+/// ----------
+/// manipulator : Manipulator
+/// over : mapping, optional
+///     Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
+///     workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+/// section : str
+///     ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
+/// mode : str
+///     ``"home"``, ``"any"``, or a sign for every two-valued choice.
+/// tolerance : float, optional
+///     How far the true measure may be from the value, as a share of it: 0.01 if not given.
+/// budget : int, optional
+///     Boxes to look at, at most: 2**22 if not given.
+/// threads : int, optional
+///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+/// executor : concurrent.futures.Executor or callable, optional
+///     Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+///     more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
+///     executor that a function makes serves all rounds.
+/// shards : int, optional
+///     How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
+///
+/// Raises
+/// ------
+/// OpmError
+///     A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+///     and again.
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, over = None, section = "whole", mode = "home", tolerance = None, budget = None,
@@ -266,13 +300,13 @@ impl Measure {
         self.found.whole
     }
 
-    /// `value / whole`.
+    /// ``value / whole``.
     #[getter]
     fn fraction(&self) -> f64 {
         self.found.fraction()
     }
 
-    /// What the measure is in: `m^2`, `rad^3`, `1`.
+    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     #[getter]
     fn units(&self) -> &str {
         &self.units
@@ -284,14 +318,15 @@ impl Measure {
         self.found.boxes
     }
 
-    /// Why it was taken no further.
+    /// Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+    /// the bounds no closer.
     #[getter]
     fn stop(&self) -> &'static str {
         let word = STOPS.iter().find(|(stop, _)| *stop == self.found.stop);
         word.map_or("", |(_, word)| word)
     }
 
-    /// The ranges that it is over, by name.
+    /// Lowest and highest value of every coordinate.
     #[getter]
     fn over<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -308,7 +343,7 @@ impl Measure {
         format!("<Measure {value} {units}, from {low} to {high}: {share} of the box>")
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Pickled)> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, Told>> {
         let this = slf.get();
         let Measured { lower, upper, whole, boxes, .. } = this.found;
         let (stop, units) = (this.stop().to_owned(), this.units.clone());

@@ -13,7 +13,19 @@ const RIGID: f64 = 1e-5;
 
 #[pymethods]
 impl Manipulator {
-    /// Where the platform is at each pose, in SE(3).
+    /// Where the platform is at each pose, in SE(3): its reference point and its orientation, in base coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, 4, 4) ndarray
+    ///     Homogeneous matrices: a rotation, which is none at home unless the coordinates measure it, and a position, metres.
     #[pyo3(signature = (poses, *, threads = None))]
     fn transform<'py>(
         &self,
@@ -37,7 +49,24 @@ impl Manipulator {
         tables.table(0).reshape([poses.count, 4, 4])
     }
 
-    /// The poses at which the platform is there.
+    /// The poses at which the platform is there: the inverse of :meth:`transform`.
+    ///
+    /// Parameters
+    /// ----------
+    /// transforms : (n, 4, 4) array_like
+    ///     Homogeneous matrices, metres.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, d) ndarray
+    ///     Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A matrix that is no rotation and position.
     #[pyo3(signature = (transforms, *, threads = None))]
     fn locate<'py>(
         &self,

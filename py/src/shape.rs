@@ -18,18 +18,23 @@ use pyo3::types::PyTuple;
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
-/// The boundary of a workspace in a plane, or of a slice of it.
+/// The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
+///
+/// They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
+/// workspace goes on beyond.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Outline {
-    /// The coordinates of the plane.
+    /// The coordinates of the plane: the columns of the polylines.
     #[pyo3(get)]
     axes: (String, String),
-    /// Where the slice is.
+    /// The coordinate that it is sliced by, and its value; empty where there is one plane.
     #[pyo3(get)]
     at: BTreeMap<String, f64>,
-    /// What is inside, less the holes.
+    /// Of the pieces without the holes, in the product of both coordinates' units.
     #[pyo3(get)]
     area: f64,
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
     rings: Vec<(f64, Py<PyArray2<f64>>)>,
 }
 
@@ -38,7 +43,8 @@ type Spec = ((String, String), BTreeMap<String, f64>, f64, Vec<(f64, Py<PyArray2
 
 #[pymethods]
 impl Outline {
-    /// All closed polylines.
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
     #[getter]
     fn rings<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         self.those(py, |_| true)
@@ -96,18 +102,18 @@ impl Outline {
     }
 }
 
-/// How well a workspace is conditioned.
+/// How well the poses of a workspace are conditioned: their local indices, one over the condition number each.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Conditioning {
-    /// The mean of the local indices.
+    /// The mean of the local indices (Gosselin and Angeles); None where no pose has one.
     global_index: Option<f64>,
-    /// The least of them.
+    /// The least.
     local_min: Option<f64>,
-    /// The greatest.
+    /// The greatest; one at best.
     local_max: Option<f64>,
-    /// The characteristic length, metres.
+    /// Characteristic length of the condition numbers, metres.
     length: f64,
-    /// Poses that have one.
+    /// Poses that have an index.
     poses: u64,
 }
 
@@ -135,7 +141,25 @@ type Indices = (u64, f64, f64, u128);
 
 #[pymethods]
 impl Sweep {
-    /// The boundary as closed polylines.
+    /// The boundary as closed polylines in the first two coordinates that have several values.
+    ///
+    /// Returns
+    /// -------
+    /// list of Outline
+    ///     One; or, where a third coordinate has several values, one for each of these.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
+    ///     says nothing of the imaginary joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn boundary<'py>(
         slf: &Bound<'py, Self>,
@@ -174,6 +198,16 @@ impl Sweep {
     }
 
     /// How many points each connected component has, the largest first.
+    ///
+    /// Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
+    /// last value next to the first.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn components<'py>(
         slf: &Bound<'py, Self>,
@@ -184,7 +218,21 @@ impl Sweep {
         Ok(slf.py().detach(|| components(&set)).into_pyarray(slf.py()))
     }
 
-    /// The global conditioning index, and the least and the greatest local one.
+    /// The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
+    ///
+    /// Each pose in the first working mode that counts; every pose has the same weight.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The points are no poses.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn conditioning(
         slf: &Bound<'_, Self>,
@@ -212,7 +260,21 @@ impl Sweep {
         })
     }
 
-    /// The local conditioning index of every pose of the grid.
+    /// The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
+    ///
+    /// One over the condition number: one at best, zero at a singularity.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The points are no poses.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn local_conditioning<'py>(
         slf: &Bound<'py, Self>,

@@ -12,10 +12,15 @@ use pyo3::prelude::*;
 /// A simple body to draw, in base coordinates.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solid {
+    /// The body that it is a part of: ``"base"``, ``"LEG/JOINT"``, ``"platform"``, ``"imaginary/NAME"``.
     body: String,
+    /// ``"cylinder"``, ``"ball"`` or ``"block"``.
     shape: String,
+    /// ``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``.
     material: String,
+    /// (2, 3): the ends of its axis, metres; of a ball both are its middle.
     ends: Py<PyArray2<f64>>,
+    /// Diameter, or side of the square of a block; metres.
     width: f64,
 }
 
@@ -30,7 +35,24 @@ impl Solid {
 
 #[pymethods]
 impl Manipulator {
-    /// The solids that the mechanism is drawn with in a pose, home if it is not given.
+    /// The solids that the mechanism is drawn with, from its joint screws alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// pose : (d,) array_like, optional
+    ///     Metres and radians. Home if not given.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    ///
+    /// Returns
+    /// -------
+    /// list of Solid
+    ///     Metres, base coordinates.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The pose is out of reach.
     #[pyo3(signature = (pose = None, *, mode = "home"))]
     fn solids(
         &self,

@@ -17,27 +17,31 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Poses that a thread solves between two looks at whether it is to stop.
 const PART: usize = 4096;
 
-/// Joint values of many poses, in one working mode or in all of them.
+/// Joint values of ``n`` poses, NaN where a pose is out of reach.
+///
+/// Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
+/// entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solutions {
-    /// `(n, k)`, or `(n, m, k)` of all modes: every joint coordinate; NaN out of reach.
+    /// (n, k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
-    /// `(n, j)` or `(n, m, j)`: every imaginary joint.
+    /// (n, j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// `(n,)` or `(n, m)`: in reach.
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArrayDyn<bool>>,
-    /// `(n,)` or `(n, m)`: in reach, and all joints within their limits.
+    /// (n,): in reach, and all joints within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
-    /// Names of the last axis of `joints`.
+    /// Of the last axis of `joints`.
     joint_names: Vec<String>,
-    /// Names of the last axis of `imaginary`.
+    /// Of the last axis of `imaginary`.
     imaginary_names: Vec<String>,
-    /// `m` or `rad` of every joint and imaginary joint, by name.
+    /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
     units: BTreeMap<String, String>,
-    /// The working mode, or `all`.
+    /// The working mode, or ``"all"``.
     mode: String,
     /// The working modes: of the mode axis, if there is one.
     modes: Vec<String>,
+    /// n.
     rows: usize,
 }
 
@@ -231,7 +235,7 @@ impl Solutions {
         self.rows
     }
 
-    /// The values of one joint or imaginary joint: a view.
+    /// The values of one joint or imaginary joint, (n,): a view.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let tables = [
             (&self.joint_names[..], self.joints.bind(py).as_any()),

@@ -23,49 +23,70 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Samples a second where nobody says, as on the command line.
 const RATE: f64 = 100.0;
 
-/// A motion as the joints follow it.
+/// A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Trajectory {
+    /// (n,), seconds.
     #[pyo3(get)]
     times: Py<PyArray1<f64>>,
+    /// (n, d): task coordinates, metres and radians.
     #[pyo3(get)]
     poses: Py<PyArray2<f64>>,
+    /// (n, d): their first derivatives by time, m/s and rad/s.
     #[pyo3(get)]
     pose_rates: Py<PyArray2<f64>>,
+    /// (n, d): their second derivatives, m/s² and rad/s².
     #[pyo3(get)]
     pose_accelerations: Py<PyArray2<f64>>,
+    /// (n, k): every joint coordinate, metres and radians; angles go on across half turns.
     #[pyo3(get)]
     joints: Py<PyArray2<f64>>,
+    /// (n, k), m/s and rad/s.
     #[pyo3(get)]
     joint_rates: Py<PyArray2<f64>>,
+    /// (n, k), m/s² and rad/s².
     #[pyo3(get)]
     joint_accelerations: Py<PyArray2<f64>>,
+    /// (n, j): every imaginary joint, metres and radians.
     #[pyo3(get)]
     imaginary: Py<PyArray2<f64>>,
+    /// (n, j), m/s and rad/s.
     #[pyo3(get)]
     imaginary_rates: Py<PyArray2<f64>>,
+    /// (n, j), m/s² and rad/s².
     #[pyo3(get)]
     imaginary_accelerations: Py<PyArray2<f64>>,
+    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist.
     #[pyo3(get)]
     condition: Py<PyArray1<f64>>,
+    /// (n,): in reach, limits apart.
     #[pyo3(get)]
     reachable: Py<PyArray1<bool>>,
+    /// (n,): in reach, and all joints within their limits.
     #[pyo3(get)]
     within_limits: Py<PyArray1<bool>>,
+    /// (n,): in reach, and every joint has its rate.
     #[pyo3(get)]
     regular: Py<PyArray1<bool>>,
+    /// What it cannot follow, found between the samples too, in the order of time.
     #[pyo3(get)]
     violations: Vec<Violation>,
+    /// Of the columns of `joints`.
     #[pyo3(get)]
     joint_names: Vec<String>,
+    /// Of the columns of `imaginary`.
     #[pyo3(get)]
     imaginary_names: Vec<String>,
+    /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
     #[pyo3(get)]
     units: BTreeMap<String, String>,
+    /// The working mode.
     #[pyo3(get)]
     mode: String,
+    /// Of the motion.
     #[pyo3(get)]
     name: String,
+    /// n.
     #[pyo3(get)]
     rows: usize,
     source: Source,
@@ -86,21 +107,54 @@ struct Source {
 #[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Violation {
+    /// ``"reach"``, ``"limit"`` or ``"singularity"``.
     kind: String,
+    /// Seconds.
     start: f64,
+    /// Seconds; of a singularity, as `start`.
     end: f64,
+    /// When it is worst, seconds.
     worst: f64,
+    /// By how much, there; in :attr:`unit`.
     amount: f64,
+    /// Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure.
     unit: String,
+    /// The leg that it is about.
     leg: Option<String>,
+    /// The joint that is past its limit.
     joint: Option<String>,
+    /// ``"lower"`` or ``"upper"``: what is out of reach or singular.
     section: Option<String>,
+    /// ``"lowest"`` or ``"highest"``: the limit that is passed.
     bound: Option<String>,
+    /// ``"serial"`` or ``"parallel"``.
     singularity: Option<String>,
+    /// All of it, as a line.
     message: String,
 }
 
-/// Follows a motion: one that a file describes, or the cubic spline through poses at `times`.
+/// Follow a motion of the platform.
+///
+/// Parameters
+/// ----------
+/// manipulator : Manipulator
+/// motion : path, str or (w, d) array_like
+///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
+///     coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
+///     waypoint before, as those of a table are.
+/// times : (w,) sequence of float, optional
+///     When the waypoints are, seconds, increasing; three at least.
+/// rate : float, optional
+///     Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+/// mode : str, optional
+///     ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+///
+/// Raises
+/// ------
+/// OSError
+///     The file cannot be read.
+/// OpmError
+///     Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
 #[pyfunction]
 #[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
 pub fn trajectory(
@@ -407,7 +461,17 @@ impl Trajectory {
         })
     }
 
-    /// Records the motion, as `opm trajectory -o` does: the same bytes.
+    /// Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file appears when it is whole.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A file that cannot be written.
     fn write_mcap(
         &self,
         py: Python<'_>,
@@ -435,7 +499,7 @@ impl Trajectory {
         self.rows
     }
 
-    /// The values of one joint or imaginary joint: a view.
+    /// The values of one joint or imaginary joint, (n,): a view.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let tables = [
             (&self.joint_names[..], self.joints.bind(py).as_any()),

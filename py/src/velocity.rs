@@ -11,29 +11,47 @@ use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// Rates and accelerations of every joint at many poses.
+/// Rates and accelerations of every joint at many poses; NaN where there is none.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Motion {
+    /// (n, k), rad/s and m/s.
     joint_rates: Py<PyArray2<f64>>,
+    /// (n, k), rad/s² and m/s².
     joint_accelerations: Py<PyArray2<f64>>,
+    /// (n, j), rad/s and m/s.
     imaginary_rates: Py<PyArray2<f64>>,
+    /// (n, j), rad/s² and m/s².
     imaginary_accelerations: Py<PyArray2<f64>>,
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArray1<bool>>,
+    /// (n,): in reach, and every joint has its rate.
     regular: Py<PyArray1<bool>>,
 }
 
-/// How near many poses are to singular.
+/// How near many poses are to singular, (n,) each: signed measures without dimension that vanish at a singularity.
+///
+/// NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Singularity {
+    /// (n,), no unit: of the upper section: zero where the chain of a leg is.
     upper_serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the upper section: zero where its inputs do not hold it.
     upper_parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the lower section: zero where the chain of a leg is.
     lower_serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the lower section: zero where its inputs do not hold it.
     lower_parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the whole mechanism.
     serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the whole mechanism.
     parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity.
     condition: Py<PyArray1<f64>>,
+    /// (n,), no unit: the volume that unit rates of the actuated joints span of twists, lengths over the characteristic length.
     manipulability: Py<PyArray1<f64>>,
+    /// (n,), no unit: zero where the coordinates of the pose are singular, which is nothing to the mechanism.
     coordinates: Py<PyArray1<f64>>,
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArray1<bool>>,
 }
 
@@ -92,7 +110,23 @@ fn counted<const N: usize>(
 
 #[pymethods]
 impl Manipulator {
-    /// Rates of the actuated joints for unit rates of the task coordinates.
+    /// Rates of joints for unit rates of the task coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// joints : str
+    ///     ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, a, d) ndarray
+    ///     Ratios of metres and radians. NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
     #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]
     fn jacobian<'py>(
         &self,
@@ -143,7 +177,25 @@ impl Manipulator {
         tables.table(0).reshape([poses.count, rows.len(), columns])
     }
 
-    /// Rates and accelerations of every joint, for those of the task coordinates.
+    /// Rates and accelerations of every joint.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// rates : (n, d) or (1, d) array_like
+    ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
+    /// accelerations : (n, d) or (1, d) array_like, optional
+    ///     Second derivatives, m/s² and rad/s²; none if not given.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Motion
+    ///     NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
     #[pyo3(signature = (poses, rates, accelerations = None, *, mode = "home", threads = None))]
     fn velocity<'py>(
         &self,
@@ -228,6 +280,22 @@ impl Manipulator {
     }
 
     /// How near each pose is to a singularity, by section.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// length : float, optional
+    ///     Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Singularity
+    ///     A number a pose and measure, NaN out of reach.
     #[pyo3(signature = (poses, *, mode = "home", length = None, threads = None))]
     fn singularity<'py>(
         &self,
