@@ -5,7 +5,7 @@ use fastrand::Rng;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Follow, Manipulator};
 use opm_core::mechanism::{Mechanism, examples, file};
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Options, PAIRS, mechanism, order};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
 
@@ -165,4 +165,85 @@ fn limits_that_lie_on_poses_are_no_exception() {
     }
     println!("{met} poses");
     assert!(met > 10_000);
+}
+
+/// Rings whose holes overlap in a row: what two of them take is taken once.
+#[test]
+fn holes_overlap() {
+    let mut rng = Rng::with_seed(22);
+    let (mut judged, mut reachable) = (0, 0);
+    while judged < 150 {
+        let pair = [PAIRS[0], PAIRS[3]][judged % 2];
+        let (mechanism, decomposition) =
+            mechanism(&mut rng, pair, Options { limited: 0.0, balls: false });
+        let legs = mechanism.legs.iter().zip(&decomposition.legs);
+        if !legs.into_iter().all(|(leg, split)| ["RRR", "RR"].contains(&&*order(leg, &split.lower)))
+        {
+            continue;
+        }
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let axes = manipulator.task_coordinates().iter().zip([200, 50, 1, 1, 1]);
+        let axes = axes.map(|(c, count)| match count {
+            1 => Axis::fixed(c.name, c.home + rng.f64() - 0.5),
+            _ => Axis::new(c.name, c.home - 1.5, c.home + 1.5, count),
+        });
+        let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+        let modes = Modes::One(manipulator.home_mode());
+        let count = Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap();
+        let expected = by_predicate(&manipulator, &grid, modes);
+        assert_eq!(count.reachable, expected, "{judged}: {pair:?}");
+        judged += 1;
+        reachable += expected;
+    }
+    println!("{reachable} poses");
+}
+
+/// Grids so fine that rounding decides on poses at the boundary: rows that are in doubt are asked for.
+#[test]
+fn fine_grids_are_no_exception() {
+    const STEP: f64 = 1e-10;
+    let mut rng = Rng::with_seed(23);
+    let mut judged = 0;
+    for round in 0..2000 {
+        let pair = [PAIRS[0], PAIRS[3], PAIRS[7], PAIRS[8], PAIRS[10]][round % 5];
+        let options = Options { limited: 0.3, balls: false };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = without_limits_on_angles(mechanism);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let modes = Modes::One(manipulator.home_mode());
+        let mut pose = manipulator.task().home();
+        pose.iter_mut().for_each(|q| *q += rng.f64() - 0.5);
+        let mut solution = manipulator.solution();
+        let mut reached = |x: f64| {
+            pose[0] = x;
+            manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap()
+                && solution.within_limits
+        };
+        let home = manipulator.task_coordinates()[0].home;
+        let [mut within, mut out] = [home + rng.f64() - 0.5, home + 3.0 * (rng.f64() - 0.5)];
+        if !reached(within) || reached(out) {
+            continue;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (within + out);
+            *(if reached(middle) { &mut within } else { &mut out }) = middle;
+        }
+        pose[0] = within;
+        let axes = manipulator.task_coordinates().iter().zip(&pose).enumerate();
+        let axes = axes.map(|(i, (c, &at))| {
+            let half = STEP * [10.0, 400.0, 0.0, 0.0, 0.0][i] * (1.0 + rng.f64());
+            match i {
+                0 => Axis::new(c.name, at - half, at + half, 21),
+                1 => Axis::new(c.name, at - half, at + half, 801),
+                _ => Axis::fixed(c.name, at),
+            }
+        });
+        let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+        let count = Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap();
+        let expected = by_predicate(&manipulator, &grid, modes);
+        assert_eq!(count.reachable, expected, "round {round}: {pair:?}");
+        judged += 1;
+    }
+    println!("{judged} grids");
+    assert!(judged > 300);
 }

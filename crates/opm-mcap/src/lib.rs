@@ -31,7 +31,7 @@ pub use decode::{Cloud, Column};
 pub use error::{ReadError, RecordError};
 pub use file::{PartialFile, Sink};
 pub use flat::Flat;
-pub use log::Metadata;
+pub use log::{CHUNK_BYTES, COMPRESSION_LEVEL, Metadata};
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
 pub use scene::ClosedLine;
 pub use shard::{Shard, ShardRecorder};

@@ -13,9 +13,9 @@ use crate::{RecordError, Sink};
 pub type Metadata = BTreeMap<String, String>;
 
 /// Uncompressed bytes after which a chunk is closed.
-const CHUNK_BYTES: u64 = 1 << 20;
+pub const CHUNK_BYTES: u64 = 1 << 20;
 /// The fastest regular zstd level: half as fast again as the default here, for a file a fifth larger.
-const COMPRESSION_LEVEL: u32 = 1;
+pub const COMPRESSION_LEVEL: u32 = 1;
 
 /// A topic of an open log.
 pub(crate) struct Topic {

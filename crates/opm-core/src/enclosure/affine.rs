@@ -18,13 +18,13 @@ const ROUNDING: f64 = 1e-15;
 const UNBOUNDED: f64 = 1e90;
 
 /// A wider range of an angle than this, on each side of its middle, leaves its sine and cosine unknown.
-const WIDE: f64 = 1.2;
+pub const WIDE: f64 = 1.2;
 
 /// Rotations whose `(1 - cos θ)/2` may be larger are too near to half a turn for their rotation vector.
 const NEAR_HALF_TURN: f64 = 0.999;
 
-/// Half the largest second derivative of the arctangent, `3√3/8`.
-const ARCTANGENT_BEND: f64 = 0.325;
+/// The largest second derivative of the arctangent, `3√3/8`.
+const ARCTANGENT_BEND: f64 = 0.65;
 
 /// A linear function on the cube `[-1, 1]^N`, to within an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -197,31 +197,79 @@ impl<const N: usize> Affine<N> {
             return Plane::anywhere(&spread);
         }
         let (sin, cos) = self.centre.sin_cos();
-        let share = 0.5 * radius;
         let along = |value: f64, slope: f64| {
-            Self {
-                centre: value,
-                slope: self.slope.map(|s| slope * s),
-                error: std::array::from_fn(|i| slope.abs() * self.error[i] + share * spread[i]),
-                rounding: (slope.abs() + share) * self.rounding,
-            }
-            .rounded(1.0 + self.centre.abs())
+            self.bent(
+                [value, slope],
+                [-value - radius, -value + radius].map(|b| b.clamp(-1.0, 1.0)),
+            )
         };
         Plane { re: along(cos, -sin), im: along(sin, cos) }
     }
 
     fn atan(self) -> Self {
         let slope = 1.0 / (1.0 + self.centre * self.centre);
+        let bend = -2.0 * self.centre * slope * slope;
+        // The third derivative is at most 2.
+        let off = 2.0 * self.radius();
+        let bends = [bend - off, bend + off].map(|b| b.clamp(-ARCTANGENT_BEND, ARCTANGENT_BEND));
+        self.bent([self.centre.atan(), slope], bends)
+    }
+
+    /// A function with its value and derivative in the middle, whose second derivative lies between two
+    /// bounds.
+    pub fn bent(self, [value, slope]: [f64; 2], bends: [f64; 2]) -> Self {
         let radius = self.radius();
-        let share = ARCTANGENT_BEND * radius;
-        let spread = self.spread();
+        let [least, most] = [bends[0].min(0.0), bends[1].max(0.0)].map(|b| 0.5 * b * radius);
+        let (spread, share) = (self.spread(), 0.5 * (most - least));
         Self {
-            centre: self.centre.atan(),
+            centre: value + 0.5 * (least + most) * radius,
             slope: self.slope.map(|s| slope * s),
-            error: std::array::from_fn(|i| slope * self.error[i] + share * spread[i]),
-            rounding: (slope + share) * self.rounding,
+            error: std::array::from_fn(|i| slope.abs() * self.error[i] + share * spread[i]),
+            rounding: (slope.abs() + share) * self.rounding,
         }
-        .rounded(4.0)
+        .rounded(4.0 * (1.0 + value.abs() + slope.abs() * self.size()))
+    }
+
+    /// A sum of products: what two coordinates do together is summed up before its sign is dropped.
+    pub fn products<const K: usize>(pairs: [[Self; 2]; K]) -> Self {
+        let mut result = Self::constant(0.0);
+        // What the products of two coordinates are multiplied by, below the diagonal.
+        let mut bends = [[0.0; N]; N];
+        let mut size = 0.0;
+        for [x, y] in pairs {
+            let (a, b) = (x.centre, y.centre);
+            let sum = |of: [f64; N]| of.iter().sum::<f64>();
+            let (p, q) = (x.slope.map(f64::abs), y.slope.map(f64::abs));
+            let (all_p, all_q) = (sum(p), sum(q));
+            let (e, f) = (sum(x.error), sum(y.error));
+            result.centre += a * b;
+            for i in 0..N {
+                result.slope[i] += a * y.slope[i] + b * x.slope[i];
+                // Errors by what is off the other centre, half of it by the coordinates of either.
+                result.error[i] += a.abs() * y.error[i]
+                    + b.abs() * x.error[i]
+                    + 0.5 * (x.error[i] * (all_q + f) + p[i] * f)
+                    + 0.5 * (y.error[i] * (all_p + e) + q[i] * e);
+                for (j, bend) in bends[i][..i].iter_mut().enumerate() {
+                    *bend += x.slope[i] * y.slope[j] + x.slope[j] * y.slope[i];
+                }
+                bends[i][i] += x.slope[i] * y.slope[i];
+            }
+            let (r, s) = (x.rounding, y.rounding);
+            result.rounding += (a.abs() + all_p + e) * s + (b.abs() + all_q + f + s) * r;
+            size += (a.abs() + all_p + e + r) * (b.abs() + all_q + f + s);
+        }
+        for (i, bends) in bends.iter().enumerate() {
+            // The square of a coordinate lies between zero and one.
+            result.centre += 0.5 * bends[i];
+            result.error[i] += 0.5 * bends[i].abs();
+            for (j, bend) in bends[..i].iter().enumerate() {
+                result.error[i] += 0.5 * bend.abs();
+                result.error[j] += 0.5 * bend.abs();
+            }
+        }
+        // A term a coordinate and a pair.
+        result.rounded(4.0 * size)
     }
 }
 
@@ -291,22 +339,7 @@ impl<const N: usize> Mul for Affine<N> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let (a, b) = (self.centre, other.centre);
-        let (p, q) = (self.spread(), other.spread());
-        let (all_p, all_q): (f64, f64) = (p.iter().sum(), q.iter().sum());
-        // The product of what is off the centres, half of it by the coordinates of either.
-        let error = |i: usize| {
-            a.abs() * other.error[i] + b.abs() * self.error[i] + 0.5 * (p[i] * all_q + q[i] * all_p)
-        };
-        let (r, s) = (self.rounding, other.rounding);
-        let size = (a.abs() + all_p + r) * (b.abs() + all_q + s);
-        Self {
-            centre: a * b,
-            slope: std::array::from_fn(|i| a * other.slope[i] + b * self.slope[i]),
-            error: std::array::from_fn(error),
-            rounding: (a.abs() + all_p) * s + (b.abs() + all_q + s) * r,
-        }
-        .rounded(size)
+        Self::products([[self, other]])
     }
 }
 
@@ -342,7 +375,7 @@ impl<const N: usize> Plane<N> {
 
     /// `self × other`, the third component of the cross product.
     pub fn cross(self, other: Self) -> Affine<N> {
-        self.re * other.im - self.im * other.re
+        Affine::products([[self.re, other.im], [-self.im, other.re]])
     }
 
     fn spread(&self) -> [f64; N] {
@@ -401,8 +434,8 @@ impl<const N: usize> Mul for Plane<N> {
 
     fn mul(self, other: Self) -> Self {
         Self {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
+            re: Affine::products([[self.re, other.re], [-self.im, other.im]]),
+            im: Affine::products([[self.re, other.im], [self.im, other.re]]),
         }
     }
 }
@@ -428,5 +461,81 @@ impl<const N: usize> Mul<Complex<f64>> for Plane<N> {
 
     fn mul(self, z: Complex<f64>) -> Self {
         Self { re: self.re * z.re - self.im * z.im, im: self.re * z.im + self.im * z.re }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// A number over a box of two coordinates, a place in the box, and what the number is there: as far
+    /// off the linear function as it may be, or less.
+    fn number(from: f64, to: f64) -> impl Strategy<Value = (Affine<2>, f64)> {
+        let part = || -1.0..1.0_f64;
+        let scale = prop_oneof![Just(0.0), Just(1e-3), Just(0.1), Just(1.0)];
+        let error = prop_oneof![Just([0.0; 2]), [0.0..0.3, 0.0..0.3_f64]];
+        (from..to, [part(), part()], error, scale, part()).prop_map(
+            |(centre, slope, error, scale, off)| {
+                let [slope, error] = [slope, error].map(|parts| parts.map(|part| part * scale));
+                let number = Affine { slope, error, ..Affine::constant(centre) };
+                (number.rounded(number.size()), off * number.total_error())
+            },
+        )
+    }
+
+    /// Anywhere in the box, often in a corner.
+    fn place() -> impl Strategy<Value = [f64; 2]> {
+        let along = || prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64];
+        [along(), along()]
+    }
+
+    fn linear(number: &Affine<2>, at: [f64; 2]) -> f64 {
+        number.centre + number.slope[0] * at[0] + number.slope[1] * at[1]
+    }
+
+    /// The affine number holds this value at a place.
+    fn holds(number: &Affine<2>, at: [f64; 2], value: f64) -> bool {
+        (value - linear(number, at)).abs() <= number.total_error() + 1e-15
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn operations_hold_what_numbers_give(
+            (x, x_off) in number(-2.0, 2.0), (y, y_off) in number(-2.0, 2.0), at in place(),
+        ) {
+            let (a, b) = (linear(&x, at) + x_off, linear(&y, at) + y_off);
+            prop_assert!(holds(&x.square(), at, a * a));
+            prop_assert!(holds(&(x * y), at, a * b));
+            prop_assert!(holds(&Affine::products([[x, y], [y, -x], [x, x]]), at, a * a));
+            prop_assert!(holds(&(x * 3.0 - y + 0.5), at, a * 3.0 - b + 0.5));
+            prop_assert!(a < 0.0 || holds(&x.sqrt(), at, a.sqrt()));
+            prop_assert!(holds(&x.recip(), at, 1.0 / a));
+            prop_assert!(a < 0.0 || holds(&x.recip_sqrt(), at, 1.0 / a.sqrt()));
+            prop_assert!(holds(&x.atan(), at, a.atan()));
+            let turn = (x * 2.0).turn();
+            prop_assert!(holds(&turn.re, at, (2.0 * a).cos()));
+            prop_assert!(holds(&turn.im, at, (2.0 * a).sin()));
+            let z = Plane { re: x, im: y };
+            let (angle, length) = (b.atan2(a), a.hypot(b));
+            let argument = z.argument();
+            let turns = ((linear(&argument, at) - angle) / TAU).round();
+            prop_assert!(holds(&argument, at, angle + TAU * turns));
+            let direction = z.direction();
+            prop_assert!(holds(&direction.re, at, a / length));
+            prop_assert!(holds(&direction.im, at, b / length));
+        }
+
+        #[test]
+        fn angles_over_sines_hold((x, off) in number(-1.0, 1.0), at in place()) {
+            let cosine = linear(&x, at) + off;
+            // Near the ends this is no judge.
+            let inside = cosine.abs() < 1.0 - 1e-9;
+            let angle = cosine.acos();
+            prop_assert!(!inside || holds(&x.angle_over_sine(), at, angle / angle.sin()));
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The closed forms of the chains over a box of targets: which of them close, and the joints'
 //! displacements where they do.
 
-use super::affine::{Affine, Plane};
+use super::affine::{Affine, Plane, WIDE};
 use super::share::Share;
 use super::target::{Enclosed, PlanarTarget, Rotation, Target, dot};
 use crate::chain::cylindrical::CoaxialJoint;
@@ -9,6 +9,9 @@ use crate::chain::planar::PlanarJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, RIM};
 use nalgebra::{Complex, Vector3};
+
+/// How near to the rim, as a share, an angle at the base of a triangle bends too much for a bound.
+const NEAR_RIM: f64 = 1e-3;
 
 /// No end.
 const INFINITE: f64 = f64::INFINITY;
@@ -258,15 +261,59 @@ impl Arcs {
         [cosine, (-cosine.square() + 1.0).sqrt()]
     }
 
-    /// The first joint's turn, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`.
-    fn first<const N: usize>(&self, w: &[Affine<N>; 3], branch: Branch) -> Plane<N> {
+    /// The angle at `a₁` between the planes of `a₂` and of `w`: `cos ψ = (cos a₂₃ - z cos a₁₂) / (sin a₁₂
+    /// √(1 - z²))`. Of one number alone, so that its second derivative has bounds; `None` where these are
+    /// wide, near the rim and the poles.
+    fn opening<const N: usize>(&self, z: Affine<N>) -> Option<Affine<N>> {
+        let [c12, c23] = self.cosines;
+        let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
+        let ends = [z.low(), z.high()];
+        // Concave, with their largest values in the middle.
+        let square = |z: f64| (1.0 - z) * (1.0 + z);
+        let gram = |z: f64| (half - (z - middle)) * (half + (z - middle));
+        let range = |f: &dyn Fn(f64) -> f64, top: f64| {
+            let [a, b] = ends.map(f);
+            [a.min(b), f(top.clamp(ends[0], ends[1]))]
+        };
+        let (squares, grams) = (range(&square, 0.0), range(&gram, middle));
+        if !(squares[0] > NEAR_RIM && grams[0] > NEAR_RIM * half * half) {
+            return None;
+        }
+        let times = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+            let all = [a * c, a * d, b * c, b * d];
+            [all.into_iter().fold(INFINITE, f64::min), all.into_iter().fold(-INFINITE, f64::max)]
+        };
+        let over = |[least, most]: [f64; 2]| [1.0 / most, 1.0 / least];
+        let numerator = |z: f64| c12 - c23 * z;
+        let [p, q] = ends.map(numerator);
+        let numerators = [p.min(q), p.max(q)];
+        // ψ' = n / (s √g) and ψ'' = (-cos a₂₃ + 2 n z/s + n (z - m)/g) / (s √g).
+        let first = times(times(numerators, ends), over(squares)).map(|x| 2.0 * x);
+        let second = times(times(numerators, ends.map(|z| z - middle)), over(grams));
+        let sum = [0, 1].map(|i| first[i] + second[i] - c23);
+        let weight = over([0, 1].map(|i| squares[i] * grams[i].sqrt()));
+        let root = gram(z.centre).sqrt();
+        let value = root.atan2(c23 - c12 * z.centre);
+        let slope = numerator(z.centre) / (square(z.centre) * root);
+        Some(z.bent([value, slope], times(sum, weight)))
+    }
+
+    /// The first joint's turn, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`, as the sum of
+    /// two angles where they are known.
+    fn first<const N: usize>(&self, w: &[Affine<N>; 3], branch: Branch) -> Enclosed<N> {
         let z = dot(&self.first, w);
         let [x, y] = self.second_on_first;
         let azimuth = Plane { re: dot(&x, w), im: dot(&y, w) };
+        if let Some(opening) = self.opening(z) {
+            let angle = azimuth.argument() - opening * branch.sign();
+            if angle.radius() <= WIDE {
+                return Enclosed::Angle(angle);
+            }
+        }
         let d = -z * self.cosines[0] + self.cosines[1];
         let root = self.dihedral(z)[1] * (self.sines[0] * self.sines[1] * -branch.sign());
         let square = (-z.square() + 1.0) * (self.sines[0] * self.sines[0]);
-        (azimuth * Plane { re: d, im: root }).divided(square.recip())
+        Enclosed::Unit((azimuth * Plane { re: d, im: root }).divided(square.recip()))
     }
 }
 
@@ -289,8 +336,8 @@ fn spherical<const N: usize>(
         Branch::Plus => Branch::Minus,
         Branch::Minus => Branch::Plus,
     };
-    let third = Arcs::of(a3, a2, a1).first(&r.apply_back(&a1), other).conj();
-    [Enclosed::Unit(first), Enclosed::Turn(second), Enclosed::Unit(third)]
+    let third = Arcs::of(a3, a2, a1).first(&r.apply_back(&a1), other).inverse();
+    [first, Enclosed::Turn(second), third]
 }
 
 /// The rotation vector: its sine, `a` of `R - Rᵀ = 2 [a]`, times `θ / sin θ`.
@@ -303,4 +350,36 @@ fn ball<const N: usize>(ball: &Ball, r: &Rotation<N>) -> [Enclosed<N>; 3] {
         let row = ball.axes.row(i).transpose();
         Enclosed::Value(dot(&row, &sine) * 0.5 * ratio)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(50_000))]
+
+        /// The angle at the base of a spherical triangle with two sides given, over a range of the third.
+        #[test]
+        fn openings_hold(
+            arcs in [0.1..3.0_f64, 0.1..3.0_f64],
+            share in -0.99..0.99_f64,
+            half in prop_oneof![Just(1e-3), Just(1e-2), Just(0.1), Just(0.5)],
+            at in prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64],
+        ) {
+            let [a, b] = arcs;
+            let axis = |angle: f64| Vector3::new(angle.sin(), 0.0, angle.cos());
+            let arcs = Arcs::of(axis(0.0), axis(a), axis(a + b));
+            // Where the triangle closes.
+            let middle = a.cos() * b.cos() + share * a.sin() * b.sin();
+            let z = Affine::<1>::coordinate(middle, half * (1.0 - share.abs()), 0);
+            if let Some(opening) = arcs.opening(z) {
+                let to = (z.centre + z.slope[0] * at).acos();
+                let angle = ((b.cos() - a.cos() * to.cos()) / (a.sin() * to.sin())).acos();
+                let off = (opening.centre + opening.slope[0] * at - angle).abs();
+                prop_assert!(off <= opening.total_error() + 1e-12, "{off} {opening:?}");
+            }
+        }
+    }
 }

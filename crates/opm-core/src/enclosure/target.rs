@@ -109,9 +109,10 @@ pub fn after<const N: usize>(cut: Cut, v: &Target<N>, tau: Enclosed<N>) -> Targe
         }
         (Cut::Turn, Target::Spherical(r)) => {
             let e = tau.turn();
-            Target::Spherical(Rotation(
-                r.0.map(|[x, y, z]| [x * e.re + y * e.im, y * e.re - x * e.im, z]),
-            ))
+            Target::Spherical(Rotation(r.0.map(|[x, y, z]| {
+                let first = Affine::products([[x, e.re], [y, e.im]]);
+                [first, Affine::products([[y, e.re], [-x, e.im]]), z]
+            })))
         }
         (Cut::Slide(along), Target::Planar(v)) => {
             let step = (v.rotation * along).scaled(tau.number());
@@ -135,8 +136,8 @@ pub fn before<const N: usize>(cut: Cut, b: &Target<N>, tau: Enclosed<N>) -> Targ
             let (e, [x, y, z]) = (tau.turn(), r.0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
-                row(&|i| x[i] * e.re - y[i] * e.im),
-                row(&|i| x[i] * e.im + y[i] * e.re),
+                row(&|i| Affine::products([[x[i], e.re], [-y[i], e.im]])),
+                row(&|i| Affine::products([[x[i], e.im], [y[i], e.re]])),
                 z,
             ]))
         }
@@ -262,8 +263,8 @@ pub mod task {
         let first = [cx * psi.re, -(cx * psi.im), sx];
         let second = [psi.im, psi.re, Affine::constant(0.0)];
         Rotation([
-            [0, 1, 2].map(|j| zeta.re * first[j] - zeta.im * second[j]),
-            [0, 1, 2].map(|j| zeta.im * first[j] + zeta.re * second[j]),
+            [0, 1, 2].map(|j| Affine::products([[zeta.re, first[j]], [-zeta.im, second[j]]])),
+            [0, 1, 2].map(|j| Affine::products([[zeta.im, first[j]], [zeta.re, second[j]]])),
             [-(sx * psi.re), sx * psi.im, cx],
         ])
     }
