@@ -105,10 +105,10 @@ def figure_11() -> Figure:
 
 
 def figure_13() -> Figure:
-    """The 3-DoF manipulator."""
-    figure = plt.figure(figsize=(7, 5))
+    """The 3-DoF manipulator, on rails that are shorter than its own: these would dwarf it."""
+    figure = plt.figure(figsize=(7, 5), layout="constrained")
     panel = figure.add_subplot(projection="3d", elev=32, azim=-60)
-    plot.mechanism(HELICAL, [0.05, 0.03, 1.0], ax=panel)
+    plot.mechanism(HELICAL.with_parameters({"limits.S": (-0.06, 0.06)}), [0.03, 0.02, 1.0], ax=panel)
     return figure
 
 

@@ -5,6 +5,7 @@ use crate::error::{failed, wrong};
 use crate::html::{self, digits};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
+use crate::parts::Pickled;
 use crate::pickle::{attribute, attributes, frozen, pickled};
 use crate::rows::{Rows, no_memory};
 use crate::solutions::{column, units};
@@ -421,7 +422,7 @@ impl Violation {
 impl Trajectory {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>, Followable))> {
+    ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {
         let Source { manipulator, file_name, text, rate, .. } = &slf.get().source;
         let manipulator = manipulator.clone_ref(slf.py());
         let source = (manipulator, file_name.clone(), text.clone(), *rate);
