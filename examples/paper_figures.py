@@ -91,34 +91,24 @@ def figure_11() -> Figure:
     """Workspaces: (a) of the upper section at zeta = 0, (b) in x and y, (c) of the imaginary joints."""
     figure = plt.figure(figsize=(12, 4), layout="constrained")
     ours = figure.add_subplot(1, 3, 1)
-    angle = np.linspace(-np.pi, np.pi, 181)
-    xi, psi = np.meshgrid(np.linspace(0, np.pi, 91), angle)
-    ours.pcolormesh(xi, psi, upper_section(xi, psi), shading="nearest", cmap="Blues", vmin=0, vmax=1.2, rasterized=True)
-    ours.set(xlabel="xi (rad)", ylabel="psi (rad)", title="(a)")
+    upper = opm.sweep(SPHERICAL, kind="upper", zeta=0.0, xi=(0.0, np.pi, 91), psi=(-np.pi, np.pi, 181))
+    plot.workspace(upper, "xi", "psi", ax=ours)
+    ours.set_title("(a)")
     plane = opm.sweep(SPHERICAL, x=(-0.22, 0.22, 177), y=(-0.16, 0.16, 129))
     plot.workspace(plane, ax=figure.add_subplot(1, 3, 2, title="(b)"))
     tilted = opm.sweep(SPHERICAL, zeta=(-0.35, 0.35, 25), xi=(-0.35, 0.35, 25), psi=(-0.35, 0.35, 25))
     panel = figure.add_subplot(1, 3, 3, projection="3d", elev=24, azim=-60, title="(c)")
+    panel.set_box_aspect(None, zoom=0.82)  # room for the label of z
     points = tilted.points()
     plot.imaginary(SPHERICAL.inverse(points), color=np.abs(points[:, 3]), ax=panel)
     return figure
 
 
-def upper_section(xi: NDArray[np.float64], psi: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether the coaxial 3-RRR spherical section closes at zeta = 0: every axis w of the platform more than 30 degrees
-    from -z (alpha_1 = alpha_2 = 75 degrees)."""
-    beta, closed = np.radians(60), np.ones(xi.shape, dtype=bool)
-    for eta in np.radians([0, 120, 240]):
-        w_z = np.cos(xi) * np.cos(beta) - np.sin(xi) * np.sin(beta) * np.cos(psi + eta)
-        closed &= w_z >= np.cos(np.radians(150))
-    return closed
-
-
 def figure_13() -> Figure:
-    """The 3-DoF manipulator."""
-    figure = plt.figure(figsize=(7, 5))
+    """The 3-DoF manipulator, on rails that are shorter than its own: these would dwarf it."""
+    figure = plt.figure(figsize=(7, 5), layout="constrained")
     panel = figure.add_subplot(projection="3d", elev=32, azim=-60)
-    plot.mechanism(HELICAL, [0.05, 0.03, 1.0], ax=panel)
+    plot.mechanism(HELICAL.with_parameters({"limits.S": (-0.06, 0.06)}), [0.03, 0.02, 1.0], ax=panel)
     return figure
 
 

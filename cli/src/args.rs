@@ -6,7 +6,8 @@ use crate::plot::{PanelName, PictureSize};
 use crate::pose::{GridAxis, Number, OverAxis, Pose, SliceValue};
 use crate::transform::Transform;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
-use opm_workspace::{Sections, Shard};
+use opm_workspace::measure::check_tolerance;
+use opm_workspace::{MOST_THREADS, Sections, Shard};
 use std::path::PathBuf;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
@@ -398,7 +399,7 @@ pub struct WorkspaceArgs {
     #[command(flatten)]
     pub cloud: CloudArgs,
     /// Threads to use, instead of one a processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
@@ -444,7 +445,7 @@ pub struct MergeArgs {
     #[command(flatten)]
     pub cloud: CloudArgs,
     /// Threads to use, instead of one a processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
@@ -494,7 +495,7 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = clap::value_parser!(u64).range(1..))]
     pub budget: u64,
     /// Threads to use, instead of one a processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
@@ -531,10 +532,8 @@ impl SectionName {
 
 /// A share of a measure.
 fn tolerance(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if (0.0..1.0).contains(&number) => Ok(number),
-        _ => Err(format!("{text:?}, expected a share of at least 0 and less than 1")),
-    }
+    let number = text.trim().parse().unwrap_or(f64::NAN);
+    check_tolerance(number).map(|()| number).map_err(|expected| format!("{text:?}, {expected}"))
 }
 
 /// A condition number to compare with.

@@ -1,46 +1,78 @@
 //! How a mechanism falls into two sections.
 
-use crate::html;
+use crate::html::{self, digits};
+use crate::pickle::pickled;
 use opm_core::decomposition::Freedom;
 use opm_core::leg::Leg;
 use opm_core::manipulator as core;
 use opm_core::subspace::SubspaceClass;
 use pyo3::prelude::*;
 
-/// How the legs of a mechanism were cut in two.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+/// How the legs of a mechanism were cut in two: what ``opm decompose`` says.
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Decomposition {
+    /// Of the mechanism.
     name: String,
+    /// Of all joint screws, lambda.
     rank: usize,
+    /// N.
     mobility: usize,
+    /// Independent motions of the imaginary joints, J.
     imaginary_joints: usize,
+    /// Motions of the lower section with the imaginary joints held, M = N - J.
     first_section_motions: usize,
+    /// Subspace of the lower section: ``"planar"``, for instance.
     lower: String,
+    /// Subspace of the upper section.
     upper: String,
+    /// What both have in common.
     intersection: Intersection,
+    /// A leg each, in the order of the mechanism file.
     legs: Vec<LegSplit>,
 }
 
-/// The motion that both sections have in common.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+/// The motion that both sections have in common, in base coordinates at home.
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Intersection {
+    /// ``"rotation"``, ``"translation"`` or ``"helical"``.
     kind: String,
+    /// Unit vector of its positive direction, base coordinates.
     axis: Option<(f64, f64, f64)>,
+    /// A point of the axis, metres; of a translation none.
     point: Option<(f64, f64, f64)>,
+    /// Advance of a helical motion, metres per radian.
     pitch: Option<f64>,
 }
 
 /// Where a leg was cut.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct LegSplit {
+    /// Of the leg.
     name: String,
+    /// Joints in the lower section, base first.
     lower: Vec<String>,
+    /// Joints in the upper section, base first.
     upper: Vec<String>,
+    /// The imaginary joint that bridges the cut.
     imaginary: Option<String>,
 }
+
+pickled!(Decomposition {
+    name,
+    rank,
+    mobility,
+    imaginary_joints,
+    first_section_motions,
+    lower,
+    upper,
+    intersection,
+    legs,
+});
+pickled!(Intersection { kind, axis, point, pitch });
+pickled!(LegSplit { name, lower, upper, imaginary });
 
 impl Decomposition {
     pub fn of(manipulator: &core::Manipulator) -> Self {
@@ -109,10 +141,10 @@ impl Intersection {
     fn __repr__(&self) -> String {
         let Self { kind, axis, point, .. } = self;
         let text = |v: &Option<(f64, f64, f64)>| match v {
-            Some((x, y, z)) => format!("({x}, {y}, {z})"),
+            Some((x, y, z)) => format!("({}, {}, {})", digits(*x), digits(*y), digits(*z)),
             None => "None".to_owned(),
         };
-        let pitch = self.pitch.map_or_else(|| "None".to_owned(), |pitch| pitch.to_string());
+        let pitch = self.pitch.map_or_else(|| "None".to_owned(), digits);
         format!("Intersection({kind:?}, axis={}, point={}, pitch={pitch})", text(axis), text(point))
     }
 }

@@ -1,21 +1,37 @@
 //! Forward kinematics: the poses at given joint values.
 
-use crate::error::failed;
+use crate::arguments;
+use crate::error::wrong;
+use crate::interrupt;
 use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
 use crate::rows::Rows;
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArrayLike2};
+use numpy::{IntoPyArray, PyArray1};
+use opm_core::forward::{self as core, ForwardError, NearError, Stop};
+use opm_core::manipulator::Mode;
 use pyo3::prelude::*;
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// One way in which the mechanism can be assembled for given actuated joints.
+/// One way in which a mechanism can be assembled for given actuated joints.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Assembly {
+    /// (d,): task coordinates, metres and radians.
     pose: Py<PyArray1<f64>>,
+    /// The working mode that it is in.
     mode: String,
+    /// (k,): every joint coordinate, metres and radians.
     joints: Py<PyArray1<f64>>,
+    /// (j,): every imaginary joint, metres and radians.
     imaginary: Py<PyArray1<f64>>,
+    /// Whether all joints are within their limits.
     within_limits: bool,
+    /// How far the legs fail to close: radians, and lengths over the mechanism's size.
     residual: f64,
 }
+
+pickled!(Assembly { pose, mode, joints, imaginary, within_limits, residual });
 
 #[pymethods]
 impl Assembly {
@@ -25,35 +41,129 @@ impl Assembly {
     }
 }
 
+impl Assembly {
+    fn new(py: Python<'_>, manipulator: &Manipulator, found: core::Assembly) -> PyResult<Self> {
+        let array = |numbers: Vec<f64>| frozen(numbers.into_pyarray(py));
+        Ok(Self {
+            pose: array(found.pose)?,
+            mode: manipulator.inner.format_mode(found.mode),
+            joints: array(found.joints)?,
+            imaginary: array(found.imaginary)?,
+            within_limits: found.within_limits,
+            residual: found.residual,
+        })
+    }
+}
+
+/// Where Newton's method begins, and in which working mode.
+struct Near<'a> {
+    starts: Rows<'a>,
+    mode: Mode,
+}
+
 #[pymethods]
 impl Manipulator {
-    /// Every assembly, for each row of actuated joints.
-    fn forward<'py>(
+    /// Every assembly for each row of actuated joint values; or, near a pose, the one that Newton's method finds.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints : (n, a) array_like
+    ///     A row of actuated joint values each, in the order of `actuated`; metres and radians.
+    /// near : (d,) or (n, d) array_like, optional
+    ///     From which pose Newton's method begins, metres and radians; one row is for all. It works for every mechanism, the
+    ///     closed form not for all.
+    /// mode : str, optional
+    ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Of Newton's method the mode
+    ///     that it stays in: home if not given.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// list of list of Assembly
+    ///     A list a row: empty where there is none, or where Newton's method ends nowhere.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or that is out of reach.
+    #[pyo3(signature = (joints, *, near = None, mode = None, threads = None))]
+    fn forward(
         &self,
-        py: Python<'py>,
-        joints: PyArrayLike2<'py, f64, AllowTypeChange>,
+        py: Python<'_>,
+        joints: &Bound<'_, PyAny>,
+        near: Option<&Bound<'_, PyAny>>,
+        mode: Option<&str>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Vec<Vec<Assembly>>> {
         let coordinates = self.inner.coordinates();
         let names: Vec<_> =
             self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
-        let rows = Rows::new(&joints, "joints", &names)?;
-        let array = |numbers: Vec<f64>| numbers.into_pyarray(py).unbind();
-        (0..rows.count)
-            .map(|row| {
-                py.check_signals()?;
-                let found = py.detach(|| self.inner.forward(rows.row(row)));
-                let assemblies = found.map_err(|error| failed(&error))?.list.into_iter();
-                Ok(assemblies
-                    .map(|assembly| Assembly {
-                        pose: array(assembly.pose),
-                        mode: self.inner.format_mode(assembly.mode),
-                        joints: array(assembly.joints),
-                        imaginary: array(assembly.imaginary),
-                        within_limits: assembly.within_limits,
-                        residual: assembly.residual,
-                    })
-                    .collect())
-            })
-            .collect()
+        let joints = arguments::rows(joints, "joints", &names)?;
+        let joints = Rows::new(&joints)?;
+        let mode = mode.map(|mode| self.mode(mode)).transpose()?;
+        let starts = near.map(|near| arguments::one_or_rows(near, "near", &self.pose_names()));
+        let starts = starts.transpose()?;
+        let near = match &starts {
+            Some(starts) => {
+                let starts = Rows::new(starts)?;
+                if starts.count != joints.count && starts.count != 1 {
+                    let (given, rows) = (starts.count, joints.count);
+                    return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
+                }
+                Some(Near { starts, mode: mode.unwrap_or_else(|| self.inner.home_mode()) })
+            }
+            None => {
+                self.inner.forward_closed_form().map_err(|why| {
+                    wrong(format!("{why}; near= says from where Newton's method begins"))
+                })?;
+                None
+            }
+        };
+        let stop = AtomicBool::new(false);
+        let solve = |row: usize| -> Result<Vec<core::Assembly>, String> {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(Vec::new());
+            }
+            let found = self.assemblies(joints.row(row), row, near.as_ref());
+            let mut found = found.map_err(|problem| format!("row {row}: {problem}"))?;
+            found.retain(|assembly| mode.is_none_or(|mode| assembly.mode == mode));
+            Ok(found)
+        };
+        let all = || (0..joints.count).into_par_iter().map(solve).collect::<Vec<_>>();
+        let found = interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?;
+        let rows = found.into_iter().map(|found| {
+            let list = found.map_err(wrong)?.into_iter();
+            list.map(|assembly| Assembly::new(py, self, assembly)).collect()
+        });
+        rows.collect()
+    }
+}
+
+impl Manipulator {
+    /// The assemblies with these joints, number `row` of those that are asked for. Where Newton's method
+    /// ends nowhere there is none.
+    fn assemblies(
+        &self,
+        joints: &[f64],
+        row: usize,
+        near: Option<&Near<'_>>,
+    ) -> Result<Vec<core::Assembly>, String> {
+        let Some(Near { starts, mode }) = near else {
+            let found = self.inner.forward(joints);
+            return Ok(found.map_err(|error: ForwardError| error.to_string())?.list);
+        };
+        let start = starts.row(row.min(starts.count - 1));
+        match self.inner.forward_near(joints, start, *mode) {
+            Ok(assembly) => Ok(vec![assembly]),
+            Err(NearError::NotFound(end)) => match end.why {
+                Stop::OutOfReach(_) if end.steps == 0 => {
+                    let mode = self.inner.format_mode(*mode);
+                    Err(format!("near is out of reach in mode {mode:?}: {}", end.why))
+                }
+                _ => Ok(Vec::new()),
+            },
+            Err(error) => Err(error.to_string()),
+        }
     }
 }

@@ -4,7 +4,10 @@
 
 // Arguments come from Python by value.
 #![allow(clippy::needless_pass_by_value)]
+// What has a docstring is documented for Python, in numpydoc.
+#![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
+mod arguments;
 mod command;
 mod decomposition;
 mod error;
@@ -14,6 +17,8 @@ mod interrupt;
 mod manipulator;
 mod measure;
 mod parts;
+mod pickle;
+mod place;
 mod rows;
 mod screws;
 mod shape;

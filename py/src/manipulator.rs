@@ -1,11 +1,12 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
+use crate::arguments::{self, Array};
 use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
 use crate::html;
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::solutions::Solutions;
-use numpy::{AllowTypeChange, PyArrayLike2};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
@@ -13,16 +14,18 @@ use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::{self, MechanismFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// A mechanism, decomposed and compiled for closed-form inverse kinematics. Immutable.
+/// A mechanism, decomposed and compiled for closed-form inverse kinematics.
+///
+/// Immutable; it can be pickled, and shared between threads.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Manipulator {
     pub inner: Arc<core::Manipulator>,
-    /// The text that it was read from, and what its file is called: what pickling keeps. Written when
-    /// somebody asks where parameters have been changed.
+    /// The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit.
     text: OnceLock<String>,
     label: String,
     /// What it was assembled from; `None` for a list of joints.
@@ -33,8 +36,11 @@ pub struct Manipulator {
 #[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct TaskCoordinate {
+    /// Of the coordinate: ``"x"``, ``"zeta"``, ...
     name: String,
+    /// The value at home, metres or radians.
     home: f64,
+    /// ``"m"`` or ``"rad"``.
     unit: String,
 }
 
@@ -45,6 +51,8 @@ impl TaskCoordinate {
     }
 }
 
+pickled!(TaskCoordinate { name, home, unit });
+
 /// Names of the mechanisms that come with the package.
 #[pyfunction]
 pub fn examples() -> Vec<&'static str> {
@@ -52,6 +60,21 @@ pub fn examples() -> Vec<&'static str> {
 }
 
 /// The text of one of them.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     One of :func:`examples`.
+///
+/// Returns
+/// -------
+/// str
+///     The mechanism file.
+///
+/// Raises
+/// ------
+/// OpmError
+///     There is no example of this name.
 #[pyfunction]
 pub fn example(name: &str) -> PyResult<&'static str> {
     let known = || examples().join(", ");
@@ -61,14 +84,56 @@ pub fn example(name: &str) -> PyResult<&'static str> {
 
 #[pymethods]
 impl Manipulator {
-    /// Reads a mechanism file.
+    /// Read a mechanism file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     TOML. Shipped mechanisms are read by :func:`examples.load`.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulator
+    ///     Decomposed and compiled.
+    ///
+    /// Raises
+    /// ------
+    /// OSError
+    ///     The file cannot be read: FileNotFoundError, with its name, where there is none.
+    /// OpmError
+    ///     Every problem of the file with its line and column, or why it has no closed-form inverse kinematics.
     #[staticmethod]
-    fn load(path: PathBuf) -> PyResult<Self> {
-        let text = std::fs::read_to_string(&path)?;
-        Self::parse(text, Some(path.display().to_string()))
+    fn load(
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+    ) -> PyResult<Self> {
+        let label = path.display().to_string();
+        let hint = match shipped::find(&label) {
+            Some(_) => format!("; the shipped example is opm.examples.load({label:?})"),
+            None => String::new(),
+        };
+        let text = arguments::text(py, &path, "a mechanism file", &hint)?;
+        Self::parse(text, Some(label))
     }
 
-    /// Reads the text of a mechanism file; messages call it `label`.
+    /// Read the text of a mechanism file.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     TOML.
+    /// label : str, optional
+    ///     What messages call it.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulator
+    ///     Decomposed and compiled.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Every problem of the text with its line and column, or why it has no closed-form inverse kinematics.
     #[staticmethod]
     #[pyo3(signature = (text, label = None))]
     fn parse(text: String, label: Option<String>) -> PyResult<Self> {
@@ -77,7 +142,10 @@ impl Manipulator {
         Self::compile(read, text, label)
     }
 
-    /// The parameters of its family by name: numbers, pairs, `None` for limits that there are not.
+    /// The geometric parameters of its family by name; empty for a list of joints.
+    ///
+    /// ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
+    /// of its joints. Metres and radians; points ``(x, y)``, limits ``(lowest, highest)`` or None where there are none.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -91,7 +159,34 @@ impl Manipulator {
         Ok(dict)
     }
 
-    /// The same mechanism with some of the parameters changed.
+    /// The same mechanism with some of its :attr:`parameters` changed: assembled, decomposed and compiled anew.
+    ///
+    /// Parameters
+    /// ----------
+    /// changes : mapping, optional
+    ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it, and a
+    ///     whole one (``leg1.h``) in one leg, whatever the other says.
+    /// **named
+    ///     Likewise, for names without dots.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulator
+    ///     A new one; this one stays as it is. It is assembled at the same home pose in the same working mode.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Every name that is no parameter, with those that there are, and every value that is none; every leg that does not
+    ///     reach home; home poses that are singular.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("plano-spherical-5dof")
+    /// >>> longer = m.with_parameters({"leg1.h": 0.13, "limits.S": (-0.25, 0.25)}, a2=0.05)
+    /// >>> longer.parameters["leg1.h"], longer.parameters["leg2.h"], longer.parameters["leg2.a2"]
+    /// (0.13, 0.12, 0.05)
     #[pyo3(signature = (changes = None, /, **named))]
     fn with_parameters(
         &self,
@@ -128,6 +223,17 @@ impl Manipulator {
         })
     }
 
+    /// Mechanisms are the same if their files are, whatever these are called.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.text() == other.text()
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.text().hash(&mut hasher);
+        hasher.finish()
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
         let this = slf.get();
         Ok((slf.get_type().getattr("parse")?, (this.text().to_owned(), this.label.clone())))
@@ -139,13 +245,13 @@ impl Manipulator {
         &self.inner.mechanism().name
     }
 
-    /// The mechanism file.
+    /// The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit.
     #[getter]
     pub fn text(&self) -> &str {
         self.text.get_or_init(|| self.family.as_ref().map_or_else(String::new, Family::write))
     }
 
-    /// The coordinates of the pose, in order.
+    /// The coordinates of the pose: the columns of poses.
     #[getter]
     fn task_coordinates(&self) -> Vec<TaskCoordinate> {
         let coordinates = self.inner.task_coordinates().iter();
@@ -155,7 +261,7 @@ impl Manipulator {
             .collect()
     }
 
-    /// Names of all joint coordinates, in the order of the columns of joint values.
+    /// Names of all joint coordinates: the columns of joint values.
     #[getter]
     fn joints(&self) -> Vec<String> {
         self.inner.coordinates().iter().map(|c| c.name.clone()).collect()
@@ -167,13 +273,13 @@ impl Manipulator {
         self.inner.actuated().to_vec()
     }
 
-    /// Names of the imaginary joints.
+    /// Names of the imaginary joints: the columns of their values.
     #[getter]
     fn imaginary(&self) -> Vec<String> {
         self.inner.imaginary().iter().map(|joint| joint.name.clone()).collect()
     }
 
-    /// The pose at home.
+    /// (d,): the pose at home, metres and radians.
     #[getter]
     fn home(&self) -> Vec<f64> {
         self.inner.task().home()
@@ -185,13 +291,13 @@ impl Manipulator {
         self.inner.format_mode(self.inner.home_mode())
     }
 
-    /// Number of two-valued choices; there are `2**choices` working modes.
+    /// Number of two-valued choices; there are ``2**choices`` working modes.
     #[getter]
     fn choices(&self) -> u32 {
         self.inner.choices()
     }
 
-    /// Every working mode, all-plus first: the order of the mode axis of `inverse(mode="all")`.
+    /// Every working mode, all-plus first: the mode axis of ``inverse(poses, mode="all")``.
     #[getter]
     fn modes(&self) -> Vec<String> {
         self.inner.modes().map(|mode| self.inner.format_mode(mode)).collect()
@@ -204,15 +310,39 @@ impl Manipulator {
     }
 
     /// Inverse kinematics of many poses, in one working mode or in all of them.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is, and must not be
+    ///     written to meanwhile; anything else is converted first, in memory of its own.
+    /// mode : str
+    ///     ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
+    ///     gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
+    ///     of the ``m = 2**choices`` modes of `modes`.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Solutions
+    ///     Poses out of reach have NaN; angles are within half a turn of home, unless the limits allow another turn.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Columns that are not the task coordinates, a number that is not finite (of which pose, counted from zero), an unknown
+    ///     mode.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
     fn inverse<'py>(
         &self,
         py: Python<'py>,
-        poses: PyArrayLike2<'py, f64, AllowTypeChange>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
-        let poses = self.poses(&poses)?;
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
         if mode == "all" {
             return self.inverse_all(py, &poses, threads);
         }
@@ -290,7 +420,7 @@ impl Manipulator {
         modes.try_reserve_exact(count).map_err(|_| many())?;
         modes.extend(self.inner.modes());
         let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
-        let mut tables = Tables::fill(
+        let tables = Tables::fill(
             py,
             rows,
             widths,
@@ -311,16 +441,17 @@ impl Manipulator {
                 Ok([true, solution.within_limits])
             },
         )?;
-        Solutions::of_all_modes(py, &self.inner, poses.count, &mut tables)
+        Solutions::of_all_modes(py, &self.inner, poses.count, tables)
     }
 
     /// An array of poses, checked.
-    pub fn poses<'a>(
-        &self,
-        array: &'a PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<Rows<'a>> {
-        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
-        Rows::new(array, "poses", &names)
+    pub fn poses<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        arguments::rows(given, "poses", &self.pose_names())
+    }
+
+    /// The names of the task coordinates.
+    pub fn pose_names(&self) -> Vec<&str> {
+        self.inner.task_coordinates().iter().map(|c| c.name).collect()
     }
 
     /// The working mode that `mode` names.

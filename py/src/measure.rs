@@ -1,6 +1,8 @@
 //! Measures of the workspace with guaranteed bounds.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
+use crate::html::digits;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
@@ -10,8 +12,7 @@ use opm_workspace::measure::{
 };
 use opm_workspace::{Modes, Progress, Sections};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
-use std::collections::BTreeMap;
+use pyo3::types::{PyBytes, PyDict, PyMapping};
 use std::num::{NonZeroU64, NonZeroUsize};
 
 /// Boxes of a part, all but the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
@@ -22,12 +23,29 @@ const LEAST_BOXES: u64 = 1 << 12;
 const SECTIONS: [(Sections, &str); 3] =
     [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
-/// How much of a box is in reach, between two bounds.
+/// How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+///
+/// In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
+/// orientations is Haar's.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Measure {
     found: Measured,
-    domain: Domain,
+    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
+    units: String,
+    /// Lowest and highest value of every coordinate.
+    over: Vec<(String, f64, f64)>,
 }
+
+/// Why a search was taken no further.
+const STOPS: [(Stop, &str); 4] = [
+    (Stop::Tolerance, "tolerance"),
+    (Stop::Budget, "budget"),
+    (Stop::Cancelled, "cancelled"),
+    (Stop::Exhausted, "exhausted"),
+];
+
+/// A measure as it crosses processes: bounds and whole, boxes, why it stopped, units, ranges.
+type Told = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// A value, or lowest and highest value.
 #[derive(FromPyObject)]
@@ -36,7 +54,36 @@ enum Range {
     Between((f64, f64)),
 }
 
-/// Measures the workspace over a box: `measure(m, over={"x": (min, max), "y": value})`.
+/// Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
+///
+/// Parameters
+/// ----------
+/// manipulator : Manipulator
+/// over : mapping, optional
+///     Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
+///     workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+/// section : str
+///     ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
+/// mode : str
+///     ``"home"``, ``"any"``, or a sign for every two-valued choice.
+/// tolerance : float, optional
+///     How far the true measure may be from the value, as a share of it: 0.01 if not given.
+/// budget : int, optional
+///     Boxes to look at, at most: 2**22 if not given.
+/// threads : int, optional
+///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+/// executor : concurrent.futures.Executor or callable, optional
+///     Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+///     more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
+///     executor that a function makes serves all rounds.
+/// shards : int, optional
+///     How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
+///
+/// Raises
+/// ------
+/// OpmError
+///     A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+///     and again.
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, over = None, section = "whole", mode = "home", tolerance = None, budget = None,
@@ -46,16 +93,20 @@ enum Range {
 pub fn measure(
     py: Python<'_>,
     manipulator: Py<Manipulator>,
-    over: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+    over: Option<&Bound<'_, PyMapping>>,
     section: &str,
     mode: &str,
     tolerance: Option<f64>,
-    budget: Option<u64>,
-    threads: Option<NonZeroUsize>,
+    #[pyo3(from_py_with = arguments::budget)] budget: Option<u64>,
+    #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
-    shards: Option<NonZeroU64>,
+    #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
 ) -> PyResult<Measure> {
-    let given = over.unwrap_or_default().into_iter().map(|(name, range)| match range.extract() {
+    let given: Vec<(String, Bound<'_, PyAny>)> = match over {
+        Some(over) => over.items()?.extract()?,
+        None => Vec::new(),
+    };
+    let given = given.into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(Over::new(name, value, value)),
         Ok(Range::Between((min, max))) => Ok(Over::new(name, min, max)),
         Err(_) => {
@@ -98,9 +149,8 @@ fn word(sections: Sections) -> &'static str {
 pub fn goal(tolerance: Option<f64>, budget: Option<u64>) -> PyResult<Goal> {
     let usual = Goal::default();
     let tolerance = tolerance.unwrap_or(usual.tolerance);
-    if !(tolerance.is_finite() && tolerance >= 0.0) {
-        return Err(wrong(format!("tolerance is {tolerance}, expected a number of at least 0")));
-    }
+    workspace::check_tolerance(tolerance)
+        .map_err(|expected| wrong(format!("tolerance is {tolerance:?}, {expected}")))?;
     Ok(Goal { tolerance, budget: budget.unwrap_or(usual.budget) })
 }
 
@@ -139,7 +189,7 @@ impl Asked {
                 parts.session(py, |workers| boxes_searched(&boxes, goal, &parts, workers))?
             }
         };
-        Ok(Measure { found, domain })
+        Ok(Measure::new(found, &domain))
     }
 }
 
@@ -250,22 +300,16 @@ impl Measure {
         self.found.whole
     }
 
-    /// `value / whole`.
+    /// ``value / whole``.
     #[getter]
     fn fraction(&self) -> f64 {
         self.found.fraction()
     }
 
-    /// What the measure is in: `m^2`, `rad^3`, `1`.
+    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     #[getter]
-    fn units(&self) -> String {
-        let powers = self.domain.powers().into_iter().filter(|(_, power)| *power > 0);
-        let units = powers.map(|(quantity, power)| match power {
-            1 => quantity.unit().to_owned(),
-            _ => format!("{}^{power}", quantity.unit()),
-        });
-        let units: Vec<_> = units.collect();
-        if units.is_empty() { "1".to_owned() } else { units.join(" ") }
+    fn units(&self) -> &str {
+        &self.units
     }
 
     /// Boxes that were looked at.
@@ -274,34 +318,65 @@ impl Measure {
         self.found.boxes
     }
 
-    /// Why it was taken no further.
+    /// Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+    /// the bounds no closer.
     #[getter]
     fn stop(&self) -> &'static str {
-        match self.found.stop {
-            Stop::Tolerance => "tolerance",
-            Stop::Budget => "budget",
-            Stop::Cancelled => "cancelled",
-            Stop::Exhausted => "exhausted",
-        }
+        let word = STOPS.iter().find(|(stop, _)| *stop == self.found.stop);
+        word.map_or("", |(_, word)| word)
     }
 
-    /// The ranges that it is over, by name.
+    /// Lowest and highest value of every coordinate.
     #[getter]
     fn over<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for axis in self.domain.axes() {
-            dict.set_item(&axis.name, (axis.min, axis.max))?;
+        for (name, min, max) in &self.over {
+            dict.set_item(name, (min, max))?;
         }
         Ok(dict)
     }
 
     fn __repr__(&self) -> String {
-        let (found, units) = (&self.found, self.units());
-        let [low, high] = [found.lower, found.upper];
-        format!(
-            "<Measure {:?} {units}, from {low:?} to {high:?}: {:?} of the box>",
-            found.value(),
-            found.fraction()
-        )
+        let (found, units) = (&self.found, &self.units);
+        let numbers = [found.value(), found.lower, found.upper, found.fraction()];
+        let [value, low, high, share] = numbers.map(digits);
+        format!("<Measure {value} {units}, from {low} to {high}: {share} of the box>")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, Told>> {
+        let this = slf.get();
+        let Measured { lower, upper, whole, boxes, .. } = this.found;
+        let (stop, units) = (this.stop().to_owned(), this.units.clone());
+        let state = ([lower, upper, whole], boxes, stop, units, this.over.clone());
+        Ok((slf.get_type().getattr("_restored")?, state))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        bounds: [f64; 3],
+        boxes: u64,
+        stop: &str,
+        units: String,
+        over: Vec<(String, f64, f64)>,
+    ) -> PyResult<Self> {
+        let known = STOPS.iter().find(|(_, word)| *word == stop);
+        let stop = known.map(|(stop, _)| *stop);
+        let stop = stop.ok_or_else(|| wrong("no measure is in the pickle"))?;
+        let [lower, upper, whole] = bounds;
+        Ok(Self { found: Measured { lower, upper, whole, boxes, stop }, units, over })
+    }
+}
+
+impl Measure {
+    fn new(found: Measured, domain: &Domain) -> Self {
+        let powers = domain.powers().into_iter().filter(|(_, power)| *power > 0);
+        let units = powers.map(|(quantity, power)| match power {
+            1 => quantity.unit().to_owned(),
+            _ => format!("{}^{power}", quantity.unit()),
+        });
+        let units: Vec<_> = units.collect();
+        let units = if units.is_empty() { "1".to_owned() } else { units.join(" ") };
+        let over = domain.axes().iter().map(|axis| (axis.name.clone(), axis.min, axis.max));
+        Self { found, units, over: over.collect() }
     }
 }

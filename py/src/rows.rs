@@ -1,10 +1,9 @@
 //! Work on every row of an array, on many threads, into tables of numbers.
 
+use crate::arguments::Array;
 use crate::error::wrong;
 use crate::interrupt;
-use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray2, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
-};
+use numpy::{PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -23,19 +22,10 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Checks the number of columns. What is float64 in C order already is used where it is: while rows
-    /// are worked on the interpreter's lock is let go, and nobody may write to them, as to those that NumPy
-    /// works on.
-    pub fn new(
-        array: &'a PyArrayLike2<'_, f64, AllowTypeChange>,
-        what: &str,
-        names: &[&str],
-    ) -> PyResult<Self> {
+    /// What is float64 in C order already is used where it is: while rows are worked on the interpreter's
+    /// lock is let go, and nobody may write to them, as to those that NumPy works on.
+    pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
         let [count, width] = [array.shape()[0], array.shape()[1]];
-        if width != names.len() {
-            let (expected, names) = (names.len(), names.join(", "));
-            return Err(wrong(format!("{width} columns of {what}, expected {expected}: {names}")));
-        }
         let values = match array.as_slice() {
             Ok(values) if array.is_c_contiguous() => Cow::Borrowed(values),
             _ => {
@@ -63,10 +53,8 @@ impl<'a> Rows<'a> {
 
 /// Tables with a row of each for every row of the input, NaN where nothing was written, and two answers
 /// a row.
-pub struct Tables<const N: usize> {
-    numbers: [Vec<f64>; N],
-    widths: [usize; N],
-    count: usize,
+pub struct Tables<'py, const N: usize> {
+    numbers: Vec<Bound<'py, PyArray2<f64>>>,
     pub answers: [Vec<bool>; 2],
 }
 
@@ -96,29 +84,39 @@ struct Block<'a, const N: usize> {
     answers: [&'a mut [bool]; 2],
 }
 
-impl<const N: usize> Tables<N> {
+impl<'py, const N: usize> Tables<'py, N> {
     /// Fills tables of `count` rows: `fill` writes a row of each and gives its answers, with working
     /// memory that `scratch` makes. The result does not depend on the number of threads.
     pub fn fill<S>(
-        py: Python<'_>,
+        py: Python<'py>,
         count: usize,
         widths: [usize; N],
         threads: Option<NonZeroUsize>,
         scratch: impl Fn() -> S + Sync,
         fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
     ) -> PyResult<Self> {
-        let mut numbers = widths.map(|_| Vec::new());
-        for (numbers, width) in numbers.iter_mut().zip(widths) {
-            *numbers = table(count, width, f64::NAN)?;
-        }
-        let answers = [table(count, 1, false)?, table(count, 1, false)?];
-        let mut tables = Self { numbers, widths, count, answers };
+        let numpy = py.import("numpy")?;
+        // Made by calls from Python, which raise where there is no memory, and touched by the work alone:
+        // the system takes seconds to hand out gigabytes, in which nobody would hear Ctrl-C.
+        let empty = |width| -> PyResult<Bound<'py, PyArray2<f64>>> {
+            Ok(numpy.call_method1("empty", ((count, width),))?.cast_into()?)
+        };
+        let numbers = widths.into_iter().map(empty).collect::<PyResult<Vec<_>>>()?;
+        let mut answers = [table(count, 1, false)?, table(count, 1, false)?];
+        let mut lent: Vec<_> = numbers.iter().map(PyArrayMethods::readwrite).collect();
+        let mut lent = lent.iter_mut();
+        let slices = std::array::from_fn(|_| {
+            let slice = lent.next().and_then(|array| array.as_slice_mut().ok());
+            slice.unwrap_or_default()
+        });
+        let blocks = blocks(slices, widths, &mut answers);
         let stop = AtomicBool::new(false);
         let work = |block: Block<'_, N>| -> Result<(), String> {
             if stop.load(Ordering::Relaxed) {
                 return Ok(());
             }
             let Block { first, mut numbers, answers: [yes, also] } = block;
+            numbers.iter_mut().for_each(|table| table.fill(f64::NAN));
             let mut scratch = scratch();
             for row in 0..yes.len() {
                 let mut number = 0;
@@ -131,7 +129,6 @@ impl<const N: usize> Tables<N> {
             }
             Ok(())
         };
-        let blocks = tables.blocks();
         let done = if count <= BLOCK {
             blocks.into_iter().try_for_each(work)
         } else {
@@ -139,34 +136,32 @@ impl<const N: usize> Tables<N> {
             interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
         };
         done.map_err(wrong)?;
-        Ok(tables)
-    }
-
-    fn blocks(&mut self) -> Vec<Block<'_, N>> {
-        let [yes, also] = &mut self.answers;
-        let mut rest = self.numbers.each_mut().map(|table| &mut table[..]);
-        let answers = yes.chunks_mut(BLOCK).zip(also.chunks_mut(BLOCK)).enumerate();
-        answers
-            .map(|(block, (yes, also))| {
-                let mut number = 0;
-                let numbers = rest.each_mut().map(|table| {
-                    let taken = std::mem::take(table);
-                    let (part, left) = taken.split_at_mut(yes.len() * self.widths[number]);
-                    (*table, number) = (left, number + 1);
-                    part
-                });
-                Block { first: block * BLOCK, numbers, answers: [yes, also] }
-            })
-            .collect()
+        Ok(Self { numbers, answers })
     }
 
     /// Table `number` as an array.
-    pub fn take<'py>(
-        &mut self,
-        py: Python<'py>,
-        number: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let numbers = std::mem::take(&mut self.numbers[number]);
-        numbers.into_pyarray(py).reshape([self.count, self.widths[number]])
+    pub fn table(&self, number: usize) -> Bound<'py, PyArray2<f64>> {
+        self.numbers[number].clone()
     }
+}
+
+/// Tables in parts of [`BLOCK`] rows.
+fn blocks<'a, const N: usize>(
+    mut rest: [&'a mut [f64]; N],
+    widths: [usize; N],
+    [yes, also]: &'a mut [Vec<bool>; 2],
+) -> Vec<Block<'a, N>> {
+    let answers = yes.chunks_mut(BLOCK).zip(also.chunks_mut(BLOCK)).enumerate();
+    answers
+        .map(|(block, (yes, also))| {
+            let mut number = 0;
+            let numbers = rest.each_mut().map(|table| {
+                let taken = std::mem::take(table);
+                let (part, left) = taken.split_at_mut(yes.len() * widths[number]);
+                (*table, number) = (left, number + 1);
+                part
+            });
+            Block { first: block * BLOCK, numbers, answers: [yes, also] }
+        })
+        .collect()
 }

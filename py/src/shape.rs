@@ -1,8 +1,11 @@
 //! What is known of a workspace beside its points: boundary, components, conditioning.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
+use crate::html::digits;
 use crate::interrupt;
 use crate::parts::Parts;
+use crate::pickle::{frozen, pickled};
 use crate::rows::no_memory;
 use crate::sweep::{Sweep, shard, spread};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -15,24 +18,33 @@ use pyo3::types::PyTuple;
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
-/// The boundary of a workspace in a plane, or of a slice of it.
+/// The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
+///
+/// They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
+/// workspace goes on beyond.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Outline {
-    /// The coordinates of the plane.
+    /// The coordinates of the plane: the columns of the polylines.
     #[pyo3(get)]
     axes: (String, String),
-    /// Where the slice is.
+    /// The coordinate that it is sliced by, and its value; empty where there is one plane.
     #[pyo3(get)]
     at: BTreeMap<String, f64>,
-    /// What is inside, less the holes.
+    /// Of the pieces without the holes, in the product of both coordinates' units.
     #[pyo3(get)]
     area: f64,
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
     rings: Vec<(f64, Py<PyArray2<f64>>)>,
 }
 
+/// An outline as it crosses processes.
+type Spec = ((String, String), BTreeMap<String, f64>, f64, Vec<(f64, Py<PyArray2<f64>>)>);
+
 #[pymethods]
 impl Outline {
-    /// All closed polylines.
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
     #[getter]
     fn rings<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         self.those(py, |_| true)
@@ -50,11 +62,34 @@ impl Outline {
         self.those(py, |area| area < 0.0)
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Spec)> {
+        let Self { axes, at, area, rings } = slf.get();
+        let rings = rings.iter().map(|(area, ring)| (*area, ring.clone_ref(slf.py())));
+        let state = (axes.clone(), at.clone(), *area, rings.collect());
+        Ok((slf.get_type().getattr("_restored")?, state))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        py: Python<'_>,
+        axes: (String, String),
+        at: BTreeMap<String, f64>,
+        area: f64,
+        rings: Vec<(f64, Py<PyArray2<f64>>)>,
+    ) -> PyResult<Self> {
+        // Arrays come out of a pickle writable.
+        let rings = rings.into_iter().map(|(area, ring)| Ok((area, frozen(ring.into_bound(py))?)));
+        Ok(Self { axes, at, area, rings: rings.collect::<PyResult<_>>()? })
+    }
+
     fn __repr__(&self) -> String {
         let (x, y) = &self.axes;
         let holes = self.rings.iter().filter(|(area, _)| *area < 0.0).count();
-        let at: String =
-            self.at.iter().map(|(name, value)| format!(" at {name} = {value}")).collect();
+        let at: String = self
+            .at
+            .iter()
+            .map(|(name, value)| format!(" at {name} = {}", digits(*value)))
+            .collect();
         format!("<Outline in {x}, {y}{at}: {} rings, {holes} of them holes>", self.rings.len())
     }
 }
@@ -67,20 +102,22 @@ impl Outline {
     }
 }
 
-/// How well a workspace is conditioned.
+/// How well the poses of a workspace are conditioned: their local indices, one over the condition number each.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Conditioning {
-    /// The mean of the local indices.
+    /// The mean of the local indices (Gosselin and Angeles); None where no pose has one.
     global_index: Option<f64>,
-    /// The least of them.
+    /// The least.
     local_min: Option<f64>,
-    /// The greatest.
+    /// The greatest; one at best.
     local_max: Option<f64>,
-    /// The characteristic length, metres.
+    /// Characteristic length of the condition numbers, metres.
     length: f64,
-    /// Poses that have one.
+    /// Poses that have an index.
     poses: u64,
 }
+
+pickled!(Conditioning { global_index, local_min, local_max, length, poses });
 
 #[pymethods]
 impl Conditioning {
@@ -88,7 +125,11 @@ impl Conditioning {
         let Self { poses, length, .. } = self;
         match (self.global_index, self.local_min, self.local_max) {
             (Some(mean), Some(min), Some(max)) => format!(
-                "<Conditioning of {poses} poses: {mean:?} on average, {min:?} to {max:?}, lengths over {length:?} m>"
+                "<Conditioning of {poses} poses: {} on average, {} to {}, lengths over {} m>",
+                digits(mean),
+                digits(min),
+                digits(max),
+                digits(*length)
             ),
             _ => "<Conditioning of 0 poses>".to_owned(),
         }
@@ -100,12 +141,30 @@ type Indices = (u64, f64, f64, u128);
 
 #[pymethods]
 impl Sweep {
-    /// The boundary as closed polylines.
+    /// The boundary as closed polylines in the first two coordinates that have several values.
+    ///
+    /// Returns
+    /// -------
+    /// list of Outline
+    ///     One; or, where a third coordinate has several values, one for each of these.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
+    ///     says nothing of the imaginary joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn boundary<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Vec<Outline>> {
         let py = slf.py();
         if slf.get().asked_kind() == Kind::Imaginary {
@@ -130,7 +189,7 @@ impl Sweep {
                 let corners = ring.points.iter().chain(ring.points.first());
                 let corners: Vec<f64> = corners.flatten().copied().collect();
                 let shape = [corners.len() / 2, 2];
-                Ok((area, corners.into_pyarray(py).reshape(shape)?.unbind()))
+                Ok((area, frozen(corners.into_pyarray(py).reshape(shape)?)?))
             });
             let rings = rings.collect::<PyResult<_>>()?;
             Ok(Outline { axes: (name(0), name(1)), at: at.into_iter().collect(), area, rings })
@@ -139,22 +198,46 @@ impl Sweep {
     }
 
     /// How many points each connected component has, the largest first.
+    ///
+    /// Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
+    /// last value next to the first.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn components<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let set: GridSet = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
         Ok(slf.py().detach(|| components(&set)).into_pyarray(slf.py()))
     }
 
-    /// The global conditioning index, and the least and the greatest local one.
+    /// The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
+    ///
+    /// Each pose in the first working mode that counts; every pose has the same weight.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The points are no poses.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn conditioning(
         slf: &Bound<'_, Self>,
         executor: Option<Bound<'_, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Conditioning> {
         let (py, this) = (slf.py(), slf.get());
         this.check_conditioned()?;
@@ -177,12 +260,26 @@ impl Sweep {
         })
     }
 
-    /// The local conditioning index of every pose of the grid.
+    /// The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
+    ///
+    /// One over the condition number: one at best, zero at a singularity.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The points are no poses.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn local_conditioning<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         this.check_conditioned()?;

@@ -1,7 +1,9 @@
 //! What there is to draw of a mechanism in a pose.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
 use nalgebra::{Isometry3, Point3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use opm_core::skeleton::{self, Cuts, Material, Posture, Skeleton};
@@ -10,12 +12,19 @@ use pyo3::prelude::*;
 /// A simple body to draw, in base coordinates.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solid {
+    /// The body that it is a part of: ``"base"``, ``"LEG/JOINT"``, ``"platform"``, ``"imaginary/NAME"``.
     body: String,
-    shape: &'static str,
-    material: &'static str,
+    /// ``"cylinder"``, ``"ball"`` or ``"block"``.
+    shape: String,
+    /// ``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``.
+    material: String,
+    /// (2, 3): the ends of its axis, metres; of a ball both are its middle.
     ends: Py<PyArray2<f64>>,
+    /// Diameter, or side of the square of a block; metres.
     width: f64,
 }
+
+pickled!(Solid { body, shape, material, ends, width });
 
 #[pymethods]
 impl Solid {
@@ -26,12 +35,37 @@ impl Solid {
 
 #[pymethods]
 impl Manipulator {
-    /// The solids that the mechanism is drawn with in a pose, home if it is not given.
+    /// The solids that the mechanism is drawn with, from its joint screws alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// pose : (d,) array_like, optional
+    ///     Metres and radians. Home if not given.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    ///
+    /// Returns
+    /// -------
+    /// list of Solid
+    ///     Metres, base coordinates.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The pose is out of reach.
     #[pyo3(signature = (pose = None, *, mode = "home"))]
-    fn solids(&self, py: Python<'_>, pose: Option<Vec<f64>>, mode: &str) -> PyResult<Vec<Solid>> {
+    fn solids(
+        &self,
+        py: Python<'_>,
+        pose: Option<&Bound<'_, PyAny>>,
+        mode: &str,
+    ) -> PyResult<Vec<Solid>> {
         let manipulator = &self.inner;
         let mode = self.mode(mode)?;
-        let pose = pose.unwrap_or_else(|| manipulator.task().home());
+        let pose = match pose {
+            Some(given) => arguments::row(given, "pose", &self.pose_names())?,
+            None => manipulator.task().home(),
+        };
         let mut solution = manipulator.solution();
         if !manipulator.inverse(&pose, mode, &mut solution).map_err(|error| failed(&error))? {
             let legs = solution.unreachable.iter();
@@ -61,9 +95,9 @@ impl Manipulator {
                 let ends = ends.iter().flat_map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>();
                 solids.push(Solid {
                     body: body.name.clone(),
-                    shape,
-                    material: material(part.material),
-                    ends: ends.into_pyarray(py).reshape([2, 3])?.unbind(),
+                    shape: shape.to_owned(),
+                    material: material(part.material).to_owned(),
+                    ends: frozen(ends.into_pyarray(py).reshape([2, 3])?)?,
                     width,
                 });
             }

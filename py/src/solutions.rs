@@ -1,6 +1,7 @@
 //! What inverse kinematics finds for many poses, as arrays.
 
 use crate::error::failed;
+use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
@@ -16,27 +17,31 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Poses that a thread solves between two looks at whether it is to stop.
 const PART: usize = 4096;
 
-/// Joint values of many poses, in one working mode or in all of them.
+/// Joint values of ``n`` poses, NaN where a pose is out of reach.
+///
+/// Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
+/// entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solutions {
-    /// `(n, k)`, or `(n, m, k)` of all modes: every joint coordinate; NaN out of reach.
+    /// (n, k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
-    /// `(n, j)` or `(n, m, j)`: every imaginary joint.
+    /// (n, j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// `(n,)` or `(n, m)`: in reach.
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArrayDyn<bool>>,
-    /// `(n,)` or `(n, m)`: in reach, and all joints within their limits.
+    /// (n,): in reach, and all joints within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
-    /// Names of the last axis of `joints`.
+    /// Of the last axis of `joints`.
     joint_names: Vec<String>,
-    /// Names of the last axis of `imaginary`.
+    /// Of the last axis of `imaginary`.
     imaginary_names: Vec<String>,
-    /// `m` or `rad` of every joint and imaginary joint, by name.
-    units: BTreeMap<String, &'static str>,
-    /// The working mode, or `all`.
+    /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
+    units: BTreeMap<String, String>,
+    /// The working mode, or ``"all"``.
     mode: String,
     /// The working modes: of the mode axis, if there is one.
     modes: Vec<String>,
+    /// n.
     rows: usize,
 }
 
@@ -73,7 +78,7 @@ impl Solutions {
         }
         .solve(py, manipulator, mode, threads)?;
         let tables = [joints, imaginary];
-        Ok(Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits]))
+        Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits])
     }
 
     /// From tables with a row for each mode of each pose, the modes of a pose together.
@@ -81,16 +86,15 @@ impl Solutions {
         py: Python<'_>,
         manipulator: &Manipulator,
         rows: usize,
-        tables: &mut Tables<2>,
+        tables: Tables<'_, 2>,
     ) -> PyResult<Self> {
         let modes = manipulator.modes().count();
         let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
         let [joints, imaginary] = widths.map(|width| vec![rows, modes, width]);
-        let numbers =
-            [tables.take(py, 0)?.reshape(joints)?, tables.take(py, 1)?.reshape(imaginary)?];
-        let [reachable, within_limits] = std::mem::take(&mut tables.answers)
-            .map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
-        Ok(Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?]))
+        let numbers = [tables.table(0).reshape(joints)?, tables.table(1).reshape(imaginary)?];
+        let [reachable, within_limits] =
+            tables.answers.map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
+        Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?])
     }
 
     /// The arrays, and what their axes are called.
@@ -100,13 +104,13 @@ impl Solutions {
         rows: usize,
         [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
-    ) -> Self {
+    ) -> PyResult<Self> {
         let format = |mode| manipulator.format_mode(mode);
-        Self {
-            joints: joints.unbind(),
-            imaginary: imaginary.unbind(),
-            reachable: reachable.unbind(),
-            within_limits: within_limits.unbind(),
+        Ok(Self {
+            joints: frozen(joints)?,
+            imaginary: frozen(imaginary)?,
+            reachable: frozen(reachable)?,
+            within_limits: frozen(within_limits)?,
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
@@ -116,7 +120,7 @@ impl Solutions {
                 None => manipulator.modes().map(format).collect(),
             },
             rows,
-        }
+        })
     }
 }
 
@@ -189,10 +193,13 @@ fn split<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 }
 
 /// The units of all joints and imaginary joints.
-pub fn units(manipulator: &Manipulator) -> BTreeMap<String, &'static str> {
+pub fn units(manipulator: &Manipulator) -> BTreeMap<String, String> {
     let joints = manipulator.coordinates().iter().map(|c| (&c.name, c.quantity));
     let imaginary = manipulator.imaginary().iter().map(|joint| (&joint.name, joint.quantity));
-    joints.chain(imaginary).map(|(name, quantity)| (name.clone(), quantity.unit())).collect()
+    joints
+        .chain(imaginary)
+        .map(|(name, quantity)| (name.clone(), quantity.unit().to_owned()))
+        .collect()
 }
 
 /// The entries of one name, along the last axis of whichever table has it: a view.
@@ -209,13 +216,26 @@ pub fn column<'py>(
     Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
 }
 
+pickled!(Solutions {
+    joints,
+    imaginary,
+    reachable,
+    within_limits,
+    joint_names,
+    imaginary_names,
+    units,
+    mode,
+    modes,
+    rows,
+});
+
 #[pymethods]
 impl Solutions {
     fn __len__(&self) -> usize {
         self.rows
     }
 
-    /// The values of one joint or imaginary joint: a view.
+    /// The values of one joint or imaginary joint, (n,): a view.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let tables = [
             (&self.joint_names[..], self.joints.bind(py).as_any()),

@@ -1,5 +1,6 @@
 //! Sweeps of a grid of poses.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::html;
 use crate::interrupt;
@@ -29,15 +30,17 @@ use std::sync::{Arc, OnceLock};
 /// Poses of a part at least: fewer are not worth the way to another process.
 const LEAST_PART: u64 = 1 << 15;
 
-/// A grid, swept: which of its poses are in reach, or the points of another kind of workspace.
+/// A grid, swept: a workspace of some kind, of which a point is a pose, a place or an orientation.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
     of: Py<Manipulator>,
     pub manipulator: Arc<core::Manipulator>,
+    /// The values of every coordinate of the grid; of places and orientations, the others as well.
     pub grid: Grid,
     pub modes: Modes,
     asked: Asked,
     pub threads: Option<NonZeroUsize>,
+    /// Points of the workspace: of poses, those in reach and within all limits.
     count: Count,
     tally: OnceLock<Arc<Vec<u64>>>,
 }
@@ -68,8 +71,54 @@ enum CloudAxes {
 /// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
 type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 
-/// Sweeps a grid: `sweep(m, x=(min, max, count), y=value)`. A coordinate that is not given stays at
-/// home; where none is, the grid is fitted to the workspace.
+/// Find which poses of a grid are reachable and within all limits, or another kind of workspace.
+///
+/// Parameters
+/// ----------
+/// manipulator : Manipulator
+/// kind : str
+///     What the workspace is of, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
+///     lower one.
+///
+///     * ``"grid"``: poses.
+///     * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the upper or of the lower section held
+///       at one value.
+///     * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
+///     * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
+///     * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.
+///     * ``"lower"``: the lower section alone, by its task coordinates and the imaginary joints.
+/// mode : str
+///     ``"home"``, ``"any"``, or a sign for every two-valued choice.
+/// max_condition : float, optional
+///     Only poses with a condition number of at most this count, in a mode in which they have it.
+/// length : float, optional
+///     Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
+/// threads : int, optional
+///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+/// executor : concurrent.futures.Executor or callable, optional
+///     Who does the work: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
+///     ``mpi4py.futures``. What is sent is the manipulator, the grid and the number of a shard; the result is that of one
+///     process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
+///     takes no more work: give a function that makes one, and the shards that are missing go to a new one.
+/// shards : int, optional
+///     How many parts the executor gets: 64 if not given, fewer for small grids.
+/// **axes
+///     Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
+///     is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
+///     on beyond it.
+///
+/// Raises
+/// ------
+/// OpmError
+///     An axis that is none, ends that are not numbers or reversed, an unknown kind or mode, a grid that the kind is not of;
+///     more places or orientations than fit in memory; shards that were lost again and again.
+///
+/// Examples
+/// --------
+/// >>> import opm_kinematics as opm
+/// >>> m = opm.examples.load("plano-spherical-5dof")
+/// >>> tilt = (-0.2, 0.2, 5)
+/// >>> opm.sweep(m, kind="dexterous", x=(-0.1, 0.1, 41), y=(-0.1, 0.1, 41), zeta=tilt, xi=tilt, psi=tilt)
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, kind = "grid", mode = "home", max_condition = None, length = None, threads = None,
@@ -83,9 +132,9 @@ pub fn sweep(
     mode: &str,
     max_condition: Option<f64>,
     length: Option<f64>,
-    threads: Option<NonZeroUsize>,
+    #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
-    shards: Option<NonZeroU64>,
+    #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     axes: Option<BTreeMap<String, Bound<'_, PyAny>>>,
 ) -> PyResult<Sweep> {
     let axes =
@@ -183,7 +232,7 @@ fn count_of((poses, reachable, imaginary): Counted) -> Count {
 
 #[pymethods]
 impl Sweep {
-    /// What the workspace is of: `"grid"`, `"dexterous"`, ...
+    /// What the workspace is of, as it was asked for.
     #[getter]
     fn kind(&self) -> String {
         self.asked.kind.name()
@@ -195,38 +244,37 @@ impl Sweep {
         self.asked.most
     }
 
-    /// The characteristic length of condition numbers, metres.
+    /// Characteristic length of condition numbers, metres.
     #[getter]
     pub fn length(&self) -> f64 {
         self.asked.length
     }
 
-    /// Orientations of the grid: how many values the upper section's coordinates have together.
+    /// Orientations of the grid: values of the upper section's coordinates together.
     #[getter]
     fn orientations(&self) -> u64 {
         self.grid.slices()
     }
 
-    /// Points of the workspace: poses in reach and within all limits.
+    /// Points of the workspace: of poses, those in reach and within all limits.
     #[getter]
     fn count(&self) -> u64 {
         self.count.reachable
     }
 
-    /// Points of the grid: poses, places or orientations.
+    /// Points of the grid that could be in: poses, places of the grid, or orientations of it.
     #[getter]
     fn poses(&self) -> u64 {
         self.count.poses
     }
 
-    /// `count / poses`.
+    /// ``count / poses``.
     #[getter]
     fn fraction(&self) -> f64 {
         self.count.reachable as f64 / self.count.poses as f64
     }
 
-    /// Lowest and highest value of every imaginary joint over the reachable poses, by name; `None`
-    /// where there is no such pose.
+    /// Lowest and highest value of every imaginary joint over the reachable poses of the grid.
     #[getter]
     fn imaginary_range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -236,41 +284,58 @@ impl Sweep {
         Ok(dict)
     }
 
-    /// The values of every coordinate of the points, by name, in the order of the mask's axes.
+    /// The values of every coordinate of the points, in the order of the mask's axes.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         values(py, &self.grid.axes()[self.span()])
     }
 
-    /// The values of every coordinate of the grid, by name.
+    /// The values of every coordinate of the grid; of places and orientations, the others as well.
     #[getter]
     fn grid<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         values(py, self.grid.axes())
     }
 
-    /// `m` or `rad` of every coordinate, by name.
+    /// ``"m"`` or ``"rad"`` of every coordinate of the grid, by name.
     #[getter]
     fn units(&self) -> BTreeMap<&str, &'static str> {
         self.grid.coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
-    /// Which points are in: an array of bools with an axis a coordinate.
+    /// Which points are in: an axis a coordinate of :attr:`axes`, as many values as the grid has.
+    ///
+    /// `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
+    /// already, and nobody is asked again.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn mask<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mask = Self::flat_mask(slf, Parts::new(executor, shards)?.as_ref())?;
         slf.get().shaped(&mask)
     }
 
-    /// The points, `(count, d)`, in the order of the grid, the first coordinate fastest.
+    /// (count, d): the points in the order of the grid, the first coordinate fastest; columns as :attr:`axes`.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn points<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, this, parts) = (slf.py(), slf.get(), Parts::new(executor, shards)?);
         match (this.least(), parts) {
@@ -291,12 +356,24 @@ impl Sweep {
         }
     }
 
-    /// In how many orientations each place is reached.
+    /// In how many :attr:`orientations` each place is reached, in the shape of the mask.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Of another kind than ``"reachable"`` and ``"dexterous"``.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn visits<'py>(
         slf: &Bound<'py, Self>,
         executor: Option<Bound<'py, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
         if !matches!(this.asked.kind, Kind::Reachable | Kind::Dexterous) {
@@ -307,15 +384,31 @@ impl Sweep {
         this.shaped(&PyArray1::from_slice(slf.py(), &tally))
     }
 
-    /// How much of the box that the grid covers is in reach, between guaranteed bounds.
+    /// How much of the box that the grid covers is in reach: :func:`measure` over it.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The points are places or orientations, or there is a `max_condition`, of which a measure knows nothing.
+    ///
+    /// Parameters
+    /// ----------
+    /// tolerance : float, optional
+    ///     As for :func:`measure`.
+    /// budget : int, optional
+    ///     As for :func:`measure`.
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
     #[pyo3(signature = (*, tolerance = None, budget = None, executor = None, shards = None))]
     fn measure(
         &self,
         py: Python<'_>,
         tolerance: Option<f64>,
-        budget: Option<u64>,
+        #[pyo3(from_py_with = arguments::budget)] budget: Option<u64>,
         executor: Option<Bound<'_, PyAny>>,
-        shards: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Measure> {
         if self.least().is_some() {
             let (kind, points) = (self.kind(), self.asked.kind.points());
@@ -391,14 +484,34 @@ impl Sweep {
         Ok(self.tallied(py, shard(number, of)?)?.into_pyarray(py))
     }
 
-    /// Records the points, as `opm workspace -o` does: the same bytes.
+    /// Record the points as ``opm workspace -o`` does, byte for byte.
+    ///
+    /// With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
+    ///     when it is whole.
+    /// axes : sequence of three str, or "tip", optional
+    ///     The coordinates that are x, y and z of the cloud (of kind ``"imaginary"`` imaginary joints), or the platform's point.
+    /// scalars : sequence of str, optional
+    ///     Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; of places
+    ///     the ``share`` of orientations in which they are reached.
+    /// color : str, optional
+    ///     The one of them that the colour shows.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A name that is none, a file that cannot be written.
     #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
     fn write(
         &self,
         py: Python<'_>,
-        path: PathBuf,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         axes: Option<CloudAxes>,
-        scalars: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
         let of = self.of.get();
@@ -424,14 +537,25 @@ impl Sweep {
         interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
     }
 
-    /// [`Self::write`], of MCAP alone.
+    /// :meth:`write`, of a name that ends in ``.mcap``.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file appears when it is whole.
+    /// axes : sequence of three str, or "tip", optional
+    ///     As for :meth:`write`.
+    /// scalars : sequence of str, optional
+    ///     As for :meth:`write`.
+    /// color : str, optional
+    ///     As for :meth:`write`.
     #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
     fn write_mcap(
         &self,
         py: Python<'_>,
-        path: PathBuf,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         axes: Option<CloudAxes>,
-        scalars: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
@@ -445,7 +569,7 @@ impl Sweep {
         html::of(slf, "sweep")
     }
 
-    /// The working mode, `"any"` or `"home"`, as it was asked for.
+    /// The working mode, as it was asked for.
     #[getter]
     fn mode(&self) -> &str {
         &self.asked.mode

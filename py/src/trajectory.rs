@@ -1,68 +1,93 @@
 //! Motions of the platform as the joints follow them.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
-use crate::html;
+use crate::html::{self, digits};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::rows::no_memory;
+use crate::parts::Pickled;
+use crate::pickle::{attribute, attributes, frozen, pickled};
+use crate::rows::{Rows, no_memory};
 use crate::solutions::{column, units};
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_cli::recording::{Attached, Followed, record_motion};
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::motion::{Motion, examples, file, table};
 use opm_core::trajectory::{self as core_trajectory, Change, Sample, Told};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Samples a second where nobody says, as on the command line.
 const RATE: f64 = 100.0;
 
-/// A motion as the joints follow it.
+/// A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Trajectory {
+    /// (n,), seconds.
     #[pyo3(get)]
     times: Py<PyArray1<f64>>,
+    /// (n, d): task coordinates, metres and radians.
     #[pyo3(get)]
     poses: Py<PyArray2<f64>>,
+    /// (n, d): their first derivatives by time, m/s and rad/s.
     #[pyo3(get)]
     pose_rates: Py<PyArray2<f64>>,
+    /// (n, d): their second derivatives, m/s² and rad/s².
     #[pyo3(get)]
     pose_accelerations: Py<PyArray2<f64>>,
+    /// (n, k): every joint coordinate, metres and radians; angles go on across half turns.
     #[pyo3(get)]
     joints: Py<PyArray2<f64>>,
+    /// (n, k), m/s and rad/s.
     #[pyo3(get)]
     joint_rates: Py<PyArray2<f64>>,
+    /// (n, k), m/s² and rad/s².
     #[pyo3(get)]
     joint_accelerations: Py<PyArray2<f64>>,
+    /// (n, j): every imaginary joint, metres and radians.
     #[pyo3(get)]
     imaginary: Py<PyArray2<f64>>,
+    /// (n, j), m/s and rad/s.
     #[pyo3(get)]
     imaginary_rates: Py<PyArray2<f64>>,
+    /// (n, j), m/s² and rad/s².
     #[pyo3(get)]
     imaginary_accelerations: Py<PyArray2<f64>>,
+    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist.
     #[pyo3(get)]
     condition: Py<PyArray1<f64>>,
+    /// (n,): in reach, limits apart.
     #[pyo3(get)]
     reachable: Py<PyArray1<bool>>,
+    /// (n,): in reach, and all joints within their limits.
     #[pyo3(get)]
     within_limits: Py<PyArray1<bool>>,
+    /// (n,): in reach, and every joint has its rate.
     #[pyo3(get)]
     regular: Py<PyArray1<bool>>,
+    /// What it cannot follow, found between the samples too, in the order of time.
     #[pyo3(get)]
     violations: Vec<Violation>,
+    /// Of the columns of `joints`.
     #[pyo3(get)]
     joint_names: Vec<String>,
+    /// Of the columns of `imaginary`.
     #[pyo3(get)]
     imaginary_names: Vec<String>,
+    /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
     #[pyo3(get)]
-    units: BTreeMap<String, &'static str>,
+    units: BTreeMap<String, String>,
+    /// The working mode.
     #[pyo3(get)]
     mode: String,
+    /// Of the motion.
     #[pyo3(get)]
     name: String,
+    /// n.
     #[pyo3(get)]
     rows: usize,
     source: Source,
@@ -80,37 +105,70 @@ struct Source {
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
+#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
 #[derive(Clone, PartialEq)]
 pub struct Violation {
-    kind: &'static str,
+    /// ``"reach"``, ``"limit"`` or ``"singularity"``.
+    kind: String,
+    /// Seconds.
     start: f64,
+    /// Seconds; of a singularity, as `start`.
     end: f64,
+    /// When it is worst, seconds.
     worst: f64,
+    /// By how much, there; in :attr:`unit`.
     amount: f64,
-    unit: &'static str,
+    /// Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure.
+    unit: String,
+    /// The leg that it is about.
     leg: Option<String>,
+    /// The joint that is past its limit.
     joint: Option<String>,
+    /// ``"lower"`` or ``"upper"``: what is out of reach or singular.
     section: Option<String>,
-    bound: Option<&'static str>,
-    singularity: Option<&'static str>,
+    /// ``"lowest"`` or ``"highest"``: the limit that is passed.
+    bound: Option<String>,
+    /// ``"serial"`` or ``"parallel"``.
+    singularity: Option<String>,
+    /// All of it, as a line.
     message: String,
 }
 
-/// Follows a motion: one that a file describes, or the cubic spline through poses at `times`.
+/// Follow a motion of the platform.
+///
+/// Parameters
+/// ----------
+/// manipulator : Manipulator
+/// motion : path, str or (w, d) array_like
+///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
+///     coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
+///     waypoint before, as those of a table are.
+/// times : (w,) sequence of float, optional
+///     When the waypoints are, seconds, increasing; three at least.
+/// rate : float, optional
+///     Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+/// mode : str, optional
+///     ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+///
+/// Raises
+/// ------
+/// OSError
+///     The file cannot be read.
+/// OpmError
+///     Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
 #[pyfunction]
 #[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
 pub fn trajectory(
     py: Python<'_>,
     manipulator: &Bound<'_, Manipulator>,
     motion: &Bound<'_, PyAny>,
-    times: Option<Vec<f64>>,
+    times: Option<&Bound<'_, PyAny>>,
     rate: Option<f64>,
     mode: Option<&str>,
 ) -> PyResult<Trajectory> {
     let (owner, manipulator) = (manipulator, manipulator.get());
     let (motion, file_name, text) = match times {
-        Some(times) => through(manipulator, motion, &times)?,
+        Some(times) => through(manipulator, motion, &arguments::list(times, "times")?)?,
         None => read(manipulator, motion)?,
     };
     let mode = match mode {
@@ -134,9 +192,8 @@ type Read = (Motion, String, String);
 
 /// Waypoints, as the table of poses that they are.
 fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
-    let array = poses.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>();
-    let array = array.map_err(|_| wrong("motion: with times, expected (w, d) poses"))?;
-    let poses = manipulator.poses(&array)?;
+    let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
+    let poses = Rows::new(&poses)?;
     if poses.count != times.len() {
         let (poses, times) = (poses.count, times.len());
         return Err(wrong(format!("{times} times of {poses} poses, expected one a pose")));
@@ -162,21 +219,26 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
 /// A motion file, a table of poses, or a shipped motion: an existing path wins.
 fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> {
     let expected = "motion: expected a path, the name of a shipped motion, or poses with times";
-    let path: PathBuf = motion.extract().map_err(|_| wrong(expected))?;
+    let path = arguments::path(motion).map_err(|_| wrong(expected))?;
     let label = path.display().to_string();
-    let (text, name) = match std::fs::read_to_string(&path) {
-        Ok(text) => (text, path.file_name().map_or(label.clone(), |n| n.display().to_string())),
-        Err(error) => match examples::find(&label) {
-            Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
-            None => return Err(error.into()),
-        },
+    let (text, name) = match examples::find(&label).filter(|_| !path.exists()) {
+        Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
+        None => {
+            let text = arguments::text(motion.py(), &path, "a motion file", "")?;
+            (text, path.file_name().map_or(label.clone(), |n| n.display().to_string()))
+        }
     };
-    let inner = &manipulator.inner;
-    let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let stem = path.file_stem().map_or_else(|| label.clone(), |s| s.display().to_string());
-    let motion = if csv { table::read(&text, &stem, inner) } else { file::read(&text, inner) };
-    let motion = motion.map_err(|errors| wrong(errors.in_file(&label)))?;
+    let motion = parse(manipulator, &text, &name, &label)?;
     Ok((motion, name, text))
+}
+
+/// What the text of a file of this name says; messages call it `label`.
+fn parse(manipulator: &Manipulator, text: &str, name: &str, label: &str) -> PyResult<Motion> {
+    let (inner, path) = (&manipulator.inner, Path::new(name));
+    let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let stem = path.file_stem().map_or_else(|| label.to_owned(), |s| s.display().to_string());
+    let motion = if csv { table::read(text, &stem, inner) } else { file::read(text, inner) };
+    motion.map_err(|errors| wrong(errors.in_file(label)))
 }
 
 /// Columns in the making.
@@ -254,12 +316,12 @@ impl Record {
         let mut tables = self.tables.into_iter().enumerate();
         let mut table = || -> PyResult<Py<PyArray2<f64>>> {
             let (number, values) = tables.next().unwrap_or_default();
-            Ok(values.into_pyarray(py).reshape([rows, widths[number / 3]])?.unbind())
+            frozen(values.into_pyarray(py).reshape([rows, widths[number / 3]])?)
         };
         let [reachable, within_limits, regular] =
-            self.answers.map(|answers| answers.into_pyarray(py).unbind());
+            self.answers.map(|answers| frozen(answers.into_pyarray(py)));
         Ok(Trajectory {
-            times: self.times.into_pyarray(py).unbind(),
+            times: frozen(self.times.into_pyarray(py))?,
             poses: table()?,
             pose_rates: table()?,
             pose_accelerations: table()?,
@@ -269,10 +331,10 @@ impl Record {
             imaginary: table()?,
             imaginary_rates: table()?,
             imaginary_accelerations: table()?,
-            condition: self.condition.into_pyarray(py).unbind(),
-            reachable,
-            within_limits,
-            regular,
+            condition: frozen(self.condition.into_pyarray(py))?,
+            reachable: reachable?,
+            within_limits: within_limits?,
+            regular: regular?,
             violations: self.violations.iter().map(|v| Violation::new(v, manipulator)).collect(),
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
@@ -289,33 +351,133 @@ impl Violation {
     fn new(violation: &core_trajectory::Violation, manipulator: &core::Manipulator) -> Self {
         let told = Told::new(violation, manipulator);
         Self {
-            kind: told.kind,
+            kind: told.kind.to_owned(),
             start: violation.start,
             end: violation.end,
             worst: violation.worst,
             amount: violation.amount,
-            unit: told.unit(),
+            unit: told.unit().to_owned(),
             leg: told.leg.map(str::to_owned),
             joint: told.joint.map(str::to_owned),
             section: told.section.map(|section| section.to_string()),
-            bound: told.bound.map(core_trajectory::Bound::name),
-            singularity: told.singularity(),
+            bound: told.bound.map(|bound| bound.name().to_owned()),
+            singularity: told.singularity().map(str::to_owned),
             message: told.si(),
         }
     }
 }
 
+pickled!(Violation {
+    kind,
+    start,
+    end,
+    worst,
+    amount,
+    unit,
+    leg,
+    joint,
+    section,
+    bound,
+    singularity,
+    message,
+});
+
+/// What of a trajectory is as Python sees it.
+const ATTRIBUTES: [&str; 21] = [
+    "times",
+    "poses",
+    "pose_rates",
+    "pose_accelerations",
+    "joints",
+    "joint_rates",
+    "joint_accelerations",
+    "imaginary",
+    "imaginary_rates",
+    "imaginary_accelerations",
+    "condition",
+    "reachable",
+    "within_limits",
+    "regular",
+    "violations",
+    "joint_names",
+    "imaginary_names",
+    "units",
+    "mode",
+    "name",
+    "rows",
+];
+
+/// What was followed as it crosses processes: manipulator, name and text of the file, rate.
+type Followable = (Py<Manipulator>, String, String, f64);
+
 #[pymethods]
 impl Violation {
     fn __repr__(&self) -> String {
-        format!("<Violation from {} to {} s: {}>", self.start, self.end, self.message)
+        let [start, end] = [self.start, self.end].map(digits);
+        format!("<Violation from {start} to {end} s: {}>", self.message)
     }
 }
 
 #[pymethods]
 impl Trajectory {
-    /// Records the motion, as `opm trajectory -o` does: the same bytes.
-    fn write_mcap(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {
+        let Source { manipulator, file_name, text, rate, .. } = &slf.get().source;
+        let manipulator = manipulator.clone_ref(slf.py());
+        let source = (manipulator, file_name.clone(), text.clone(), *rate);
+        let attributes = attributes(slf.as_any(), &ATTRIBUTES)?;
+        Ok((slf.get_type().getattr("_restored")?, (attributes, source)))
+    }
+
+    #[staticmethod]
+    fn _restored(attributes: &Bound<'_, PyDict>, source: Followable) -> PyResult<Self> {
+        let (manipulator, file_name, text, rate) = source;
+        let motion = parse(manipulator.get(), &text, &file_name, &file_name)?;
+        let mode: String = attribute(attributes, "mode")?;
+        let signs = manipulator.get().mode(&mode)?;
+        Ok(Self {
+            times: attribute(attributes, "times")?,
+            poses: attribute(attributes, "poses")?,
+            pose_rates: attribute(attributes, "pose_rates")?,
+            pose_accelerations: attribute(attributes, "pose_accelerations")?,
+            joints: attribute(attributes, "joints")?,
+            joint_rates: attribute(attributes, "joint_rates")?,
+            joint_accelerations: attribute(attributes, "joint_accelerations")?,
+            imaginary: attribute(attributes, "imaginary")?,
+            imaginary_rates: attribute(attributes, "imaginary_rates")?,
+            imaginary_accelerations: attribute(attributes, "imaginary_accelerations")?,
+            condition: attribute(attributes, "condition")?,
+            reachable: attribute(attributes, "reachable")?,
+            within_limits: attribute(attributes, "within_limits")?,
+            regular: attribute(attributes, "regular")?,
+            violations: attribute(attributes, "violations")?,
+            joint_names: attribute(attributes, "joint_names")?,
+            imaginary_names: attribute(attributes, "imaginary_names")?,
+            units: attribute(attributes, "units")?,
+            name: attribute(attributes, "name")?,
+            rows: attribute(attributes, "rows")?,
+            mode,
+            source: Source { manipulator, motion, file_name, text, mode: signs, rate },
+        })
+    }
+
+    /// Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file appears when it is whole.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A file that cannot be written.
+    fn write_mcap(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+    ) -> PyResult<()> {
         let Source { manipulator, motion, file_name, text, mode, rate } = &self.source;
         let manipulator = manipulator.get();
         let name = manipulator.file_name();
@@ -338,7 +500,7 @@ impl Trajectory {
         self.rows
     }
 
-    /// The values of one joint or imaginary joint: a view.
+    /// The values of one joint or imaginary joint, (n,): a view.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let tables = [
             (&self.joint_names[..], self.joints.bind(py).as_any()),

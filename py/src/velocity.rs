@@ -1,43 +1,80 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
+use crate::arguments;
 use crate::error::wrong;
 use crate::html;
 use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayLike2, PyArrayMethods,
-};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-type Array2<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
-
-/// Rates and accelerations of every joint at many poses.
+/// Rates and accelerations of every joint at many poses; NaN where there is none.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Motion {
+    /// (n, k), rad/s and m/s.
     joint_rates: Py<PyArray2<f64>>,
+    /// (n, k), rad/s² and m/s².
     joint_accelerations: Py<PyArray2<f64>>,
+    /// (n, j), rad/s and m/s.
     imaginary_rates: Py<PyArray2<f64>>,
+    /// (n, j), rad/s² and m/s².
     imaginary_accelerations: Py<PyArray2<f64>>,
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArray1<bool>>,
+    /// (n,): in reach, and every joint has its rate.
     regular: Py<PyArray1<bool>>,
 }
 
-/// How near many poses are to singular.
+/// How near many poses are to singular, (n,) each: signed measures without dimension that vanish at a singularity.
+///
+/// NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Singularity {
+    /// (n,), no unit: of the upper section: zero where the chain of a leg is.
     upper_serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the upper section: zero where its inputs do not hold it.
     upper_parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the lower section: zero where the chain of a leg is.
     lower_serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the lower section: zero where its inputs do not hold it.
     lower_parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the whole mechanism.
     serial: Py<PyArray1<f64>>,
+    /// (n,), no unit: of the whole mechanism.
     parallel: Py<PyArray1<f64>>,
+    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity.
     condition: Py<PyArray1<f64>>,
+    /// (n,), no unit: the volume that unit rates of the actuated joints span of twists, lengths over the characteristic length.
     manipulability: Py<PyArray1<f64>>,
+    /// (n,), no unit: zero where the coordinates of the pose are singular, which is nothing to the mechanism.
     coordinates: Py<PyArray1<f64>>,
+    /// (n,): in reach, limits apart.
     reachable: Py<PyArray1<bool>>,
 }
+
+pickled!(Motion {
+    joint_rates,
+    joint_accelerations,
+    imaginary_rates,
+    imaginary_accelerations,
+    reachable,
+    regular,
+});
+pickled!(Singularity {
+    upper_serial,
+    upper_parallel,
+    lower_serial,
+    lower_parallel,
+    serial,
+    parallel,
+    condition,
+    manipulability,
+    coordinates,
+    reachable,
+});
 
 #[pymethods]
 impl Motion {
@@ -73,17 +110,34 @@ fn counted<const N: usize>(
 
 #[pymethods]
 impl Manipulator {
-    /// Rates of the actuated joints for unit rates of the task coordinates.
+    /// Rates of joints for unit rates of the task coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// joints : str
+    ///     ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, a, d) ndarray
+    ///     Ratios of metres and radians. NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
     #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
         joints: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
+        let poses = Rows::new(&poses)?;
         let rows: Vec<usize> = match joints {
             "actuated" => self.inner.actuated().to_vec(),
             "all" => (0..self.inner.coordinates().len()).collect(),
@@ -94,7 +148,7 @@ impl Manipulator {
             }
         };
         let columns = self.inner.task_coordinates().len();
-        let mut tables = Tables::fill(
+        let tables = Tables::fill(
             py,
             poses.count,
             [rows.len() * columns],
@@ -120,23 +174,42 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        tables.take(py, 0)?.reshape([poses.count, rows.len(), columns])
+        tables.table(0).reshape([poses.count, rows.len(), columns])
     }
 
-    /// Rates and accelerations of every joint, for those of the task coordinates.
+    /// Rates and accelerations of every joint.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// rates : (n, d) or (1, d) array_like
+    ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
+    /// accelerations : (n, d) or (1, d) array_like, optional
+    ///     Second derivatives, m/s² and rad/s²; none if not given.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Motion
+    ///     NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
     #[pyo3(signature = (poses, rates, accelerations = None, *, mode = "home", threads = None))]
     fn velocity<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
-        rates: Array2<'py>,
-        accelerations: Option<Array2<'py>>,
+        poses: &Bound<'py, PyAny>,
+        rates: &Bound<'py, PyAny>,
+        accelerations: Option<&Bound<'py, PyAny>>,
         mode: &str,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Motion> {
         let mode = self.mode(mode)?;
-        let names: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
-        let poses = self.poses(&poses)?;
+        let names = self.pose_names();
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
         let per_pose = |rows: &Rows<'_>, what: &str| {
             // One row is for all poses.
             if rows.count != poses.count && rows.count != 1 {
@@ -145,12 +218,13 @@ impl Manipulator {
             }
             Ok(())
         };
-        let rates = Rows::new(&rates, "rates", &names)?;
+        let rates = arguments::rows(rates, "rates", &names)?;
+        let rates = Rows::new(&rates)?;
         per_pose(&rates, "rates")?;
         let accelerations = accelerations
-            .as_ref()
-            .map(|array| Rows::new(array, "accelerations", &names))
+            .map(|given| arguments::rows(given, "accelerations", &names))
             .transpose()?;
+        let accelerations = accelerations.as_ref().map(Rows::new).transpose()?;
         accelerations.iter().try_for_each(|rows| per_pose(rows, "accelerations"))?;
         let none = vec![0.0; names.len()];
         let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
@@ -193,28 +267,46 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        let [reachable, regular] = std::mem::take(&mut tables.answers);
+        let [reachable, regular] =
+            std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
         Ok(Motion {
-            joint_rates: tables.take(py, 0)?.unbind(),
-            joint_accelerations: tables.take(py, 1)?.unbind(),
-            imaginary_rates: tables.take(py, 2)?.unbind(),
-            imaginary_accelerations: tables.take(py, 3)?.unbind(),
-            reachable: reachable.into_pyarray(py).unbind(),
-            regular: regular.into_pyarray(py).unbind(),
+            joint_rates: frozen(tables.table(0))?,
+            joint_accelerations: frozen(tables.table(1))?,
+            imaginary_rates: frozen(tables.table(2))?,
+            imaginary_accelerations: frozen(tables.table(3))?,
+            reachable: frozen(reachable)?,
+            regular: frozen(regular)?,
         })
     }
 
     /// How near each pose is to a singularity, by section.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// length : float, optional
+    ///     Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Singularity
+    ///     A number a pose and measure, NaN out of reach.
     #[pyo3(signature = (poses, *, mode = "home", length = None, threads = None))]
     fn singularity<'py>(
         &self,
         py: Python<'py>,
-        poses: Array2<'py>,
+        poses: &Bound<'py, PyAny>,
         mode: &str,
         length: Option<f64>,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Singularity> {
-        let (poses, mode) = (self.poses(&poses)?, self.mode(mode)?);
+        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
+        let poses = Rows::new(&poses)?;
         let length = characteristic_length(&self.inner, length)?;
         let mut tables = Tables::fill(
             py,
@@ -247,10 +339,9 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        let [reachable, _] = std::mem::take(&mut tables.answers);
-        let mut take = |number: usize| -> PyResult<Py<PyArray1<f64>>> {
-            Ok(tables.take(py, number)?.reshape([poses.count])?.unbind())
-        };
+        let [reachable, _] =
+            std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
+        let take = |number: usize| frozen(tables.table(number).reshape([poses.count])?);
         Ok(Singularity {
             upper_serial: take(0)?,
             upper_parallel: take(1)?,
@@ -261,7 +352,7 @@ impl Manipulator {
             condition: take(6)?,
             manipulability: take(7)?,
             coordinates: take(8)?,
-            reachable: reachable.into_pyarray(py).unbind(),
+            reachable: frozen(reachable)?,
         })
     }
 }

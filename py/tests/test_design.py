@@ -114,3 +114,28 @@ def test_both_ways_to_design_improve_on_chance(manipulator):
             assert below - 1e-9 <= low[column] and high[column] <= above + 1e-9
     with pytest.raises(opm.OpmError, match="`hh` is no parameter; home has x"):
         design.undivided(manipulator, design.Variables({"hh": (0.0, 1.0)}), budget=3, **asked)
+
+
+def test_wrong_questions_are_told(manipulator):
+    variables = design.Variables({"leg1.h": (0.1, 0.2), "leg2.h": (0.1, 0.2)})
+    asked = {"places": PLACES, "orientations": ORIENTATIONS}
+    for call in (
+        lambda **options: design.undivided(manipulator, variables, **asked, **options),
+        lambda **options: design.sections(manipulator, variables, variables, **asked, **options),
+        lambda **options: design.minimise(lambda shares: 0.0, 2, **{"seed": 0, **options}),
+    ):
+        for budget in (0, -5, 1.5, "x"):
+            with pytest.raises(opm.OpmError, match=f"^budget is {budget!r}, expected a whole number of at least"):
+                call(budget=budget)
+        for seed in ("x", -1, 0.5):
+            with pytest.raises(opm.OpmError, match=f"^seed is {seed!r}, expected a whole number of at least 0"):
+                call(budget=2, seed=seed)
+    twice = {"places": {"x": (-0.1, 0.1, 3)}, "orientations": {"x": (0.0, 0.1, 3)}}
+    with pytest.raises(opm.OpmError, match="^places and orientations both give x, expected each coordinate once"):
+        design.dexterous(manipulator, **twice)
+    with pytest.raises(opm.OpmError, match="both give x"):
+        design.undivided(manipulator, variables, **twice, budget=1)
+
+
+def test_it_is_loaded_on_demand():
+    assert opm.design is design

@@ -1,7 +1,7 @@
 """Manipulators from Python, held against formulas written here in NumPy and against themselves."""
 
 import os
-import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -129,7 +129,7 @@ def test_passive_joints_close_the_legs(manipulator, poses):
 def test_what_comes_in_and_goes_out(manipulator, poses):
     expected = manipulator.inverse(poses)
     for table in (expected.joints, expected.imaginary):
-        assert table.dtype == np.float64 and table.flags.c_contiguous and table.flags.writeable and table.base is None
+        assert table.dtype == np.float64 and table.flags.c_contiguous and not table.flags.writeable and table.base is None
     for same in (poses[:, ::-1][:, ::-1], np.repeat(poses, 2, axis=0)[::2], poses.astype(">f8"), poses.astype(object)):
         np.testing.assert_array_equal(manipulator.inverse(same).joints, expected.joints)
     single = poses.astype(np.float32)
@@ -202,7 +202,7 @@ def test_modes(manipulator):
 
 
 def test_wrong_input_is_told(manipulator, tmp_path):
-    with pytest.raises(opm.OpmError, match="3 columns of poses, expected 5: x, y, zeta, xi, psi"):
+    with pytest.raises(opm.OpmError, match=r"poses has shape \(2, 3\), expected \(n, 5\): x, y, zeta, xi, psi"):
         manipulator.inverse(np.zeros((2, 3)))
     with pytest.raises(opm.OpmError, match="xi is NaN"):
         manipulator.inverse([[0, 0, 0, np.nan, 0]])
@@ -240,7 +240,87 @@ def reachable_in_another_process(job):
 @pytest.mark.parametrize("start", ["fork", "spawn"])
 def test_a_manipulator_crosses_processes(manipulator, poses, start):
     expected = manipulator.inverse(poses)  # with threads, which a forked process does not have
-    assert pickle.loads(pickle.dumps(manipulator)).text == manipulator.text
     with ProcessPoolExecutor(2, mp_context=get_context(start)) as pool:
         parts = pool.map(reachable_in_another_process, [(manipulator, part) for part in np.array_split(poses, 2)])
         np.testing.assert_array_equal(np.concatenate(list(parts)), expected.reachable)
+
+
+def test_the_papers_mechanisms_have_names():
+    assert opm.examples.plano_spherical() == opm.examples.load("plano-spherical-5dof")
+    assert opm.examples.translational_helical() == opm.examples.load("translational-helical-3dof")
+
+
+def test_poses_are_displacements(manipulator, poses):
+    """By the definition of the coordinates: a place in the plane, and R = Rz(zeta) Ry(xi) Rz(psi)."""
+    poses = poses[:200]
+    found = manipulator.transform(poses)
+    expected = np.zeros((200, 4, 4))
+    expected[:, :3, :3], expected[:, :2, 3], expected[:, 3, 3] = rotation(*poses[:, 2:].T), poses[:, :2], 1
+    np.testing.assert_allclose(found, expected, atol=1e-14)
+    # Two triples of Euler angles are one rotation.
+    np.testing.assert_allclose(manipulator.transform(manipulator.locate(found)), expected, atol=1e-8)
+    np.testing.assert_array_equal(manipulator.locate(found, threads=2), manipulator.locate(found, threads=1))
+    lifted = np.eye(4)
+    lifted[2, 3] = 0.1  # the platform's point stays in the plane
+    assert np.isnan(manipulator.locate([lifted])).all()
+    for wrong in (2 * np.eye(4), np.diag([1.0, 1, -1, 1]), np.full((4, 4), np.nan)):
+        with pytest.raises(opm.OpmError, match=r"transforms\[1\] is no displacement"):
+            manipulator.locate([np.eye(4), wrong])
+    with pytest.raises(opm.OpmError, match=r"transforms has shape \(4, 4\), expected \(n, 4, 4\)"):
+        manipulator.locate(np.eye(4))
+    with pytest.raises(opm.OpmError, match="pose 1: xi is NaN"):
+        manipulator.transform([[0] * 5, [0, 0, 0, np.nan, 0]])
+
+
+def test_newton_finds_the_pose_that_it_starts_near():
+    for name in ("plano-spherical-5dof", "translational-planar-4dof"):
+        manipulator = opm.examples.load(name)
+        near = np.asarray(manipulator.home)
+        poses = near + np.random.default_rng(2).uniform(-0.02, 0.02, (50, len(near)))
+        solutions = manipulator.inverse(poses)
+        joints = solutions.joints[:, manipulator.actuated]
+        assert solutions.reachable.all()
+        for starts in (near, poses + 1e-3):
+            found = manipulator.forward(joints, near=starts)
+            assert all(len(one) == 1 for one in found)
+            np.testing.assert_allclose([one.pose for (one,) in found], poses, atol=1e-9)
+            assert {one.mode for (one,) in found} == {manipulator.home_mode}
+        for threads in (1, 3):
+            again = manipulator.forward(joints, near=near, threads=threads)
+            np.testing.assert_array_equal([a.pose for (a,) in again], [a.pose for (a,) in manipulator.forward(joints, near=near)])
+        with pytest.raises(opm.OpmError, match="row 0: near is out of reach in mode"):
+            manipulator.forward(joints, near=near + 10)
+    with pytest.raises(opm.OpmError, match="near= says from where Newton's method begins"):
+        manipulator.forward(joints)
+    with pytest.raises(opm.OpmError, match="2 rows of near, expected 50, or one"):
+        manipulator.forward(joints, near=poses[:2])
+
+
+def test_assemblies_of_one_mode(manipulator):
+    joints = manipulator.inverse([manipulator.home]).joints[:, manipulator.actuated]
+    (every,) = manipulator.forward(joints)
+    assert len({one.mode for one in every}) > 1
+    for mode in {one.mode for one in every}:
+        (some,) = manipulator.forward(joints, mode=mode)
+        expected = [one.pose for one in every if one.mode == mode]
+        np.testing.assert_array_equal([one.pose for one in some], expected)
+
+
+def test_ctrl_c_stops_all_modes_of_many_poses(manipulator):
+    """Tables of gigabytes, which nobody is to wait for."""
+    import time
+
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        manipulator.inverse(np.zeros((60_000, 5)), mode="all", threads=1)
+        # On a machine that is done sooner, it is pressed here.
+        time.sleep(5)
+    assert time.monotonic() - start < 4
+
+
+def test_what_is_shown_has_seven_digits(manipulator):
+    measured = opm.measure(manipulator, over={"x": (0.0, 0.12345678901)}, tolerance=0.3)
+    for text in (repr(measured), repr(manipulator.decomposition.intersection)):
+        for shown in re.findall(r"\d[\d.]*", text):
+            assert len(shown.replace(".", "").strip("0")) <= 7, text

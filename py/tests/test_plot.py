@@ -166,3 +166,45 @@ def test_the_figures_of_the_paper_can_be_drawn(tmp_path):
     for path in tmp_path.iterdir():
         # Something is on it: white is not all there is.
         assert np.mean(plt.imread(path)[:, :, :3].min(axis=2) < 0.9) > 0.005, path.name
+
+
+def test_the_upper_section_of_figure_11_is_what_spherical_geometry_says(manipulator):
+    """At zeta = 0 the coaxial 3-RRR section closes while every axis w of the platform is more than 30 degrees from -z
+    (alpha_1 = alpha_2 = 75 degrees)."""
+    swept = opm.sweep(manipulator, kind="upper", zeta=0.0, xi=(0.0, np.pi, 91), psi=(-np.pi, np.pi, 181))
+    xi, psi = np.meshgrid(swept.axes["xi"], swept.axes["psi"], indexing="ij")
+    beta = np.radians(60)
+    axes = [np.cos(xi) * np.cos(beta) - np.sin(xi) * np.sin(beta) * np.cos(psi + eta) for eta in np.radians([0, 120, 240])]
+    margin = np.min(axes, axis=0) - np.cos(np.radians(150))
+    sure = np.abs(margin) > 1e-9
+    assert sure.mean() > 0.99 and 0.2 < (margin > 0).mean() < 0.9
+    np.testing.assert_array_equal(swept.mask()[0][sure], (margin > 0)[sure])
+
+
+def test_every_value_of_the_slices_is_drawn_or_it_says_so(manipulator):
+    seven = opm.sweep(manipulator, x=(-0.1, 0.1, 5), y=(-0.1, 0.1, 5), xi=(-0.6, 0.6, 7))
+    panels = plot.workspace(seven, slices="xi")
+    assert len(panels) == 7 and panels[-1].get_title() == "xi = 0.6 rad" and panels[0].figure.get_suptitle() == ""
+    many = opm.sweep(manipulator, x=(-0.1, 0.1, 5), y=(-0.1, 0.1, 5), xi=(-0.6, 0.6, 25))
+    panels = plot.workspace(many, slices="xi")
+    assert (len(panels), panels[0].figure.get_suptitle()) == (12, "12 of 25 values of xi")
+    assert (panels[0].get_title(), panels[-1].get_title()) == ("xi = -0.6 rad", "xi = 0.6 rad")
+
+
+def test_shares_have_a_colour_bar(manipulator):
+    labels = lambda panels: [a.get_ylabel() for a in panels[0].figure.axes if a not in panels]  # noqa: E731
+    swept = opm.sweep(manipulator, x=(-0.1, 0.1, 5), y=(-0.1, 0.1, 5), xi=(-0.6, 0.6, 3), psi=(-0.6, 0.6, 3))
+    assert labels(plot.workspace(swept)) == ["share of the values of xi, psi"]
+    assert labels(plot.workspace(swept, slices="xi")) == ["share of the values of psi"]
+    plane = opm.sweep(manipulator, x=(-0.1, 0.1, 5), y=(-0.1, 0.1, 5))
+    assert labels(plot.workspace(plane)) == []
+    panel = plt.figure().add_subplot()
+    plot.workspace(swept, ax=panel)
+    assert panel.figure.axes == [panel]
+
+
+def test_what_is_no_result_is_told(manipulator):
+    swept = opm.sweep(manipulator, x=0.0)
+    for call in (lambda: plot.imaginary(swept), lambda: plot.workspace(3), lambda: plot.joints(3), lambda: plot.mechanism(swept)):
+        with pytest.raises(TypeError, match="expected a (Solutions|Sweep|Trajectory or a Solutions|Manipulator)"):
+            call()

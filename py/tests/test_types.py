@@ -1,11 +1,15 @@
 """Every export is in the stubs, and the stubs tell the truth."""
 
 import ast
+import importlib
+import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import opm_kinematics
+import pytest
 from opm_kinematics import _native
 
 
@@ -35,3 +39,78 @@ def test_the_stubs_are_those_of_the_module():
     command = [sys.executable, "-m", "mypy.stubtest", "opm_kinematics"]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stdout + found.stderr
+
+
+MODULES = [importlib.import_module(f"opm_kinematics{name}") for name in ("", "._native", ".design", ".examples", ".plot")]
+#: What Python itself describes.
+PYTHONS = re.compile(r"__\w+__$")
+
+
+def members():
+    """Everything public: its name, itself, and its arguments where it is called."""
+    for module in MODULES:
+        for name in module.__all__ if hasattr(module, "__all__") else vars(module):
+            thing = getattr(module, name)
+            if inspect.ismodule(thing) or isinstance(thing, (str, tuple)) or not hasattr(thing, "__module__"):
+                continue
+            yield f"{module.__name__}.{name}", thing
+            for member in vars(thing) if isinstance(thing, type) else ():
+                if not member.startswith("_"):
+                    yield f"{module.__name__}.{name}.{member}", getattr(thing, member)
+
+
+def arguments(thing):
+    if isinstance(thing, type) or not callable(thing):
+        return []
+    return [name for name in inspect.signature(thing).parameters if name != "self"]
+
+
+def test_everything_public_has_a_docstring_at_run_time():
+    found = list(members())
+    assert len(found) > 150
+    for name, thing in found:
+        # The attributes of a dataclass are described where they are.
+        if name.count(".") < 3 or not name.startswith("opm_kinematics.design"):
+            assert inspect.getdoc(thing), name
+
+
+def test_every_argument_is_under_parameters():
+    checked = 0
+    for name, thing in members():
+        if not (names := arguments(thing)):
+            continue
+        section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n\S|\Z)", inspect.getdoc(thing) or "", re.DOTALL | re.MULTILINE)
+        assert section, f"{name} has no Parameters"
+        listed = {n.strip(" *") for line in re.findall(r"^\S[^\n]*", section[1], re.MULTILINE) for n in line.split(" : ")[0].split(",")}
+        assert listed == set(names), name
+        checked += 1
+    assert checked > 40
+
+
+@pytest.mark.parametrize("of", ["Assembly", "Motion", "Singularity", "Solid", "Solutions", "Trajectory"])
+def test_every_array_tells_its_shape_and_unit(of):
+    stub = ast.parse(Path(opm_kinematics.__file__).with_name("_native.pyi").read_text())
+    body = next(node.body for node in stub.body if isinstance(node, ast.ClassDef) and node.name == of)
+    arrays = [f for f in body if isinstance(f, ast.FunctionDef) and "NDArray[np.float64]" in ast.unparse(f.returns or f) and not f.args.args[1:]]
+    for f in (f for f in arrays if not f.name.startswith("_")):
+        doc = ast.get_docstring(f)
+        assert re.match(r"\([\w, ]+\)", doc), f.name
+        assert re.search(r"metres|radians|seconds|no unit|rad/s|m/s", doc), f.name
+
+
+def test_the_docstrings_of_the_stub_are_those_of_the_module():
+    stub = ast.parse(Path(opm_kinematics.__file__).with_name("_native.pyi").read_text())
+    for node in stub.body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            thing = getattr(_native, node.name)
+            pairs = [(node.name, node, thing)]
+            if isinstance(node, ast.ClassDef):
+                pairs += [(f"{node.name}.{f.name}", f, getattr(thing, f.name)) for f in node.body if isinstance(f, ast.FunctionDef)]
+            for name, described, real in pairs:
+                if not PYTHONS.match(name.rpartition(".")[2]):
+                    assert (ast.get_docstring(described) or "") == (_own(real) or ""), name
+
+
+def _own(thing):
+    doc = getattr(thing, "__doc__", None)
+    return inspect.cleandoc(doc) if doc else None

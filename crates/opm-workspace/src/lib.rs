@@ -31,3 +31,6 @@ pub use replay::replay;
 pub use set::{GridSet, SetAxis, SetError};
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
 pub use visits::Visits;
+
+/// Threads that may be asked for: more is a slip of the finger, and takes minutes to begin and to stop.
+pub const MOST_THREADS: u16 = 1024;

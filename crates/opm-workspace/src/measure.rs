@@ -39,6 +39,17 @@ pub struct Goal {
     pub budget: u64,
 }
 
+/// Whether a tolerance is one.
+///
+/// # Errors
+/// What was expected instead.
+pub fn check_tolerance(tolerance: f64) -> Result<(), &'static str> {
+    match tolerance {
+        0.0..1.0 => Ok(()),
+        _ => Err("expected a share of at least 0 and less than 1"),
+    }
+}
+
 impl Default for Goal {
     fn default() -> Self {
         Self { tolerance: 0.01, budget: 1 << 22 }

@@ -1,8 +1,8 @@
 """Kinematics and workspaces of overconstrained parallel manipulators with partial subspaces.
 
 From a mechanism file :class:`Manipulator` finds the decomposition with imaginary joints, and solves inverse kinematics in
-closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, and :mod:`plot`
-draws. Arrays are float64, numbers SI units and radians.
+closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, :mod:`plot`
+draws, and :mod:`design` optimises. Arrays are float64, numbers SI units and radians.
 
 >>> import opm_kinematics as opm
 >>> m = opm.examples.load("plano-spherical-5dof")
@@ -56,6 +56,7 @@ __all__ = [
     "Trajectory",
     "Violation",
     "__version__",
+    "design",
     "examples",
     "measure",
     "plot",
@@ -64,15 +65,15 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from . import plot
+    from . import design, plot
 
 
 def __getattr__(name: str) -> Any:
-    # Only when it is asked for: it needs NumPy, for which the command line has no use.
-    if name == "plot":
+    # Only when they are asked for: they need NumPy, for which the command line has no use.
+    if name in ("design", "plot"):
         from importlib import import_module
 
-        return import_module(".plot", __name__)
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

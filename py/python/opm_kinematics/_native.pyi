@@ -1,7 +1,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
-from typing import TypeAlias, final
+from typing import SupportsIndex, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -71,7 +71,8 @@ class Decomposition:
     def intersection(self) -> Intersection:
         """What both have in common."""
     @property
-    def legs(self) -> list[LegSplit]: ...
+    def legs(self) -> list[LegSplit]:
+        """A leg each, in the order of the mechanism file."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def _repr_html_(self) -> str: ...
@@ -85,7 +86,7 @@ class Intersection:
         """``"rotation"``, ``"translation"`` or ``"helical"``."""
     @property
     def axis(self) -> tuple[float, float, float] | None:
-        """Unit vector of its positive direction."""
+        """Unit vector of its positive direction, base coordinates."""
     @property
     def point(self) -> tuple[float, float, float] | None:
         """A point of the axis, metres; of a translation none."""
@@ -100,7 +101,8 @@ class LegSplit:
     """Where a leg was cut."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Of the leg."""
     @property
     def lower(self) -> list[str]:
         """Joints in the lower section, base first."""
@@ -118,7 +120,8 @@ class TaskCoordinate:
     """One coordinate of the pose."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Of the coordinate: ``"x"``, ``"zeta"``, ..."""
     @property
     def home(self) -> float:
         """The value at home, metres or radians."""
@@ -139,10 +142,20 @@ class Manipulator:
     def load(path: str | PathLike[str]) -> Manipulator:
         """Read a mechanism file.
 
+        Parameters
+        ----------
+        path : path
+            TOML. Shipped mechanisms are read by :func:`examples.load`.
+
+        Returns
+        -------
+        Manipulator
+            Decomposed and compiled.
+
         Raises
         ------
         OSError
-            The file cannot be read.
+            The file cannot be read: FileNotFoundError, with its name, where there is none.
         OpmError
             Every problem of the file with its line and column, or why it has no closed-form inverse kinematics.
         """
@@ -188,9 +201,28 @@ class Manipulator:
         """
     @staticmethod
     def parse(text: str, label: str | None = None) -> Manipulator:
-        """Read the text of a mechanism file; messages call it `label`."""
+        """Read the text of a mechanism file.
+
+        Parameters
+        ----------
+        text : str
+            TOML.
+        label : str, optional
+            What messages call it.
+
+        Returns
+        -------
+        Manipulator
+            Decomposed and compiled.
+
+        Raises
+        ------
+        OpmError
+            Every problem of the text with its line and column, or why it has no closed-form inverse kinematics.
+        """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The mechanism's name."""
     @property
     def text(self) -> str:
         """The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit."""
@@ -247,7 +279,7 @@ class Manipulator:
         """Names of the imaginary joints: the columns of their values."""
     @property
     def home(self) -> list[float]:
-        """The pose at home."""
+        """(d,): the pose at home, metres and radians."""
     @property
     def home_mode(self) -> str:
         """The working mode that the mechanism is assembled in."""
@@ -268,8 +300,15 @@ class Manipulator:
 
         Parameters
         ----------
-        pose : (d,) sequence of float, optional
-            Home if not given.
+        pose : (d,) array_like, optional
+            Metres and radians. Home if not given.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+
+        Returns
+        -------
+        list of Solid
+            Metres, base coordinates.
 
         Raises
         ------
@@ -290,7 +329,7 @@ class Manipulator:
             gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
             of the ``m = 2**choices`` modes of `modes`.
         threads : int, optional
-            How many; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. A processor each if not given.
 
         Returns
         -------
@@ -307,18 +346,23 @@ class Manipulator:
     def jacobian(
         self, poses: ArrayLike, *, mode: str = "home", joints: str = "actuated", threads: int | None = None
     ) -> NDArray[np.float64]:
-        """Rates of joints for unit rates of the task coordinates, ``(n, a, d)``.
+        """Rates of joints for unit rates of the task coordinates.
 
         Parameters
         ----------
         poses : (n, d) array_like
+            A pose a row, a task coordinate a column; metres and radians.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
         joints : str
             ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
 
         Returns
         -------
         (n, a, d) ndarray
-            NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
+            Ratios of metres and radians. NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
         """
     def velocity(
         self,
@@ -334,8 +378,20 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-        rates, accelerations : (n, d) or (1, d) array_like
-            First and second derivatives of the task coordinates by time; one row is for all poses.
+            A pose a row, a task coordinate a column; metres and radians.
+        rates : (n, d) or (1, d) array_like
+            First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
+        accelerations : (n, d) or (1, d) array_like, optional
+            Second derivatives, m/s² and rad/s²; none if not given.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        Motion
+            NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
         """
     def singularity(
         self, poses: ArrayLike, *, mode: str = "home", length: float | None = None, threads: int | None = None
@@ -345,17 +401,90 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
+            A pose a row, a task coordinate a column; metres and radians.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
         length : float, optional
             Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        Singularity
+            A number a pose and measure, NaN out of reach.
         """
-    def forward(self, joints: ArrayLike) -> list[list[Assembly]]:
-        """Every assembly for each row of actuated joint values, (n, a).
+    def forward(
+        self,
+        joints: ArrayLike,
+        *,
+        near: ArrayLike | None = None,
+        mode: str | None = None,
+        threads: int | None = None,
+    ) -> list[list[Assembly]]:
+        """Every assembly for each row of actuated joint values; or, near a pose, the one that Newton's method finds.
+
+        Parameters
+        ----------
+        joints : (n, a) array_like
+            A row of actuated joint values each, in the order of `actuated`; metres and radians.
+        near : (d,) or (n, d) array_like, optional
+            From which pose Newton's method begins, metres and radians; one row is for all. It works for every mechanism, the
+            closed form not for all.
+        mode : str, optional
+            Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Of Newton's method the mode
+            that it stays in: home if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        list of list of Assembly
+            A list a row: empty where there is none, or where Newton's method ends nowhere.
 
         Raises
         ------
         OpmError
-            The mechanism's forward kinematics have no closed form.
+            The mechanism's forward kinematics have no closed form, and `near` is not given; or that is out of reach.
         """
+    def transform(self, poses: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
+        """Where the platform is at each pose, in SE(3): its reference point and its orientation, in base coordinates.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            A pose a row, a task coordinate a column; metres and radians.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        (n, 4, 4) ndarray
+            Homogeneous matrices: a rotation, which is none at home unless the coordinates measure it, and a position, metres.
+        """
+    def locate(self, transforms: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
+        """The poses at which the platform is there: the inverse of :meth:`transform`.
+
+        Parameters
+        ----------
+        transforms : (n, 4, 4) array_like
+            Homogeneous matrices, metres.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        (n, d) ndarray
+            Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion.
+
+        Raises
+        ------
+        OpmError
+            A matrix that is no rotation and position.
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Assembly:
@@ -363,18 +492,19 @@ class Assembly:
 
     @property
     def pose(self) -> NDArray[np.float64]:
-        """(d,): task coordinates."""
+        """(d,): task coordinates, metres and radians."""
     @property
     def mode(self) -> str:
         """The working mode that it is in."""
     @property
     def joints(self) -> NDArray[np.float64]:
-        """(k,): every joint coordinate."""
+        """(k,): every joint coordinate, metres and radians."""
     @property
     def imaginary(self) -> NDArray[np.float64]:
-        """(j,): every imaginary joint."""
+        """(j,): every imaginary joint, metres and radians."""
     @property
-    def within_limits(self) -> bool: ...
+    def within_limits(self) -> bool:
+        """Whether all joints are within their limits."""
     @property
     def residual(self) -> float:
         """How far the legs fail to close: radians, and lengths over the mechanism's size."""
@@ -391,10 +521,10 @@ class Motion:
         """(n, k), rad/s² and m/s²."""
     @property
     def imaginary_rates(self) -> NDArray[np.float64]:
-        """(n, j)."""
+        """(n, j), rad/s and m/s."""
     @property
     def imaginary_accelerations(self) -> NDArray[np.float64]:
-        """(n, j)."""
+        """(n, j), rad/s² and m/s²."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): in reach, limits apart."""
@@ -411,29 +541,35 @@ class Singularity:
 
     def _repr_html_(self) -> str: ...
     @property
-    def upper_serial(self) -> NDArray[np.float64]: ...
+    def upper_serial(self) -> NDArray[np.float64]:
+        """(n,), no unit: of the upper section: zero where the chain of a leg is."""
     @property
-    def upper_parallel(self) -> NDArray[np.float64]: ...
+    def upper_parallel(self) -> NDArray[np.float64]:
+        """(n,), no unit: of the upper section: zero where its inputs do not hold it."""
     @property
-    def lower_serial(self) -> NDArray[np.float64]: ...
+    def lower_serial(self) -> NDArray[np.float64]:
+        """(n,), no unit: of the lower section: zero where the chain of a leg is."""
     @property
-    def lower_parallel(self) -> NDArray[np.float64]: ...
+    def lower_parallel(self) -> NDArray[np.float64]:
+        """(n,), no unit: of the lower section: zero where its inputs do not hold it."""
     @property
     def serial(self) -> NDArray[np.float64]:
-        """Of the whole mechanism."""
+        """(n,), no unit: of the whole mechanism."""
     @property
     def parallel(self) -> NDArray[np.float64]:
-        """Of the whole mechanism."""
+        """(n,), no unit: of the whole mechanism."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """Condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity."""
     @property
-    def manipulability(self) -> NDArray[np.float64]: ...
+    def manipulability(self) -> NDArray[np.float64]:
+        """(n,), no unit: the volume that unit rates of the actuated joints span of twists, lengths over the characteristic length."""
     @property
     def coordinates(self) -> NDArray[np.float64]:
-        """Zero where the coordinates of the pose are singular, which is nothing to the mechanism."""
+        """(n,), no unit: zero where the coordinates of the pose are singular, which is nothing to the mechanism."""
     @property
-    def reachable(self) -> NDArray[np.bool_]: ...
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): in reach, limits apart."""
 
 @final
 class Solid:
@@ -468,7 +604,7 @@ class Solutions:
         """(n, k): every joint coordinate, metres and radians."""
     @property
     def imaginary(self) -> NDArray[np.float64]:
-        """(n, j): every imaginary joint."""
+        """(n, j): every imaginary joint, metres and radians."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): in reach, limits apart."""
@@ -629,9 +765,24 @@ class Sweep:
 
         `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
         already, and nobody is asked again.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def points(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
-        """(count, d): the points in the order of the grid, the first coordinate fastest; columns as :attr:`axes`."""
+        """(count, d): the points in the order of the grid, the first coordinate fastest; columns as :attr:`axes`.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
+        """
     def visits(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.uint64]:
         """In how many :attr:`orientations` each place is reached, in the shape of the mask.
 
@@ -639,6 +790,13 @@ class Sweep:
         ------
         OpmError
             Of another kind than ``"reachable"`` and ``"dexterous"``.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def boundary(self, *, executor: _Executor | None = None, shards: int | None = None) -> list[Outline]:
         """The boundary as closed polylines in the first two coordinates that have several values.
@@ -653,12 +811,26 @@ class Sweep:
         OpmError
             Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
             says nothing of the imaginary joints.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def components(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.uint64]:
         """How many points each connected component has, the largest first.
 
         Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
         last value next to the first.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> Conditioning:
         """The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
@@ -669,6 +841,13 @@ class Sweep:
         ------
         OpmError
             The points are no poses.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def local_conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
         """The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
@@ -679,6 +858,13 @@ class Sweep:
         ------
         OpmError
             The points are no poses.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def measure(
         self,
@@ -694,6 +880,17 @@ class Sweep:
         ------
         OpmError
             The points are places or orientations, or there is a `max_condition`, of which a measure knows nothing.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            As for :func:`measure`.
+        budget : int, optional
+            As for :func:`measure`.
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
         """
     def write(
         self,
@@ -733,7 +930,19 @@ class Sweep:
         scalars: Sequence[str] | None = None,
         color: str | None = None,
     ) -> None:
-        """:meth:`write`, of a name that ends in ``.mcap``."""
+        """:meth:`write`, of a name that ends in ``.mcap``.
+
+        Parameters
+        ----------
+        path : path
+            The file appears when it is whole.
+        axes : sequence of three str, or "tip", optional
+            As for :meth:`write`.
+        scalars : sequence of str, optional
+            As for :meth:`write`.
+        color : str, optional
+            As for :meth:`write`.
+        """
 
 def sweep(
     manipulator: Manipulator,
@@ -746,7 +955,7 @@ def sweep(
     threads: int | None = None,
     executor: _Executor | None = None,
     shards: int | None = None,
-    **axes: float | tuple[float, float, int],
+    **axes: float | tuple[float, float, SupportsIndex],
 ) -> Sweep:
     """Find which poses of a grid are reachable and within all limits, or another kind of workspace.
 
@@ -771,7 +980,7 @@ def sweep(
     length : float, optional
         Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
     threads : int, optional
-        How many, here or in each worker; the result does not depend on it. A processor each if not given.
+        1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
     executor : concurrent.futures.Executor or callable, optional
         Who does the work: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
         ``mpi4py.futures``. What is sent is the manipulator, the grid and the number of a shard; the result is that of one
@@ -828,7 +1037,7 @@ def measure(
     budget : int, optional
         Boxes to look at, at most: 2**22 if not given.
     threads : int, optional
-        How many, here or in each worker; the result does not depend on it. A processor each if not given.
+        1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
     executor : concurrent.futures.Executor or callable, optional
         Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
         more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
@@ -861,31 +1070,31 @@ class Trajectory:
         """(n, d): task coordinates, metres and radians."""
     @property
     def pose_rates(self) -> NDArray[np.float64]:
-        """(n, d): their first derivatives by time."""
+        """(n, d): their first derivatives by time, m/s and rad/s."""
     @property
     def pose_accelerations(self) -> NDArray[np.float64]:
-        """(n, d): their second derivatives."""
+        """(n, d): their second derivatives, m/s² and rad/s²."""
     @property
     def joints(self) -> NDArray[np.float64]:
-        """(n, k): every joint coordinate; angles go on across half turns."""
+        """(n, k): every joint coordinate, metres and radians; angles go on across half turns."""
     @property
     def joint_rates(self) -> NDArray[np.float64]:
-        """(n, k)."""
+        """(n, k), m/s and rad/s."""
     @property
     def joint_accelerations(self) -> NDArray[np.float64]:
-        """(n, k)."""
+        """(n, k), m/s² and rad/s²."""
     @property
     def imaginary(self) -> NDArray[np.float64]:
-        """(n, j): every imaginary joint."""
+        """(n, j): every imaginary joint, metres and radians."""
     @property
     def imaginary_rates(self) -> NDArray[np.float64]:
-        """(n, j)."""
+        """(n, j), m/s and rad/s."""
     @property
     def imaginary_accelerations(self) -> NDArray[np.float64]:
-        """(n, j)."""
+        """(n, j), m/s² and rad/s²."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,): condition number of the actuated joints' Jacobian by the platform's twist."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): in reach, limits apart."""
@@ -946,12 +1155,13 @@ class Violation:
         """When it is worst, seconds."""
     @property
     def amount(self) -> float:
-        """By how much, there."""
+        """By how much, there; in :attr:`unit`."""
     @property
     def unit(self) -> str:
         """Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure."""
     @property
-    def leg(self) -> str | None: ...
+    def leg(self) -> str | None:
+        """The leg that it is about."""
     @property
     def joint(self) -> str | None:
         """The joint that is past its limit."""
@@ -1007,7 +1217,34 @@ def examples() -> list[str]:
     """Names of the mechanisms that come with the package."""
 
 def example(name: str) -> str:
-    """The text of one of them."""
+    """The text of one of them.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`examples`.
+
+    Returns
+    -------
+    str
+        The mechanism file.
+
+    Raises
+    ------
+    OpmError
+        There is no example of this name.
+    """
 
 def command(arguments: Sequence[str]) -> int:
-    """Do what a command line asks for, the program's name first; the status to exit with."""
+    """Do what a command line asks for.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The program's name first.
+
+    Returns
+    -------
+    int
+        The status to exit with.
+    """

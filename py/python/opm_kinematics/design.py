@@ -10,6 +10,7 @@ The optimiser is CMA-ES, of the package ``cma``: ``pip install 'opm-kinematics[d
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from operator import index
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -67,7 +68,18 @@ class Variables:
         return len(self._ends)
 
     def parameters(self, shares: Iterable[float]) -> dict[str, float | tuple[float, float]]:
-        """Their values at these shares of the way between the bounds, (len,) from 0 to 1."""
+        """Their values at these shares of the way between the bounds.
+
+        Parameters
+        ----------
+        shares : (len,) iterable of float
+            From 0 to 1.
+
+        Returns
+        -------
+        dict
+            By name: SI units and radians, of a point a pair.
+        """
         low, high = self._ends.T
         values = iter((low + (high - low) * np.fromiter(shares, np.float64, len(self))).tolist())
         return {
@@ -120,7 +132,7 @@ def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, se
     dimension : int
         At least 2.
     budget : int
-        How often `cost` is asked for, at most.
+        How often `cost` is asked for, at most; 1 at least.
     seed : int
         Of all chance: the same seed finds the same.
     step : float
@@ -130,6 +142,7 @@ def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, se
         import cma  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ImportError as error:
         raise OpmError("designs need the package cma: pip install 'opm-kinematics[design]'") from error
+    budget, seed = _whole("budget", budget, 1), _whole("seed", seed, 0)
     if dimension < 2:
         raise OpmError(f"{dimension} variables, expected at least 2: for one, scan it")
     rng = np.random.default_rng(seed)
@@ -167,6 +180,7 @@ def dexterous(manipulator: Manipulator, *, places: Axes, orientations: Axes, mod
         Axes of a grid as for :func:`~opm_kinematics.sweep`: of the lower section's task coordinates, and of the upper one's.
     mode : str
     """
+    _disjoint(places, orientations)
     return _everywhere(_swept(manipulator, mode, places, orientations), places)[0]
 
 
@@ -193,13 +207,15 @@ def sections(
     places, orientations : mapping
         Grids as for :func:`dexterous`.
     budget : int
-        Designs to look at, shared out by the number of variables.
+        Designs to look at, shared out by the number of variables; 2 at least.
     seed : int
     values : int
         Of each imaginary joint in its range, both ends among them: what the lower section is tried with.
     mode : str
     """
-    share = round(budget * len(upper) / (len(upper) + len(lower)))
+    _disjoint(places, orientations)
+    budget, values = _whole("budget", budget, 2), _whole("values", values, 1)
+    share = min(max(round(budget * len(upper) / (len(upper) + len(lower))), 1), budget - 1)
     above = minimise(_cost(manipulator, upper, lambda m: _upper_cost(m, orientations, mode)), len(upper), budget=share, seed=seed)
     chosen = manipulator.with_parameters(upper.parameters(above.shares))
     asked = _swept(chosen, mode, orientations, kind="upper").imaginary_range
@@ -226,7 +242,21 @@ def undivided(
     seed: int = 0,
     mode: str = "home",
 ) -> Design:
-    """Design all at once: the same question as :func:`sections`, asked of the whole mechanism."""
+    """Design all at once: the same question as :func:`sections`, asked of the whole mechanism.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+        Of a family; what is not among the variables stays as it is.
+    variables : Variables
+    places, orientations : mapping
+        Grids as for :func:`dexterous`.
+    budget : int
+        Designs to look at, 1 at least.
+    seed : int
+    mode : str
+    """
+    _disjoint(places, orientations)
 
     def cost(m: Manipulator) -> float:
         return _whole_cost(_swept(m, mode, places, orientations), places)
@@ -240,6 +270,24 @@ def undivided(
 SOME = 0.01
 #: How much a radian of the imaginary joints' ranges costs, of what an orientation costs that is out of reach.
 WIDTH = 0.01
+
+
+def _whole(what: str, value: int, least: int) -> int:
+    """A whole number that is large enough."""
+    try:
+        number = index(value)
+    except TypeError:
+        number = least - 1
+    if number < least:
+        raise OpmError(f"{what} is {value!r}, expected a whole number of at least {least}")
+    return number
+
+
+def _disjoint(places: Axes, orientations: Axes) -> None:
+    """A coordinate is of the places or of the orientations."""
+    both = [name for name in places if name in orientations]
+    if both:
+        raise OpmError(f"places and orientations both give {', '.join(both)}, expected each coordinate once")
 
 
 def _swept(manipulator: Manipulator, mode: str, *grids: Axes, kind: str = "grid") -> Sweep:

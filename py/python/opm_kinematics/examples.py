@@ -1,14 +1,26 @@
-"""The mechanisms that come with the package."""
+"""The mechanisms that come with the package.
+
+:func:`names` lists them. Those of the paper have a function each; every one is there by its name with :func:`load`.
+
+>>> import opm_kinematics as opm
+>>> opm.examples.plano_spherical() == opm.examples.load("plano-spherical-5dof")
+True
+"""
 
 from ._native import Manipulator
 from ._native import example as _text
 from ._native import examples as names
 
-__all__ = ["load", "names", "text"]
+__all__ = ["load", "names", "plano_spherical", "text", "translational_helical"]
 
 
 def text(name: str) -> str:
     """The mechanism file of an example.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`names`.
 
     Raises
     ------
@@ -21,9 +33,24 @@ def text(name: str) -> str:
 def load(name: str) -> Manipulator:
     """An example as a manipulator.
 
+    Parameters
+    ----------
+    name : str
+        One of :func:`names`.
+
     Raises
     ------
     OpmError
         There is no example of this name, or it has no closed-form inverse kinematics.
     """
     return Manipulator.parse(_text(name), label=name)
+
+
+def plano_spherical() -> Manipulator:
+    """The paper's plano-spherical manipulator, of five degrees of freedom: x, y, zeta, xi, psi."""
+    return load("plano-spherical-5dof")
+
+
+def translational_helical() -> Manipulator:
+    """The paper's translational-helical manipulator, of three degrees of freedom: x, y, phi."""
+    return load("translational-helical-3dof")

@@ -40,8 +40,8 @@ OUTLINE = "#d55e00"
 LIGHT = np.array([-0.4, -0.6, 0.8]) / np.sqrt(1.16)
 # Sides of a cylinder, and meridians of a ball.
 SIDES = 16
-# Panels of a workspace where nobody says.
-PANELS = 6
+# Panels of a workspace, at most, where nobody says.
+PANELS = 12
 
 
 def mechanism(
@@ -76,6 +76,7 @@ def mechanism(
     _pyplot()
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
+    _expect("manipulator", manipulator, Manipulator)
     solids = manipulator.solids(pose, mode=mode)
     panel = ax if ax is not None else _panel3d()
     faces: list[_Array] = []
@@ -121,7 +122,8 @@ def workspace(
     slices : str, optional
         The coordinate that has a panel for each of its values; without it there is one panel.
     values : sequence of float, optional
-        For which of them: the nearest on the grid. Six at most, evenly chosen, if not given.
+        For which of them: the nearest on the grid. If not given, for all up to twelve; of more, twelve that are spread over
+        them, and the title says so.
     ax : Axes or sequence of them, optional
         What to draw on, one a panel; a new figure if not given.
 
@@ -129,12 +131,13 @@ def workspace(
     -------
     list of Axes
         Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; of reachable and
-        dexterous places, where more of the orientations are. The boundary is a line, of all kinds but ``"grid"`` and
+        dexterous places, where more of the orientations are. A new figure has a colour bar for these shares. The boundary is a line, of all kinds but ``"grid"`` and
         ``"imaginary"``, where the panels show it: two coordinates with several values, or a third one for `slices`.
     """
     pyplot = _pyplot()
     from matplotlib.colors import LinearSegmentedColormap
 
+    _expect("sweep", sweep, Sweep)
     axes = sweep.axes
     several = [name for name, v in axes.items() if len(v) > 1 and name != slices]
     free = [name for name in several if name not in (x, y)]
@@ -157,7 +160,8 @@ def workspace(
     numbers: list[int | None] = [None]
     if slices is not None:
         grid = axes[slices]
-        wanted = values if values is not None else grid[np.linspace(0, len(grid) - 1, min(PANELS, len(grid))).astype(int)]
+        spread = np.linspace(0, len(grid) - 1, min(PANELS, len(grid))).round().astype(int)
+        wanted = values if values is not None else grid[spread]
         numbers = [int(np.argmin(np.abs(grid - value))) for value in wanted]
     panels = _panels(pyplot, len(numbers), ax)
     units = sweep.units
@@ -167,7 +171,7 @@ def workspace(
     outlines = sweep.boundary() if planar and sweep.kind not in ("grid", "imaginary") else []
     for panel, number in zip(panels, numbers, strict=True):
         image = share if number is None else share[:, :, number]
-        panel.pcolormesh(axes[x], axes[y], image, shading="nearest", cmap=shades, vmin=0, vmax=1, rasterized=True)
+        mesh = panel.pcolormesh(axes[x], axes[y], image, shading="nearest", cmap=shades, vmin=0, vmax=1, rasterized=True)
         for ring in outlines[number or 0].rings if outlines else ():
             first, second = ring.T if shown[:2] == [x, y] else ring.T[::-1]
             panel.plot(first, second, color=OUTLINE, linewidth=1.2)
@@ -176,6 +180,15 @@ def workspace(
             panel.set_aspect("equal")
         if slices is not None and number is not None:
             panel.set_title(f"{slices} = {axes[slices][number] + 0.0:.3g} {units[slices]}", fontsize="medium")
+    if ax is None:
+        figure = panels[0].figure
+        of = [name for name in several if name not in (x, y)]
+        if sweep.kind in ("reachable", "dexterous"):
+            figure.colorbar(mesh, ax=panels, label="share of the orientations")
+        elif of:
+            figure.colorbar(mesh, ax=panels, label=f"share of the values of {', '.join(of)}")
+        if slices is not None and values is None and len(numbers) < len(axes[slices]):
+            figure.suptitle(f"{len(numbers)} of {len(axes[slices])} values of {slices}", fontsize="medium")
     return panels
 
 
@@ -200,6 +213,7 @@ def imaginary(
         What to draw on, with three dimensions for three joints; a new one if not given.
     """
     pyplot = _pyplot()
+    _expect("solutions", solutions, Solutions)
     names = list(names) if names is not None else solutions.imaginary_names[:3]
     if len(names) not in (2, 3):
         raise OpmError(f"{len(names)} imaginary joints, expected two or three to draw")
@@ -249,6 +263,7 @@ def joints(
     list of Axes
         Lengths, then angles. Curves have gaps where the motion is out of reach.
     """
+    _expect("followed", followed, Trajectory, Solutions)
     names = list(names) if names is not None else followed.imaginary_names
     units = {name: followed.units[name] for name in names}
     if isinstance(followed, Trajectory):
@@ -285,6 +300,13 @@ def _curves(
         panel.margins(x=0, y=0.12)
         panel.legend(ncols=min(len(of_kind), 3), fontsize="small", frameon=False)
     return panels
+
+
+def _expect(what: str, given: object, *classes: type) -> None:
+    """An argument is of one of these classes."""
+    if not isinstance(given, classes):
+        names = " or ".join(f"a {kind.__name__}" for kind in classes)
+        raise TypeError(f"{what} is {given!r}, expected {names}")
 
 
 def _pyplot() -> Any:

@@ -1,0 +1,196 @@
+//! Arguments from Python. What is wrong with one is told with its name, what was given and what was
+//! expected.
+
+use crate::error::wrong;
+use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
+use opm_workspace::MOST_THREADS;
+use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use std::num::{NonZeroU64, NonZeroUsize};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// Rows of numbers.
+pub type Array<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
+
+/// Characters of a value that a message shows.
+const SHOWN: usize = 60;
+
+/// What was given, for a message.
+pub fn shown(given: &Bound<'_, PyAny>) -> String {
+    let text = given.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}
+
+/// A whole number in a range.
+fn whole(given: &Bound<'_, PyAny>, what: &str, range: &RangeInclusive<u64>) -> PyResult<u64> {
+    let number = given.extract().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| {
+        let (given, least, most) = (shown(given), range.start(), range.end());
+        wrong(match *most {
+            u64::MAX => format!("{what} is {given}, expected a whole number of at least {least}"),
+            _ => format!("{what} is {given}, expected a whole number from {least} to {most}"),
+        })
+    })
+}
+
+/// `threads`: as many as the command line allows.
+pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    let number = whole(given, "threads", &(1..=u64::from(MOST_THREADS)))?;
+    Ok(NonZeroUsize::new(number as usize))
+}
+
+/// `shards`.
+pub fn shards(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroU64>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    Ok(NonZeroU64::new(whole(given, "shards", &(1..=u64::MAX))?))
+}
+
+/// `budget`.
+pub fn budget(given: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    whole(given, "budget", &(1..=u64::MAX)).map(Some)
+}
+
+/// `scalars`: names, and not the letters of one.
+pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    let names = given.extract().ok().filter(|_| !given.is_instance_of::<PyString>());
+    let told = || wrong(format!("scalars is {}, expected a sequence of names", shown(given)));
+    names.map(Some).ok_or_else(told)
+}
+
+/// A path, as Python's own functions take it.
+pub fn path(given: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    given.py().import("os")?.call_method1("fsdecode", (given,))?.extract()
+}
+
+/// The text of a file, or Python's exception for what the system says of it, with its name; `hint` goes
+/// after that where there is no such file.
+pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult<String> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        let Some(number) = error.raw_os_error() else { return error.into() };
+        let missing = error.kind() == std::io::ErrorKind::NotFound;
+        let told = py.import("os").and_then(|os| os.call_method1("strerror", (number,))?.extract());
+        let told: String = told.unwrap_or_else(|_| error.to_string());
+        let told = if missing { told + hint } else { told };
+        // Python chooses the class by the number: FileNotFoundError, IsADirectoryError, ...
+        PyOSError::new_err((number, told, path.as_os_str().to_owned()))
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        wrong(format!("{}:{line}: not UTF-8, expected {expected}", path.display()))
+    })
+}
+
+/// As an array of numbers, whatever its shape.
+fn numbers<'py>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    expected: &dyn Fn() -> String,
+) -> PyResult<Bound<'py, PyUntypedArray>> {
+    let py = given.py();
+    let told = |error: PyErr| {
+        let known =
+            error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
+        if !known {
+            return error;
+        }
+        wrong(format!("{what} is {}, expected {}", shown(given), expected()))
+    };
+    let numpy = py.import("numpy")?;
+    let mut array = numpy.call_method1("asarray", (given,)).map_err(told)?;
+    if array.getattr("ndim")?.extract::<usize>()? == 0 {
+        return Err(wrong(format!("{what} is {}, expected {}", shown(given), expected())));
+    }
+    let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if kind == 'O' {
+        // Fractions and the like.
+        array = array.call_method1("astype", ("float64",)).map_err(told)?;
+    } else if !"biuf".contains(kind) {
+        let entries = array.getattr("dtype")?.str()?;
+        return Err(wrong(format!("{what} has entries of {entries}, expected {}", expected())));
+    }
+    Ok(array.cast_into()?)
+}
+
+/// Rows of `names`.
+pub fn rows<'py>(given: &Bound<'py, PyAny>, what: &str, names: &[&str]) -> PyResult<Array<'py>> {
+    let expected = || format!("(n, {}): {}", names.len(), names.join(", "));
+    let array = numbers(given, what, &expected)?;
+    match array.shape() {
+        [_, width] if *width == names.len() => array.extract(),
+        _ => {
+            let shape = array.getattr("shape")?;
+            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
+        }
+    }
+}
+
+/// Rows of `names`, or one of them for all.
+pub fn one_or_rows<'py>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    names: &[&str],
+) -> PyResult<Array<'py>> {
+    let width = names.len();
+    let expected = || format!("({width},) or (n, {width}): {}", names.join(", "));
+    let array = numbers(given, what, &expected)?;
+    match array.shape() {
+        [one] if *one == width => Ok(array.call_method1("reshape", ((1, width),))?.extract()?),
+        [_, one] if *one == width => Ok(array.extract()?),
+        _ => {
+            let shape = array.getattr("shape")?;
+            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
+        }
+    }
+}
+
+/// Matrices of SE(3), as rows of 16.
+pub fn matrices<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Array<'py>> {
+    let expected = || "(n, 4, 4) homogeneous matrices".to_owned();
+    let array = numbers(given, what, &expected)?;
+    match array.shape() {
+        [count, 4, 4] => Ok(array.call_method1("reshape", ((*count, 16),))?.extract()?),
+        _ => {
+            let shape = array.getattr("shape")?;
+            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
+        }
+    }
+}
+
+/// One value for each of `names`.
+pub fn row(given: &Bound<'_, PyAny>, what: &str, names: &[&str]) -> PyResult<Vec<f64>> {
+    let expected = || format!("({},): {}", names.len(), names.join(", "));
+    let array = numbers(given, what, &expected)?;
+    if array.shape() != [names.len()] {
+        let shape = array.getattr("shape")?;
+        return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
+    }
+    array.call_method0("tolist")?.extract()
+}
+
+/// As many numbers as there are, in a row.
+pub fn list(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
+    let expected = || "(n,) numbers".to_owned();
+    let array = numbers(given, what, &expected)?;
+    if array.ndim() != 1 {
+        let shape = array.getattr("shape")?;
+        return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
+    }
+    array.call_method0("tolist")?.extract()
+}

@@ -1,0 +1,59 @@
+//! Pickling of what is nothing but its attributes, and of the arrays among them.
+
+use numpy::PyUntypedArray;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// An array of an object that does not change: it cannot be written to.
+pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Py<T>> {
+    array.as_any().call_method1("setflags", (false,))?;
+    Ok(array.unbind())
+}
+
+/// The attributes of these names.
+pub fn attributes<'py>(object: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(object.py());
+    for name in names {
+        dict.set_item(name, object.getattr(*name)?)?;
+    }
+    Ok(dict)
+}
+
+/// One of them, as it was. Arrays come out of a pickle writable.
+pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
+    attributes: &Bound<'py, PyDict>,
+    name: &str,
+) -> PyResult<T> {
+    let missing = || PyValueError::new_err(format!("no {name} in the pickle"));
+    let value = attributes.get_item(name)?.ok_or_else(missing)?;
+    if value.is_instance_of::<PyUntypedArray>() {
+        value.call_method1("setflags", (false,))?;
+    }
+    value.extract().map_err(Into::into)
+}
+
+/// Pickles a class by its attributes.
+macro_rules! pickled {
+    ($class:ident { $($name:ident),+ $(,)? }) => {
+        #[pymethods]
+        impl $class {
+            fn __reduce__<'py>(
+                slf: &Bound<'py, Self>,
+            ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, pyo3::types::PyDict>,))> {
+                let names = [$(stringify!($name)),+];
+                let attributes = $crate::pickle::attributes(slf.as_any(), &names)?;
+                Ok((slf.get_type().getattr("_restored")?, (attributes,)))
+            }
+
+            #[staticmethod]
+            fn _restored(attributes: &Bound<'_, pyo3::types::PyDict>) -> PyResult<Self> {
+                Ok(Self {
+                    $($name: $crate::pickle::attribute(attributes, stringify!($name))?),+
+                })
+            }
+        }
+    };
+}
+
+pub(crate) use pickled;

@@ -1,0 +1,111 @@
+//! Poses as displacements in SE(3), and back.
+
+use crate::arguments;
+use crate::manipulator::Manipulator;
+use crate::rows::{Rows, Tables};
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use std::num::NonZeroUsize;
+
+/// How far a rotation matrix may be from one, entry by entry: what printing six digits leaves.
+const RIGID: f64 = 1e-5;
+
+#[pymethods]
+impl Manipulator {
+    /// Where the platform is at each pose, in SE(3): its reference point and its orientation, in base coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     A pose a row, a task coordinate a column; metres and radians.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, 4, 4) ndarray
+    ///     Homogeneous matrices: a rotation, which is none at home unless the coordinates measure it, and a position, metres.
+    #[pyo3(signature = (poses, *, threads = None))]
+    fn transform<'py>(
+        &self,
+        py: Python<'py>,
+        poses: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
+        let none = || ();
+        let tables = Tables::fill(py, poses.count, [16], threads, none, |(), row, [out]| {
+            let pose = poses.row(row);
+            if let Some(number) = pose.iter().position(|value| !value.is_finite()) {
+                let (name, value) = (self.pose_names()[number], pose[number]);
+                return Err(format!("pose {row}: {name} is {value:?}, expected a number"));
+            }
+            let place = self.inner.platform_pose(pose).to_homogeneous();
+            out.copy_from_slice(place.transpose().as_slice());
+            Ok([true; 2])
+        })?;
+        tables.table(0).reshape([poses.count, 4, 4])
+    }
+
+    /// The poses at which the platform is there: the inverse of :meth:`transform`.
+    ///
+    /// Parameters
+    /// ----------
+    /// transforms : (n, 4, 4) array_like
+    ///     Homogeneous matrices, metres.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, d) ndarray
+    ///     Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A matrix that is no rotation and position.
+    #[pyo3(signature = (transforms, *, threads = None))]
+    fn locate<'py>(
+        &self,
+        py: Python<'py>,
+        transforms: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let transforms = arguments::matrices(transforms, "transforms")?;
+        let transforms = Rows::new(&transforms)?;
+        let width = self.pose_names().len();
+        let none = || ();
+        let tables =
+            Tables::fill(py, transforms.count, [width], threads, none, |(), row, [out]| {
+                let place = isometry(transforms.row(row)).ok_or_else(|| {
+                    format!(
+                        "transforms[{row}] is no displacement: expected a rotation, a position in \
+                             metres, and a last row of 0, 0, 0, 1"
+                    )
+                })?;
+                if let Ok(pose) = self.inner.locate_platform(&place) {
+                    out.copy_from_slice(&pose);
+                }
+                Ok([true; 2])
+            })?;
+        Ok(tables.table(0))
+    }
+}
+
+/// The displacement that a matrix is, row by row.
+fn isometry(matrix: &[f64]) -> Option<Isometry3<f64>> {
+    let rotation = Matrix3::from_fn(|i, j| matrix[4 * i + j]);
+    let position = Vector3::from_fn(|i, _| matrix[4 * i + 3]);
+    let off = (rotation * rotation.transpose() - Matrix3::identity()).amax();
+    let rigid = off <= RIGID && rotation.determinant() > 0.0;
+    let finite = position.iter().all(|value| value.is_finite());
+    if !(rigid && finite && matrix[12..] == [0.0, 0.0, 0.0, 1.0]) {
+        return None;
+    }
+    // The nearest rotation to what rounding has left of one.
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
+    Some(Isometry3::from_parts(Translation3::from(position), turn))
+}
