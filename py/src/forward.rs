@@ -14,6 +14,9 @@ use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Rows that are done before threads would have begun.
+const FEW: usize = 16;
+
 /// One way in which a mechanism can be assembled for given actuated joints.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Assembly {
@@ -130,8 +133,12 @@ impl Manipulator {
             found.retain(|assembly| mode.is_none_or(|mode| assembly.mode == mode));
             Ok(found)
         };
-        let all = || (0..joints.count).into_par_iter().map(solve).collect::<Vec<_>>();
-        let found = interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?;
+        let found: Vec<_> = if joints.count <= FEW {
+            (0..joints.count).map(solve).collect()
+        } else {
+            let all = || (0..joints.count).into_par_iter().map(solve).collect();
+            interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
+        };
         let rows = found.into_iter().map(|found| {
             let list = found.map_err(wrong)?.into_iter();
             list.map(|assembly| Assembly::new(py, self, assembly)).collect()

@@ -155,7 +155,8 @@ pub struct Violation {
 /// OSError
 ///     The file cannot be read.
 /// OpmError
-///     Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
+///     Every problem of the file with its line and column; waypoints that are not poses, times that do not increase (of which waypoint,
+///     counted from zero).
 #[pyfunction]
 #[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
 pub fn trajectory(
@@ -198,7 +199,13 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
         let (poses, times) = (poses.count, times.len());
         return Err(wrong(format!("{times} times of {poses} poses, expected one a pose")));
     }
-    let names = manipulator.inner.task_coordinates().iter().map(|c| c.name);
+    let names = manipulator.pose_names();
+    for row in 0..poses.count {
+        if let Some(number) = poses.row(row).iter().position(|value| !value.is_finite()) {
+            let (name, value) = (names[number], poses.row(row)[number]);
+            return Err(wrong(format!("waypoint {row}: {name} is {value:?}, expected a number")));
+        }
+    }
     let mut text = ["t"].into_iter().chain(names).collect::<Vec<_>>().join(",");
     for (row, time) in times.iter().enumerate() {
         let cells = [time].into_iter().chain(poses.row(row)).map(|value| format!("{value:?}"));
@@ -206,10 +213,10 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
     }
     text.push('\n');
     let motion = table::read(&text, "waypoints", &manipulator.inner).map_err(|errors| {
-        // The first line is the header.
+        // The first line is the header, and poses count from zero.
         let told = errors.problems.iter().map(|problem| match problem.line {
             0 | 1 => problem.message.clone(),
-            line => format!("waypoint {}: {}", line - 1, problem.message),
+            line => format!("waypoint {}: {}", line - 2, problem.message),
         });
         wrong(told.collect::<Vec<_>>().join("\n"))
     })?;

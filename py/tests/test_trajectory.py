@@ -91,10 +91,10 @@ def test_wrong_input_is_told(manipulator, tmp_path):
     home = np.zeros((4, 5))
     for motion, options, message in [
         (home, {"times": [0, 1, 2]}, "3 times of 4 poses"),
-        (home, {"times": [0, 1, 1, 2]}, "waypoint 3: t is 1.0 after 1.0|waypoint 3: t is 1 after 1"),
+        (home, {"times": [0, 1, 1, 2]}, "waypoint 2: t is 1.0 after 1.0|waypoint 2: t is 1 after 1"),
         (home[:2], {"times": [0, 1]}, "expected at least 3"),
         (home[:, :3], {"times": [0, 1, 2, 3]}, r"motion has shape \(4, 3\), expected \(n, 5\)"),
-        (home * np.nan, {"times": [0, 1, 2, 3]}, "waypoint 1: .*NaN"),
+        (home * np.nan, {"times": [0, 1, 2, 3]}, "^waypoint 0: x is NaN, expected a number$"),
         (home, {}, "expected a path, the name of a shipped motion, or poses with times"),
         ("plano-spherical-sinusoids", {"rate": 0.0}, "expected a rate above zero"),
         ("plano-spherical-sinusoids", {"rate": np.nan}, "expected a rate above zero"),

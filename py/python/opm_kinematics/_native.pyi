@@ -1210,7 +1210,8 @@ def trajectory(
     OSError
         The file cannot be read.
     OpmError
-        Every problem of the file with its line and column; waypoints that are not poses, times that do not increase.
+        Every problem of the file with its line and column; waypoints that are not poses, times that do not increase (of which waypoint,
+        counted from zero).
     """
 
 def examples() -> list[str]:
