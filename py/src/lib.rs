@@ -14,6 +14,7 @@ mod error;
 mod forward;
 mod html;
 mod interrupt;
+mod linkage;
 mod manipulator;
 mod measure;
 mod parts;
@@ -40,6 +41,8 @@ mod _native {
     use crate::error::OpmError;
     #[pymodule_export]
     use crate::forward::Assembly;
+    #[pymodule_export]
+    use crate::linkage::Linkage;
     #[pymodule_export]
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]

@@ -6,7 +6,7 @@ use crate::error::{failed, wrong};
 use crate::html;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
-use crate::solutions::Solutions;
+use crate::solutions::{Names, Solutions};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
@@ -441,7 +441,7 @@ impl Manipulator {
                 Ok([true, solution.within_limits])
             },
         )?;
-        Solutions::of_all_modes(py, &self.inner, poses.count, tables)
+        Solutions::of_all_modes(py, Names::of(&self.inner, None), poses.count, tables)
     }
 
     /// An array of poses, checked.

@@ -5,6 +5,8 @@ use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
+use opm_core::joint::Quantity;
+use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::{Answers, Batch, Manipulator, Mode, RowError};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -78,49 +80,86 @@ impl Solutions {
         }
         .solve(py, manipulator, mode, threads)?;
         let tables = [joints, imaginary];
-        Self::new(manipulator, Some(mode), poses.count, tables, [reachable, within_limits])
+        let names = Names::of(manipulator, Some(mode));
+        Self::new(names, poses.count, tables, [reachable, within_limits])
     }
 
     /// From tables with a row for each mode of each pose, the modes of a pose together.
     pub fn of_all_modes(
         py: Python<'_>,
-        manipulator: &Manipulator,
+        names: Names,
         rows: usize,
         tables: Tables<'_, 2>,
     ) -> PyResult<Self> {
-        let modes = manipulator.modes().count();
-        let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
+        let modes = names.modes.len();
+        let widths = [names.joints.len(), names.imaginary.len()];
         let [joints, imaginary] = widths.map(|width| vec![rows, modes, width]);
         let numbers = [tables.table(0).reshape(joints)?, tables.table(1).reshape(imaginary)?];
         let [reachable, within_limits] =
             tables.answers.map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
-        Self::new(manipulator, None, rows, numbers, [reachable?, within_limits?])
+        Self::new(names, rows, numbers, [reachable?, within_limits?])
     }
 
     /// The arrays, and what their axes are called.
     fn new(
-        manipulator: &Manipulator,
-        mode: Option<Mode>,
+        names: Names,
         rows: usize,
         [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
     ) -> PyResult<Self> {
-        let format = |mode| manipulator.format_mode(mode);
+        let Names { joints: joint_names, imaginary: imaginary_names, units, mode, modes } = names;
         Ok(Self {
             joints: frozen(joints)?,
             imaginary: frozen(imaginary)?,
             reachable: frozen(reachable)?,
             within_limits: frozen(within_limits)?,
-            joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
-            imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
+            joint_names,
+            imaginary_names,
+            units,
+            mode,
+            modes,
+            rows,
+        })
+    }
+}
+
+/// What the axes of solutions are called, and in which units their numbers are.
+pub struct Names {
+    joints: Vec<String>,
+    imaginary: Vec<String>,
+    units: BTreeMap<String, String>,
+    mode: String,
+    modes: Vec<String>,
+}
+
+impl Names {
+    /// Of a manipulator's joints in one mode, or in all.
+    pub fn of(manipulator: &Manipulator, mode: Option<Mode>) -> Self {
+        let format = |mode| manipulator.format_mode(mode);
+        Self {
+            joints: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
+            imaginary: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
             mode: mode.map_or_else(|| "all".to_owned(), format),
             modes: match mode {
                 Some(mode) => vec![format(mode)],
                 None => manipulator.modes().map(format).collect(),
             },
-            rows,
-        })
+        }
+    }
+
+    /// Of a linkage's joints in all branches.
+    pub fn of_branches(linkage: &Linkage) -> Self {
+        let joints: Vec<_> = linkage.coordinates().iter().map(|c| c.name.clone()).collect();
+        let imaginary = linkage.imaginary().name.clone();
+        let unit = |name: &String| (name.clone(), Quantity::Angle.unit().to_owned());
+        Self {
+            units: joints.iter().chain([&imaginary]).map(unit).collect(),
+            joints,
+            imaginary: vec![imaginary],
+            mode: "all".to_owned(),
+            modes: LinkageBranch::ALL.map(|branch| branch.to_string()).into(),
+        }
     }
 }
 

@@ -43,6 +43,7 @@ def objects(manipulator):
         followed,
         opm.trajectory(m, "plano-spherical-sinusoids", rate=20),
         followed.violations[0],
+        opm.examples.bennett(),
         m,
     ]
     classes = {type(thing) for thing in found}

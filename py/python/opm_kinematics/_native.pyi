@@ -12,6 +12,7 @@ __all__ = [
     "Decomposition",
     "Intersection",
     "LegSplit",
+    "Linkage",
     "Manipulator",
     "Measure",
     "Motion",
@@ -130,6 +131,141 @@ class TaskCoordinate:
         """``"m"`` or ``"rad"``."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Linkage:
+    """A single loop that decomposes into two spherical four-bars, which share an imaginary joint.
+
+    Immutable; it can be pickled, and shared between threads.
+
+    Examples
+    --------
+    >>> import opm_kinematics as opm
+    >>> bennett = opm.examples.bennett()
+    >>> positions = bennett.positions([0.5], input="a1")
+    >>> positions.modes, positions["tau"].shape
+    (['+ +', '+ -', '- +', '- -'], (1, 4))
+    """
+
+    @staticmethod
+    def load(path: str | PathLike[str]) -> Linkage:
+        """Read a mechanism file.
+
+        Parameters
+        ----------
+        path : path
+            TOML. Shipped linkages are read by :func:`examples.bennett`.
+
+        Returns
+        -------
+        Linkage
+            Decomposed and compiled.
+
+        Raises
+        ------
+        OSError
+            The file cannot be read: FileNotFoundError, with its name, where there is none.
+        OpmError
+            Every problem of the file with its line and column, or what it has instead of two spherical four-bars.
+        """
+    @staticmethod
+    def parse(text: str, label: str | None = None) -> Linkage:
+        """Read the text of a mechanism file.
+
+        Parameters
+        ----------
+        text : str
+            TOML.
+        label : str, optional
+            What messages call it.
+
+        Returns
+        -------
+        Linkage
+            Decomposed and compiled.
+
+        Raises
+        ------
+        OpmError
+            Every problem of the text with its line and column, or what it has instead of two spherical four-bars.
+        """
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+    @property
+    def text(self) -> str:
+        """The mechanism file."""
+    @property
+    def joints(self) -> list[str]:
+        """Names of all joint coordinates: the columns of joint values."""
+    @property
+    def imaginary(self) -> str:
+        """Name of the imaginary joint."""
+    @property
+    def home(self) -> list[float]:
+        """(k,): every joint at home, radians."""
+    def home_branch(self, input: str | None = None) -> str:
+        """The branch that the linkage is assembled in, moved by one of its joints.
+
+        Parameters
+        ----------
+        input : str, optional
+            Name of the joint; the actuated one if not given.
+
+        Returns
+        -------
+        str
+            Its two signs: of the four-bar that has the input, and of the other one.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name.
+        """
+    def range(self, input: str | None = None) -> NDArray[np.float64]:
+        """Where the loop closes: the range of one joint, limits apart.
+
+        Parameters
+        ----------
+        input : str, optional
+            Name of the joint; the actuated one if not given.
+
+        Returns
+        -------
+        (r, 2) array
+            Lowest and highest value of every part, radians. Of a whole turn it is the one about home.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name.
+        """
+    def positions(
+        self, values: ArrayLike, *, input: str | None = None, threads: int | None = None
+    ) -> Solutions:
+        """Every position for many values of one joint, in all four branches.
+
+        Parameters
+        ----------
+        values : (n,) array_like
+            Of the joint that moves the linkage, radians.
+        input : str, optional
+            Its name; the actuated one if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        Solutions
+            As of all modes, with the four branches in their place: ``(n, 4, k)``, ``(n, 4, 1)``, ``(n, 4)``. NaN where the loop
+            does not close. Angles are within half a turn of home, unless the limits allow another turn; ``np.unwrap`` along
+            the first axis makes those of a whole turn continuous.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name, or a value is not finite (which, counted from zero).
+        """
 
 @final
 class Manipulator:

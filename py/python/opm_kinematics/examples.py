@@ -7,11 +7,11 @@
 True
 """
 
-from ._native import Manipulator
+from ._native import Linkage, Manipulator
 from ._native import example as _text
 from ._native import examples as names
 
-__all__ = ["load", "names", "plano_spherical", "text", "translational_helical"]
+__all__ = ["bennett", "load", "names", "plano_spherical", "text", "translational_helical"]
 
 
 def text(name: str) -> str:
@@ -54,3 +54,8 @@ def plano_spherical() -> Manipulator:
 def translational_helical() -> Manipulator:
     """The paper's translational-helical manipulator, of three degrees of freedom: x, y, phi."""
     return load("translational-helical-3dof")
+
+
+def bennett() -> Linkage:
+    """Bennett's double spherical 6R (the paper's Fig. 1), which is moved by its joint a1."""
+    return Linkage.parse(_text("bennett-double-spherical-6r"), label="bennett-double-spherical-6r")

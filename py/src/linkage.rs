@@ -1,0 +1,254 @@
+//! Linkages: the positions of a single loop, moved by one of its joints.
+
+use crate::arguments;
+use crate::error::{failed, wrong};
+use crate::pickle::frozen;
+use crate::rows::Tables;
+use crate::solutions::{Names, Solutions};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
+use opm_core::mechanism::examples as shipped;
+use opm_core::mechanism::file;
+use pyo3::prelude::*;
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// A single loop that decomposes into two spherical four-bars, which share an imaginary joint.
+///
+/// Immutable; it can be pickled, and shared between threads.
+///
+/// Examples
+/// --------
+/// >>> import opm_kinematics as opm
+/// >>> bennett = opm.examples.bennett()
+/// >>> positions = bennett.positions([0.5], input="a1")
+/// >>> positions.modes, positions["tau"].shape
+/// (['+ +', '+ -', '- +', '- -'], (1, 4))
+#[pyclass(frozen, module = "opm_kinematics")]
+pub struct Linkage {
+    inner: core::Linkage,
+    text: String,
+    label: String,
+}
+
+#[pymethods]
+impl Linkage {
+    /// Read a mechanism file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     TOML. Shipped linkages are read by :func:`examples.bennett`.
+    ///
+    /// Returns
+    /// -------
+    /// Linkage
+    ///     Decomposed and compiled.
+    ///
+    /// Raises
+    /// ------
+    /// OSError
+    ///     The file cannot be read: FileNotFoundError, with its name, where there is none.
+    /// OpmError
+    ///     Every problem of the file with its line and column, or what it has instead of two spherical four-bars.
+    #[staticmethod]
+    fn load(
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+    ) -> PyResult<Self> {
+        let label = path.display().to_string();
+        let hint = match shipped::find(&label) {
+            Some(_) => format!("; the shipped example's text is opm.examples.text({label:?})"),
+            None => String::new(),
+        };
+        let text = arguments::text(py, &path, "a mechanism file", &hint)?;
+        Self::parse(text, Some(label))
+    }
+
+    /// Read the text of a mechanism file.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     TOML.
+    /// label : str, optional
+    ///     What messages call it.
+    ///
+    /// Returns
+    /// -------
+    /// Linkage
+    ///     Decomposed and compiled.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Every problem of the text with its line and column, or what it has instead of two spherical four-bars.
+    #[staticmethod]
+    #[pyo3(signature = (text, label = None))]
+    fn parse(text: String, label: Option<String>) -> PyResult<Self> {
+        let label = label.unwrap_or_else(|| "mechanism".to_owned());
+        let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
+        let inner = core::Linkage::new(&read.mechanism).map_err(|error| failed(&error))?;
+        Ok(Self { inner, text, label })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
+        let this = slf.get();
+        Ok((slf.get_type().getattr("parse")?, (this.text.clone(), this.label.clone())))
+    }
+
+    /// The mechanism's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.mechanism().name
+    }
+
+    /// The mechanism file.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Names of all joint coordinates: the columns of joint values.
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.inner.coordinates().iter().map(|c| c.name.clone()).collect()
+    }
+
+    /// Name of the imaginary joint.
+    #[getter]
+    fn imaginary(&self) -> &str {
+        &self.inner.imaginary().name
+    }
+
+    /// (k,): every joint at home, radians.
+    #[getter]
+    fn home(&self) -> Vec<f64> {
+        self.inner.coordinates().iter().map(|c| c.home).collect()
+    }
+
+    /// The branch that the linkage is assembled in, moved by one of its joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// input : str, optional
+    ///     Name of the joint; the actuated one if not given.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     Its two signs: of the four-bar that has the input, and of the other one.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     There is no joint of this name.
+    #[pyo3(signature = (input = None))]
+    fn home_branch(&self, input: Option<&str>) -> PyResult<String> {
+        Ok(self.input(input)?.home_branch().to_string())
+    }
+
+    /// Where the loop closes: the range of one joint, limits apart.
+    ///
+    /// Parameters
+    /// ----------
+    /// input : str, optional
+    ///     Name of the joint; the actuated one if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (r, 2) array
+    ///     Lowest and highest value of every part, radians. Of a whole turn it is the one about home.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     There is no joint of this name.
+    #[pyo3(signature = (input = None))]
+    fn range(&self, py: Python<'_>, input: Option<&str>) -> PyResult<Py<PyArray2<f64>>> {
+        let input = self.input(input)?;
+        let home = input.coordinate().home;
+        let parts = match input.range() {
+            InputRange::FullTurn => vec![[home - PI, home + PI]],
+            InputRange::Intervals(intervals) => intervals,
+        };
+        let ends = PyArray1::from_slice(py, parts.as_flattened());
+        frozen(ends.reshape([parts.len(), 2])?)
+    }
+
+    /// Every position for many values of one joint, in all four branches.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n,) array_like
+    ///     Of the joint that moves the linkage, radians.
+    /// input : str, optional
+    ///     Its name; the actuated one if not given.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Solutions
+    ///     As of all modes, with the four branches in their place: ``(n, 4, k)``, ``(n, 4, 1)``, ``(n, 4)``. NaN where the loop
+    ///     does not close. Angles are within half a turn of home, unless the limits allow another turn; ``np.unwrap`` along
+    ///     the first axis makes those of a whole turn continuous.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     There is no joint of this name, or a value is not finite (which, counted from zero).
+    #[pyo3(signature = (values, *, input = None, threads = None))]
+    fn positions(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        input: Option<&str>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Solutions> {
+        let input = self.input(input)?;
+        let values = arguments::list(values, "values")?;
+        if let Some(number) = values.iter().position(|value| !value.is_finite()) {
+            let value = values[number];
+            return Err(wrong(format!("value {number} is {value}, expected a finite number")));
+        }
+        let branches = LinkageBranch::ALL;
+        let tables = Tables::fill(
+            py,
+            values.len() * branches.len(),
+            [self.inner.coordinates().len(), 1],
+            threads,
+            || input.home(),
+            |position, row, [joints, imaginary]| {
+                let (value, branch) =
+                    (values[row / branches.len()], branches[row % branches.len()]);
+                if !input.position(value, branch, position) {
+                    return Ok([false; 2]);
+                }
+                joints.copy_from_slice(&position.joints);
+                imaginary[0] = position.imaginary;
+                Ok([true, position.within_limits])
+            },
+        )?;
+        Solutions::of_all_modes(py, Names::of_branches(&self.inner), values.len(), tables)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Linkage {}: {} joints>", self.name(), self.inner.coordinates().len())
+    }
+}
+
+impl Linkage {
+    /// Moved by the joint of this name, or by the actuated one.
+    fn input(&self, name: Option<&str>) -> PyResult<Input<'_>> {
+        let actuated = || {
+            let joint = self.inner.mechanism().joints().find(|joint| joint.actuated);
+            joint.map_or("", |joint| &joint.coordinates[0].name)
+        };
+        let name = name.unwrap_or_else(actuated);
+        let known = || self.joints().join(", ");
+        let told = || wrong(format!("input is {name:?}, expected one of {}", known()));
+        self.inner.input(name).ok_or_else(told)
+    }
+}

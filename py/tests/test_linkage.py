@@ -1,0 +1,99 @@
+"""Linkages: loops that close by the product of exponentials, written here, and what the program says."""
+
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import opm_kinematics as opm
+import pytest
+
+NAME = "bennett-double-spherical-6r"
+LINKAGE = opm.examples.bennett()
+
+
+def rotation(axis, angle):
+    """Rodrigues' formula."""
+    axis = np.asarray(axis) / np.linalg.norm(axis)
+    k = np.cross(np.eye(3), axis)
+    return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k)
+
+
+def platform(joints, angles):
+    """Where a leg of revolute joints takes the platform: products of exponentials, base to platform."""
+    pose = np.eye(4)
+    for joint, angle in zip(joints, angles, strict=True):
+        turn, point = rotation(joint["axis"], angle), np.asarray(joint["point"], dtype=float)
+        step = np.eye(4)
+        step[:3, :3], step[:3, 3] = turn, point - turn @ point
+        pose = pose @ step
+    return pose
+
+
+def test_every_position_closes_the_loop():
+    tomllib = pytest.importorskip("tomllib", reason="Python 3.11 reads TOML")
+    legs = [leg["joints"] for leg in tomllib.loads(LINKAGE.text)["leg"]]
+    names = [joint["name"] for leg in legs for joint in leg]
+    assert names == LINKAGE.joints and len(names) == 6
+    for name in names:
+        found = LINKAGE.positions(np.linspace(-3, 3, 61), input=name)
+        assert found.joints.shape == (61, 4, 6) and found.imaginary.shape == (61, 4, 1)
+        assert found.reachable.any() and np.array_equal(found.reachable, ~np.isnan(found.joints).any(axis=2))
+        for angles in found.joints[found.reachable] - np.array(LINKAGE.home):
+            one, two = (platform(leg, part) for leg, part in zip(legs, np.split(angles, [len(legs[0])]), strict=True))
+            assert np.abs(one - two).max() < 1e-9 * max(1, np.abs(one).max())
+
+
+def test_its_positions_are_those_of_the_program():
+    command = [sys.executable, "-m", "opm_kinematics", "linkage", NAME, "--input", "a2=0.1", "--format", "json"]
+    told = json.loads(subprocess.run(command, capture_output=True, check=True, text=True).stdout)
+    found = LINKAGE.positions([0.1], input="a2")
+    branches = [solution["branch"] for solution in told["solutions"]]
+    assert branches and branches == [mode for mode, yes in zip(found.modes, found.reachable[0], strict=True) if yes]
+    for solution in told["solutions"]:
+        branch = found.modes.index(solution["branch"])
+        assert {name: found[name][0, branch] for name in LINKAGE.joints} == solution["joints"]
+        assert found[LINKAGE.imaginary][0, branch] == solution["imaginary"][LINKAGE.imaginary]
+        assert found.within_limits[0, branch] == solution["within_limits"]
+    assert LINKAGE.range("a2").tolist() == told["range"]
+    assert LINKAGE.home_branch("a2") == told["home_branch"]
+
+
+def test_the_loop_closes_in_the_range_and_nowhere_else():
+    for name in LINKAGE.joints:
+        values = np.linspace(-np.pi, np.pi, 1001)
+        parts = LINKAGE.range(name)
+        turned = values + 2 * np.pi * np.array([-1, 0, 1])[:, None, None]
+        inside = ((turned >= parts[:, :1]) & (turned <= parts[:, 1:])).any(axis=(0, 1))
+        sure = np.abs(turned - parts.reshape(-1, 1)).min(axis=(0, 1)) > 1e-6 if parts.size else np.ones(1001, dtype=bool)
+        assert np.count_nonzero(sure) > 990
+        reachable = LINKAGE.positions(values, input=name, threads=1).reachable.any(axis=1)
+        assert np.array_equal(reachable[sure], inside[sure])
+
+
+def test_home_is_a_position():
+    found = LINKAGE.positions([LINKAGE.home[LINKAGE.joints.index("a1")]])
+    branch = found.modes.index(LINKAGE.home_branch())
+    assert found.joints[0, branch] == pytest.approx(LINKAGE.home, abs=1e-12)
+
+
+def test_it_pickles():
+    again = pickle.loads(pickle.dumps(LINKAGE))
+    values = np.linspace(-3, 3, 1001)
+    assert again.text == LINKAGE.text and again.name == NAME
+    same = zip([LINKAGE.positions(values)], [again.positions(values, threads=2)], strict=True)
+    assert all(np.array_equal(a.joints, b.joints, equal_nan=True) for a, b in same)
+
+
+def test_what_is_wrong_is_told():
+    with pytest.raises(opm.OpmError, match="input is 'q', expected one of a1|input is \"q\", expected one of a1"):
+        LINKAGE.positions([0], input="q")
+    with pytest.raises(opm.OpmError, match="value 1 is NaN, expected a finite number"):
+        LINKAGE.positions([0, np.nan])
+    with pytest.raises(opm.OpmError, match=r"values has shape \(1, 1\), expected"):
+        LINKAGE.positions([[0]])
+    with pytest.raises(opm.OpmError, match="a linkage has two legs"):
+        opm.Linkage.parse(opm.examples.text("plano-spherical-5dof"))
+    with pytest.raises(FileNotFoundError, match="opm.examples.text"):
+        opm.Linkage.load(NAME)
