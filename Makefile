@@ -27,10 +27,12 @@ lint: ## Check format, lints and documentation, warnings being errors
 test-rust: ## Run the Rust tests, build the examples
 	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
 
-# The module as the Rust tests are built: optimised, without the minutes that linking for release takes.
+# The module as the Rust tests are built: optimised, without the minutes that linking for release takes. A run for each
+# folder: pytest cannot collect two files of one name together.
 test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
 	MATURIN_PEP517_ARGS="--profile dev" $(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
-	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal tests/python py/tests
+	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal tests/python
+	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal py/tests
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
 	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
