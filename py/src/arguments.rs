@@ -3,6 +3,7 @@
 
 use crate::error::wrong;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
+use opm_core::mechanism::examples;
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -95,6 +96,17 @@ pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult
         let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
         wrong(format!("{}:{line}: not UTF-8, expected {expected}", path.display()))
     })
+}
+
+/// The text of a mechanism file, and what messages call it. Where there is no such file but a shipped one of this
+/// name, `shipped` is what gives that in Python.
+pub fn mechanism(py: Python<'_>, path: &Path, shipped: &str) -> PyResult<(String, String)> {
+    let label = path.display().to_string();
+    let hint = match examples::find(&label) {
+        Some(_) => format!("; the shipped example is {shipped}({label:?})"),
+        None => String::new(),
+    };
+    Ok((text(py, path, "a mechanism file", &hint)?, label))
 }
 
 /// As an array of numbers, whatever its shape.

@@ -7,7 +7,6 @@ use crate::rows::Tables;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
-use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::file;
 use pyo3::prelude::*;
 use std::f64::consts::PI;
@@ -57,12 +56,7 @@ impl Linkage {
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
     ) -> PyResult<Self> {
-        let label = path.display().to_string();
-        let hint = match shipped::find(&label) {
-            Some(_) => format!("; the shipped example's text is opm.examples.text({label:?})"),
-            None => String::new(),
-        };
-        let text = arguments::text(py, &path, "a mechanism file", &hint)?;
+        let (text, label) = arguments::mechanism(py, &path, "opm.examples.text")?;
         Self::parse(text, Some(label))
     }
 

@@ -107,12 +107,7 @@ impl Manipulator {
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
     ) -> PyResult<Self> {
-        let label = path.display().to_string();
-        let hint = match shipped::find(&label) {
-            Some(_) => format!("; the shipped example is opm.examples.load({label:?})"),
-            None => String::new(),
-        };
-        let text = arguments::text(py, &path, "a mechanism file", &hint)?;
+        let (text, label) = arguments::mechanism(py, &path, "opm.examples.load")?;
         Self::parse(text, Some(label))
     }
 

@@ -82,12 +82,12 @@ def test_it_pickles():
     again = pickle.loads(pickle.dumps(LINKAGE))
     values = np.linspace(-3, 3, 1001)
     assert again.text == LINKAGE.text and again.name == NAME
-    same = zip([LINKAGE.positions(values)], [again.positions(values, threads=2)], strict=True)
-    assert all(np.array_equal(a.joints, b.joints, equal_nan=True) for a, b in same)
+    one, other = LINKAGE.positions(values), again.positions(values, threads=2)
+    assert np.array_equal(one.joints, other.joints, equal_nan=True)
 
 
 def test_what_is_wrong_is_told():
-    with pytest.raises(opm.OpmError, match="input is 'q', expected one of a1|input is \"q\", expected one of a1"):
+    with pytest.raises(opm.OpmError, match='input is "q", expected one of a1'):
         LINKAGE.positions([0], input="q")
     with pytest.raises(opm.OpmError, match="value 1 is NaN, expected a finite number"):
         LINKAGE.positions([0, np.nan])
