@@ -11,6 +11,17 @@ use crate::error::{failed, wrong};
 /// How often Python's signal handlers are asked.
 const PATIENCE: Duration = Duration::from_millis(50);
 
+/// How many threads are worth it for work that comes in so many pieces: to make one takes as long as to decide
+/// some ten thousand poses of a sweep, and one without a piece has nothing to do.
+pub fn few(threads: Option<NonZeroUsize>, pieces: u64) -> Option<NonZeroUsize> {
+    let pieces = usize::try_from(pieces).ok().and_then(NonZeroUsize::new)?;
+    match threads {
+        Some(threads) => Some(threads.min(pieces)),
+        // A processor each is for whoever makes them to find out.
+        None => Some(pieces).filter(|pieces| pieces.get() == 1),
+    }
+}
+
 /// Does `work` in a thread pool of its own while this thread listens to signals; at the first that
 /// raises, asks the work to stop with `cancel`, waits for it, and gives the exception. A pool a call: one
 /// that outlives it would be lost in a forked process, and the work with it.
@@ -23,11 +34,11 @@ pub fn run<T: Send>(
     let threads = threads.map_or(0, NonZeroUsize::get);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| failed(&e))?;
     py.detach(|| {
-        std::thread::scope(|scope| {
+        pool.in_place_scope(|scope| {
             let (sender, receiver) = channel();
-            scope.spawn(move || {
+            scope.spawn(move |_| {
                 // Nobody listens any more where a signal has raised.
-                let _ = sender.send(pool.install(work));
+                let _ = sender.send(work());
             });
             loop {
                 match receiver.recv_timeout(PATIENCE) {

@@ -253,6 +253,12 @@ impl<'a> Sweep<'a> {
         )
     }
 
+    /// Pieces that the work comes in: more threads than these have nothing to do.
+    pub fn pieces(&self) -> u64 {
+        let Range { start, end } = self.blocks();
+        end - start
+    }
+
     /// The blocks of the shard.
     fn blocks(&self) -> Range<u64> {
         self.shard.of((self.rows() * self.segments).div_ceil(self.stride))

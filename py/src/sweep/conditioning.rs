@@ -5,7 +5,7 @@ use super::shards::{shard, spread};
 use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::html::digits;
-use crate::interrupt;
+use crate::interrupt::{self, few};
 use crate::parts::Parts;
 use crate::pickle::pickled;
 use crate::rows::no_memory;
@@ -132,7 +132,8 @@ impl Sweep {
     fn _conditioning(&self, py: Python<'_>, number: u64, of: u64) -> PyResult<Indices> {
         let (progress, sweep) = (Progress::default(), self.swept(shard(number, of)?));
         let work = || ConditioningIndex::new(&sweep, self.length(), &progress);
-        let found = interrupt::run(py, self.threads, work, || progress.cancel())?;
+        let found =
+            interrupt::run(py, few(self.threads, sweep.pieces()), work, || progress.cancel())?;
         let ConditioningIndex { poses, min, max, sum, .. } = found.map_err(|e| failed(&e))?;
         Ok((poses, min, max, sum))
     }

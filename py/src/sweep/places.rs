@@ -4,7 +4,7 @@ use super::Sweep;
 use super::shards::{shard, spread};
 use crate::arguments;
 use crate::error::{failed, wrong};
-use crate::interrupt;
+use crate::interrupt::{self, few};
 use crate::parts::Parts;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use opm_cli::recording::Kind;
@@ -76,7 +76,8 @@ impl Sweep {
             }
             _ => Ok(Visits::new(&sweep, &progress)?.counts().to_vec()),
         };
-        let done = interrupt::run(py, self.threads, work, || progress.cancel())?;
+        let done =
+            interrupt::run(py, few(self.threads, sweep.pieces()), work, || progress.cancel())?;
         done.map_err(|error: SetError| failed(&error))
     }
 

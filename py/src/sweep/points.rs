@@ -4,7 +4,7 @@ use super::Sweep;
 use super::shards::{shard, spread};
 use crate::arguments;
 use crate::error::failed;
-use crate::interrupt;
+use crate::interrupt::{self, few};
 use crate::parts::Parts;
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
@@ -128,7 +128,7 @@ impl Sweep {
             (None, None) => {
                 let (progress, sweep) = (Progress::default(), this.swept(Shard::WHOLE));
                 let work = || GridSet::reached(&sweep, &progress);
-                interrupt::run(py, this.threads, work, || progress.cancel())?
+                interrupt::run(py, few(this.threads, sweep.pieces()), work, || progress.cancel())?
             }
             (None, Some(parts)) => {
                 let mask = Self::flat_mask(slf, Some(parts))?.readonly();
@@ -213,7 +213,8 @@ impl Sweep {
                 Ok::<(), Cancelled>(())
             })
         };
-        let done = interrupt::run(py, self.threads, work, || progress.cancel())?;
+        let done =
+            interrupt::run(py, few(self.threads, sweep.pieces()), work, || progress.cancel())?;
         done.map_err(|error| failed(&error))
     }
 }
