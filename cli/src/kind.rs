@@ -12,8 +12,8 @@ use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Axis, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline, Poses,
-    Progress, Sections, Visits, boundary, components,
+    Axis, Components, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline,
+    Poses, Progress, Sections, Visits, boundary,
 };
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -304,7 +304,7 @@ impl Study {
             _ => None,
         };
         let shape = set.as_ref().filter(|_| shape).map(|set| Shape {
-            components: components(set),
+            components: Components::new(set).sizes().to_vec(),
             // That of the orientations says nothing of the imaginary joints.
             boundary: if kind == Kind::Imaginary { None } else { boundary(set) },
         });

@@ -9,8 +9,8 @@ use opm_core::subspace::SubspaceClass;
 use pyo3::prelude::*;
 
 /// How the legs of a mechanism were cut in two: what ``opm decompose`` says.
-#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
-#[derive(Clone, PartialEq)]
+#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
+#[derive(Clone)]
 pub struct Decomposition {
     /// Of the mechanism.
     name: String,
@@ -33,8 +33,8 @@ pub struct Decomposition {
 }
 
 /// The motion that both sections have in common, in base coordinates at home.
-#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
-#[derive(Clone, PartialEq)]
+#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
+#[derive(Clone)]
 pub struct Intersection {
     /// ``"rotation"``, ``"translation"`` or ``"helical"``.
     kind: String,
@@ -47,8 +47,8 @@ pub struct Intersection {
 }
 
 /// Where a leg was cut.
-#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
-#[derive(Clone, PartialEq)]
+#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
+#[derive(Clone)]
 pub struct LegSplit {
     /// Of the leg.
     name: String,

@@ -48,6 +48,8 @@ mod _native {
     #[pymodule_export]
     use crate::measure::{Measure, measure};
     #[pymodule_export]
+    use crate::place::Nearest;
+    #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]
     use crate::solutions::Solutions;

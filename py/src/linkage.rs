@@ -10,6 +10,7 @@ use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
 use opm_core::mechanism::file;
 use pyo3::prelude::*;
 use std::f64::consts::PI;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -85,6 +86,17 @@ impl Linkage {
         let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
         let inner = core::Linkage::new(&read.mechanism).map_err(|error| failed(&error))?;
         Ok(Self { inner, text, label })
+    }
+
+    /// Linkages are the same if their files are, whatever these are called.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.text.hash(&mut hasher);
+        hasher.finish()
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {

@@ -32,9 +32,15 @@ pub struct Manipulator {
     family: Option<Family>,
 }
 
+impl PartialEq for Manipulator {
+    fn eq(&self, other: &Self) -> bool {
+        self.text() == other.text()
+    }
+}
+
 /// One coordinate of the pose.
-#[pyclass(frozen, get_all, eq, module = "opm_kinematics")]
-#[derive(Clone, PartialEq)]
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+#[derive(Clone)]
 pub struct TaskCoordinate {
     /// Of the coordinate: ``"x"``, ``"zeta"``, ...
     name: String,
@@ -220,7 +226,7 @@ impl Manipulator {
 
     /// Mechanisms are the same if their files are, whatever these are called.
     fn __eq__(&self, other: &Self) -> bool {
-        self.text() == other.text()
+        self == other
     }
 
     fn __hash__(&self) -> u64 {

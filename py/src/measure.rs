@@ -2,7 +2,7 @@
 
 use crate::arguments;
 use crate::error::{failed, wrong};
-use crate::html::digits;
+use crate::html::{self, digits};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
@@ -77,7 +77,7 @@ enum Range {
 ///     more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
 ///     executor that a function makes serves all rounds.
 /// shards : int, optional
-///     How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
+///     How many parts of a round the executor gets: as for :func:`sweep`, but of at least 4096 boxes each but for the last.
 ///
 /// Raises
 /// ------
@@ -203,7 +203,7 @@ fn boxes_searched(
     let (py, this) = (boxes.py(), boxes.get());
     let mut search = Search::new(&this.domain, goal);
     while let Some(cells) = py.detach(|| search.round()) {
-        let count = parts.count(cells.len() as u64, LEAST_BOXES) as usize;
+        let count = parts.count(workers, cells.len() as u64, LEAST_BOXES)? as usize;
         let bounds = if count == 1 {
             this.bounds(py, cells)?
         } else {
@@ -341,6 +341,15 @@ impl Measure {
         let numbers = [found.value(), found.lower, found.upper, found.fraction()];
         let [value, low, high, share] = numbers.map(digits);
         format!("<Measure {value} {units}, from {low} to {high}: {share} of the box>")
+    }
+
+    /// Measures are the same if they are of the same ranges, and found the same bounds after as many boxes.
+    fn __eq__(&self, other: &Self) -> bool {
+        (&self.found, &self.units, &self.over) == (&other.found, &other.units, &other.over)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        html::of(slf, "measure")
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, Told>> {

@@ -4,17 +4,13 @@ use crate::error::wrong;
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
-/// Parts that work is divided into for an executor: several a worker, for any but the largest clusters,
-/// so that all have work to the end and little is lost with one.
-const SHARDS: NonZeroU64 = NonZeroU64::new(64).unwrap();
-
 /// As an object crosses processes: what restores it, and what that is given.
 pub type Pickled<'py, T> = (Bound<'py, PyAny>, T);
 
-/// An executor, and how many parts it gets.
+/// An executor, and how many parts it gets, where that is given.
 pub struct Parts<'py> {
     executor: Bound<'py, PyAny>,
-    shards: NonZeroU64,
+    shards: Option<NonZeroU64>,
 }
 
 impl<'py> Parts<'py> {
@@ -24,17 +20,23 @@ impl<'py> Parts<'py> {
         shards: Option<NonZeroU64>,
     ) -> PyResult<Option<Self>> {
         match (executor, shards) {
-            (Some(executor), shards) => {
-                Ok(Some(Self { executor, shards: shards.unwrap_or(SHARDS) }))
-            }
+            (Some(executor), shards) => Ok(Some(Self { executor, shards })),
             (None, None) => Ok(None),
             (None, Some(_)) => Err(wrong("shards are given, but no executor that they are for")),
         }
     }
 
-    /// How many parts so much work is worth, each of `least` or more; one at least.
-    pub fn count(&self, work: u64, least: u64) -> u64 {
-        self.shards.get().min(work.div_ceil(least).max(1))
+    /// How many parts so much work is worth for these workers, each of `least` or more; one at least.
+    pub fn count(&self, workers: &Bound<'py, PyAny>, work: u64, least: u64) -> PyResult<u64> {
+        let most = work.div_ceil(least);
+        if most <= 1 {
+            return Ok(1);
+        }
+        let shards = match self.shards {
+            Some(shards) => shards.get(),
+            None => workers.call_method0("shards")?.extract()?,
+        };
+        Ok(shards.min(most))
     }
 
     /// What comes of work with the executor, which goes through `run` of the workers.

@@ -1,9 +1,9 @@
-//! Pickling of what is nothing but its attributes, and of the arrays among them.
+//! What is nothing but its attributes: pickled by them, and equal where they are; and the arrays among them.
 
 use numpy::PyUntypedArray;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 /// An array of an object that does not change: it cannot be written to.
 pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Py<T>> {
@@ -33,11 +33,48 @@ pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
     value.extract().map_err(Into::into)
 }
 
-/// Pickles a class by its attributes.
+/// Whether the attributes of these names are the same.
+pub fn equal<'py>(a: &Bound<'py, PyAny>, b: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<bool> {
+    for name in names {
+        if !same(&a.getattr(*name)?, &b.getattr(*name)?)? {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Whether values are the same: arrays as a whole, and NaN, where there is no number, as itself.
+fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if a.is_instance_of::<PyUntypedArray>() {
+        let options = PyDict::new(a.py());
+        options.set_item("equal_nan", true)?;
+        let equal = a.py().import("numpy")?.call_method("array_equal", (a, b), Some(&options))?;
+        return equal.is_truthy();
+    }
+    if a.is_instance_of::<PyTuple>() || a.is_instance_of::<PyList>() {
+        if a.len()? != b.len()? {
+            return Ok(false);
+        }
+        for (a, b) in a.try_iter()?.zip(b.try_iter()?) {
+            if !same(&a?, &b?)? {
+                return Ok(false);
+            }
+        }
+        return Ok(true);
+    }
+    a.eq(b)
+}
+
+/// Makes a class that is nothing but its attributes: pickled by them, and compared.
 macro_rules! pickled {
     ($class:ident { $($name:ident),+ $(,)? }) => {
         #[pymethods]
         impl $class {
+            fn __eq__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, Self>) -> PyResult<bool> {
+                let names = [$(stringify!($name)),+];
+                $crate::pickle::equal(slf.as_any(), other.as_any(), &names)
+            }
+
             fn __reduce__<'py>(
                 slf: &Bound<'py, Self>,
             ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, pyo3::types::PyDict>,))> {

@@ -2,14 +2,41 @@
 
 use crate::arguments;
 use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use opm_core::manipulator::OutsideMotion;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
 /// How far a rotation matrix may be from one, entry by entry: what printing six digits leaves.
 const RIGID: f64 = 1e-5;
+
+/// The poses of a manipulator's motion that are nearest to displacements of the platform, and what these are off by.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Nearest {
+    /// (n, d): task coordinates, metres and radians.
+    poses: Py<PyArray2<f64>>,
+    /// (n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero in the motion.
+    rotation: Py<PyArray2<f64>>,
+    /// (n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero in the motion.
+    translation: Py<PyArray2<f64>>,
+}
+
+pickled!(Nearest { poses, rotation, translation });
+
+#[pymethods]
+impl Nearest {
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let [turns, ways] = [&self.rotation, &self.translation].map(|of| of.bind(py).readonly());
+        let (turns, ways) = (turns.as_array(), ways.as_array());
+        let rows = turns.rows().into_iter().zip(ways.rows());
+        let off = rows.filter(|(turn, way)| turn.iter().chain(way).any(|&part| part != 0.0));
+        let (all, off) = (turns.nrows(), off.count());
+        format!("<Nearest poses to {all} displacements: {off} outside the motion>")
+    }
+}
 
 #[pymethods]
 impl Manipulator {
@@ -61,7 +88,8 @@ impl Manipulator {
     /// Returns
     /// -------
     /// (n, d) ndarray
-    ///     Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion.
+    ///     Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion:
+    ///     :meth:`nearest` says by how much.
     ///
     /// Raises
     /// ------
@@ -74,24 +102,85 @@ impl Manipulator {
         transforms: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let widths = [self.pose_names().len()];
+        let located = self.located(py, transforms, threads, widths, |found, [out]| {
+            if let Ok(pose) = found {
+                out.copy_from_slice(&pose);
+            }
+        });
+        Ok(located?.table(0))
+    }
+
+    /// The poses at which the platform is nearest to there, and what it lacks: for what :meth:`locate` has no pose.
+    ///
+    /// Parameters
+    /// ----------
+    /// transforms : (n, 4, 4) array_like
+    ///     Homogeneous matrices, metres.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Nearest
+    ///     Nearest by least squares, in which a rotation counts by the mechanism's size.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A matrix that is no rotation and position.
+    #[pyo3(signature = (transforms, *, threads = None))]
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        transforms: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Nearest> {
+        let widths = [self.pose_names().len(), 3, 3];
+        let located = self.located(py, transforms, threads, widths, |found, [pose, turn, way]| {
+            let zero = Vector3::zeros();
+            let (nearest, rotation, translation) = match found {
+                Ok(pose) => (pose, zero, zero),
+                Err(OutsideMotion { nearest, rotation, translation }) => {
+                    (nearest, rotation, translation)
+                }
+            };
+            pose.copy_from_slice(&nearest);
+            turn.copy_from_slice(rotation.as_slice());
+            way.copy_from_slice(translation.as_slice());
+        });
+        let located = located?;
+        Ok(Nearest {
+            poses: frozen(located.table(0))?,
+            rotation: frozen(located.table(1))?,
+            translation: frozen(located.table(2))?,
+        })
+    }
+}
+
+impl Manipulator {
+    /// Tables of what `fill` writes of where each displacement of the platform is in the motion, or beside it.
+    fn located<'py, const N: usize>(
+        &self,
+        py: Python<'py>,
+        transforms: &Bound<'py, PyAny>,
+        threads: Option<NonZeroUsize>,
+        widths: [usize; N],
+        fill: impl Fn(Result<Vec<f64>, OutsideMotion>, [&mut [f64]; N]) + Sync,
+    ) -> PyResult<Tables<'py, N>> {
         let transforms = arguments::matrices(transforms, "transforms")?;
         let transforms = Rows::new(&transforms)?;
-        let width = self.pose_names().len();
         let none = || ();
-        let tables =
-            Tables::fill(py, transforms.count, [width], threads, none, |(), row, [out]| {
-                let place = isometry(transforms.row(row)).ok_or_else(|| {
-                    format!(
-                        "transforms[{row}] is no displacement: expected a rotation, a position in \
-                             metres, and a last row of 0, 0, 0, 1"
-                    )
-                })?;
-                if let Ok(pose) = self.inner.locate_platform(&place) {
-                    out.copy_from_slice(&pose);
-                }
-                Ok([true; 2])
+        Tables::fill(py, transforms.count, widths, threads, none, |(), row, out| {
+            let place = isometry(transforms.row(row)).ok_or_else(|| {
+                format!(
+                    "transforms[{row}] is no displacement: expected a rotation, a position in \
+                     metres, and a last row of 0, 0, 0, 1"
+                )
             })?;
-        Ok(tables.table(0))
+            fill(self.inner.locate_platform(&place), out);
+            Ok([true; 2])
+        })
     }
 }
 

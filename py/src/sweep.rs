@@ -77,7 +77,8 @@ pub struct Sweep {
 ///     process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
 ///     takes no more work: give a function that makes one, and the shards that are missing go to a new one.
 /// shards : int, optional
-///     How many parts the executor gets: 64 if not given, fewer for small grids.
+///     How many parts the executor gets: 8 a worker if not given, 64 where it does not say how many it has; fewer for small
+///     grids.
 /// **axes
 ///     Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
 ///     is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
@@ -213,6 +214,12 @@ impl Sweep {
     #[getter]
     fn units(&self) -> BTreeMap<&str, &'static str> {
         self.grid.coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
+    }
+
+    /// Sweeps are the same if they are of the same mechanism and were asked for the same, on any number of threads.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.of.get() == other.of.get()
+            && (&self.grid, &self.asked, self.modes) == (&other.grid, &other.asked, other.modes)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

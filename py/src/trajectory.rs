@@ -7,7 +7,7 @@ use crate::html::{self, digits};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::Pickled;
-use crate::pickle::{attribute, attributes, frozen, pickled};
+use crate::pickle::{attribute, attributes, equal, frozen, pickled};
 use crate::rows::{Rows, no_memory};
 use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -106,8 +106,8 @@ struct Source {
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
-#[pyclass(frozen, get_all, eq, from_py_object, module = "opm_kinematics")]
-#[derive(Clone, PartialEq)]
+#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
+#[derive(Clone)]
 pub struct Violation {
     /// ``"reach"``, ``"limit"`` or ``"singularity"``.
     kind: String,
@@ -430,6 +430,11 @@ impl Violation {
 
 #[pymethods]
 impl Trajectory {
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, Self>) -> PyResult<bool> {
+        let [of, same] = [slf, other].map(|one| one.get().source.manipulator.get());
+        Ok(of == same && equal(slf.as_any(), other.as_any(), &ATTRIBUTES)?)
+    }
+
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {

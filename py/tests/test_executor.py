@@ -5,9 +5,10 @@ import pickle
 import signal
 import threading
 import time
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import opm_kinematics as opm
@@ -100,7 +101,7 @@ class Doomed(ProcessPoolExecutor):
 
     def submit(self, fn, /, *args, **kwargs):
         future = super().submit(fn, *args, **kwargs)
-        if args[2][0] == 20:
+        if args[2][0] == 10:
             os.kill(next(iter(self._processes)), signal.SIGKILL)
         return future
 
@@ -119,6 +120,38 @@ def test_process_pools_one_of_which_breaks(manipulator, alone):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         np.testing.assert_array_equal(found.points(executor=pool), alone.points())
         np.testing.assert_array_equal(found.mask(executor=pool), alone.mask())
+
+
+class Threads(ThreadPoolExecutor):
+    """The standard library's, which counts its calls."""
+
+    calls = 0
+
+    def submit(self, fn, /, *args, **kwargs):
+        self.calls += 1
+        return super().submit(fn, *args, **kwargs)
+
+
+class Cluster(Here):
+    """As Dask's executor tells how many threads its workers have: none at first, where they are still to come."""
+
+    def __init__(self, *threads):
+        super().__init__([])
+        self._client = SimpleNamespace(nthreads=lambda: {f"tcp://{number}": count for number, count in enumerate(threads)})
+
+
+def test_parts_follow_the_number_of_workers(manipulator):
+    grid = GRID | {"x": (-0.25, 0.25, 301)}
+    alone = opm.sweep(manipulator, threads=1, **grid)
+    most = -(-alone.poses // 2**15)
+    assert most > 96
+    pools = [(Threads(1), 8), (Threads(3), 24), (Threads(64), most), (Here([]), 64), (Cluster(), 64), (Cluster(2, 2), 64), (Cluster(8, 4), 96)]
+    for pool, parts in pools:
+        with pool:
+            assert opm.sweep(manipulator, threads=1, executor=pool, **grid).count == alone.count
+            assert pool.calls == parts
+            opm.sweep(manipulator, threads=1, executor=pool, shards=5, **grid)
+            assert pool.calls == parts + 5
 
 
 class Slow:
@@ -157,13 +190,15 @@ class Killing(Executor):
 
 def test_a_dask_cluster_of_which_a_worker_is_killed(alone, tmp_path: Path):
     distributed = pytest.importorskip("distributed")
-    from opm_kinematics._executor import run
+    from opm_kinematics._executor import Workers, run
 
     parts = 24
     with (
         distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
+        # Two workers, which may become more.
+        assert Workers(client.get_executor(pure=False)).shards() == 64
         executor = Killing(client, after=4)
         counted = run(executor, Slow(alone, tmp_path), "_count", [(number, parts) for number in range(1, parts + 1)])
     here = [alone._count(number, parts) for number in range(1, parts + 1)]

@@ -263,6 +263,12 @@ def test_poses_are_displacements(manipulator, poses):
     lifted = np.eye(4)
     lifted[2, 3] = 0.1  # the platform's point stays in the plane
     assert np.isnan(manipulator.locate([lifted])).all()
+    nearest = manipulator.nearest([lifted, *found[:2]])
+    np.testing.assert_allclose(nearest.translation, [[0, 0, 0.1], [0, 0, 0], [0, 0, 0]], atol=1e-9)
+    np.testing.assert_allclose(nearest.rotation, 0, atol=1e-9)
+    np.testing.assert_allclose(manipulator.transform(nearest.poses), [np.eye(4), *found[:2]], atol=1e-8)
+    np.testing.assert_array_equal(nearest.poses[1:], manipulator.locate(found[:2]))
+    assert repr(nearest) == "<Nearest poses to 3 displacements: 1 outside the motion>"
     for wrong in (2 * np.eye(4), np.diag([1.0, 1, -1, 1]), np.full((4, 4), np.nan)):
         with pytest.raises(opm.OpmError, match=r"transforms\[1\] is no displacement"):
             manipulator.locate([np.eye(4), wrong])

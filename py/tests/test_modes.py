@@ -105,6 +105,12 @@ def test_what_notebooks_show(manipulator, poses):
     swept = opm.sweep(manipulator, x=(-0.1, 0.1, 5))
     assert "of 5 poses reachable" in swept._repr_html_() and "theta11" in swept._repr_html_()
     assert "<td>" in opm.sweep(manipulator, x=9.0)._repr_html_()
+    measured = opm.measure(manipulator, over={"x": (-0.3, 0.3), "y": (-0.25, 0.25)}, tolerance=0.05)
+    html = measured._repr_html_()
+    # A head and four amounts, a head and five coordinates.
+    assert html.count("<tr>") == 11 and f"{measured.boxes} boxes, until tolerance" in html
+    assert f"<tr><td>upper</td><td>{measured.upper:.6g}</td><td>m^2</td><td>{100 * measured.upper / 0.3:.4f}%</td></tr>" in html
+    assert "<tr><td>y</td><td>-0.25</td><td>0.25</td></tr>" in html
     motion = manipulator.velocity(poses, np.ones((1, 5)))
     assert repr(motion) == f"<Motion at 2000 poses: {motion.reachable.sum()} reachable, {motion.regular.sum()} regular>"
 

@@ -30,6 +30,7 @@ def objects(manipulator):
         m.inverse(np.zeros((3, 5)), mode="all"),
         m.velocity(home, home),
         m.singularity(home),
+        m.nearest(m.transform(home)),
         m.forward(solutions.joints[:, m.actuated])[0][0],
         m.solids()[0],
         m.task_coordinates[0],
@@ -83,6 +84,51 @@ def test_everything_is_the_same_after_pickling(objects, protocol):
         again = pickle.loads(pickle.dumps(thing, protocol))
         assert repr(again) == repr(thing)
         same(again, thing)
+
+
+def test_results_are_equal_where_their_values_are(objects):
+    for number, thing in enumerate(objects):
+        again = pickle.loads(pickle.dumps(thing))
+        assert again is not thing and again == thing and (again != thing) is False
+        for other in [*objects[:number], *objects[number + 1 :], None, repr(thing), 1.0]:
+            assert (thing == other) is False and thing != other
+
+
+def test_results_that_differ_in_one_value_are_not_equal(manipulator):
+    m, poses = manipulator, np.array([[0.0, 0, 0, 0.3, 0], [9, 0, 0, 0.3, 0]])
+    lifted = m.transform(poses)
+    lifted[1, 2, 3] += 1e-9
+    other, axes = m.with_parameters(a2=0.055), {"x": (-0.1, 0.1, 5), "y": (-0.1, 0.1, 5)}
+    bennett = opm.examples.bennett()
+    waypoints = lambda end: [[0, 0, 0, 0.2, 0], [0.1, 0, 0, 0.2, 0], [end, 0, 0, 0.2, 0]]  # noqa: E731
+    followed = lambda m, end=0.0, rate=10: opm.trajectory(m, waypoints(end), times=[0, 1, 2], rate=rate)  # noqa: E731
+    pairs = [
+        # The second pose is out of reach, and NaN.
+        (lambda poses: m.inverse(poses), poses, poses + [[1e-15], [0]]),
+        (lambda poses: m.velocity(poses, np.ones((1, 5))), poses, poses[:1]),
+        (m.singularity, poses, poses[::-1]),
+        (m.nearest, m.transform(poses), lifted),
+        (lambda m: opm.sweep(m, **axes), m, other),
+        (lambda kind: opm.sweep(m, kind=kind, **axes), "reachable", "dexterous"),
+        (lambda x: opm.sweep(m, x=x), (0.0, 0.1, 3), (0.0, 0.1, 4)),
+        (lambda mode: opm.sweep(m, mode=mode, x=0.0), "home", "any"),
+        (lambda most: opm.sweep(m, x=0.0, max_condition=most), 30.0, 31.0),
+        (lambda m: opm.sweep(m, x=(-0.4, 0.4, 21), y=(-0.4, 0.4, 21)).boundary(), m, other),
+        (lambda y: opm.sweep(m, x=(-0.1, 0.1, 5), y=y).conditioning(), 0.0, 0.1),
+        (lambda x: opm.measure(m, over={"x": (0.0, x)}), 0.1, 0.2),
+        (lambda budget: opm.measure(m, over={"x": (-0.3, 0.3), "xi": (0, 0.5)}, tolerance=0.0, budget=budget), 100, 400),
+        (followed, m, other),
+        (lambda rate: followed(m, rate=rate), 10, 20),
+        (lambda end: followed(m, end).violations, 9.0, 8.0),
+        (opm.Linkage.parse, bennett.text, bennett.text + "# a comment\n"),
+    ]
+    for make, given, changed in pairs:
+        assert make(given) == make(given)
+        assert make(given) != make(changed), changed
+    assert opm.sweep(m, threads=1, **axes) == opm.sweep(m, threads=2, **axes)
+    assert hash(bennett) == hash(opm.Linkage.parse(bennett.text, "else"))
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(m.inverse(poses))
 
 
 def test_arrays_of_results_cannot_be_written_to(objects):

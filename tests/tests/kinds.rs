@@ -9,8 +9,8 @@ use opm_core::task::euler;
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
-    Axis, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep, Visits,
-    boundary, components, rings,
+    Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
+    Visits, boundary, rings,
 };
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -184,7 +184,7 @@ fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations(
     println!("{inside} inside, {ties} ties");
     assert!(inside > 100_000 && ties < 20_000);
     // All orientations but three caps: one piece.
-    assert_eq!(components(&set).len(), 1);
+    assert_eq!(Components::new(&set).sizes().len(), 1);
 }
 
 #[test]
@@ -248,15 +248,15 @@ fn random_set(rng: &mut Rng, counts: &[u64], circles: &[bool], share: f64) -> (G
     (GridSet::of(axes.collect(), |number| mask[number as usize]).unwrap(), mask)
 }
 
-/// Sizes of the pieces of a mask by a flood fill, largest first.
-fn flood(mask: &[bool], counts: &[u64], circles: &[bool]) -> Vec<u64> {
+/// The pieces of a mask by a flood fill, largest first; of one size, in the order of their first points.
+fn flood(mask: &[bool], counts: &[u64], circles: &[bool]) -> Vec<Vec<u64>> {
     let mut left = mask.to_vec();
-    let mut sizes = vec![];
+    let mut pieces = vec![];
     for start in 0..mask.len() {
         let mut open = if std::mem::take(&mut left[start]) { vec![start as u64] } else { vec![] };
-        let mut size = 0;
+        let mut piece = vec![];
         while let Some(point) = open.pop() {
-            size += 1;
+            piece.push(point);
             let mut stride = 1;
             for (&count, &circle) in counts.iter().zip(circles) {
                 let number = point / stride % count;
@@ -275,12 +275,13 @@ fn flood(mask: &[bool], counts: &[u64], circles: &[bool]) -> Vec<u64> {
                 stride *= count;
             }
         }
-        if size > 0 {
-            sizes.push(size);
+        if !piece.is_empty() {
+            piece.sort_unstable();
+            pieces.push(piece);
         }
     }
-    sizes.sort_unstable_by(|a, b| b.cmp(a));
-    sizes
+    pieces.sort_by_key(|piece| std::cmp::Reverse(piece.len()));
+    pieces
 }
 
 #[test]
@@ -295,8 +296,15 @@ fn components_are_those_of_a_flood_fill() {
         let share = rng.f64();
         let (set, mask) = random_set(&mut rng, &counts, &circles, share);
         let expected = flood(&mask, &counts, &circles);
-        assert_eq!(components(&set), expected, "round {round}: {counts:?} {circles:?}");
-        assert_eq!(set.count(), expected.iter().sum::<u64>());
+        let components = Components::new(&set);
+        let mut found = vec![vec![]; components.sizes().len()];
+        for (run, number) in components.runs() {
+            found[number as usize].extend(run.from..run.to);
+        }
+        assert_eq!(found, expected, "round {round}: {counts:?} {circles:?}");
+        let sizes: Vec<_> = expected.iter().map(|piece| piece.len() as u64).collect();
+        assert_eq!(components.sizes(), sizes);
+        assert_eq!(set.count(), sizes.iter().sum::<u64>());
         let numbers: Vec<u64> = (0..mask.len() as u64).filter(|&i| mask[i as usize]).collect();
         assert!(set.numbers().eq(numbers));
         many += u32::from(expected.len() > 3);
@@ -419,7 +427,7 @@ fn the_boundary_of_the_helical_mechanism_is_its_polygon() {
         let outlines = boundary(&set).unwrap();
         let [outline] = &outlines[..] else { panic!("{} outlines", outlines.len()) };
         assert_eq!(outline.rings.len(), 1);
-        assert_eq!(components(&set), [set.count()]);
+        assert_eq!(Components::new(&set).sizes(), [set.count()]);
         let step = 1.2 / (count - 1) as f64;
         // Every corner lies within a step of the polygon, and the areas agree to less than that all
         // around it.

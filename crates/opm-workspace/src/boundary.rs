@@ -1,7 +1,7 @@
 //! The boundary of a plane set as closed polylines: marching squares on the points of its grid.
 //!
 //! A line runs half-way between a point that is in and its neighbour that is out. Where two points that
-//! are in meet at a corner alone, they are kept apart, as [`components`](crate::components) does. Where
+//! are in meet at a corner alone, they are kept apart, as [`Components`](crate::Components) are. Where
 //! the set goes up to the edge of the grid, so does the line: what is beyond is not known, and an angle
 //! that comes full circle is cut open there. W. E.
 //! Lorensen, H. E. Cline, *Marching cubes*, SIGGRAPH 1987, in the plane.

@@ -4,12 +4,63 @@
 //! union algorithm*, J. ACM 22, 1975).
 
 use crate::set::{GridSet, SetAxis};
+use crate::sweep::Run;
 
-/// Numbers of points of a set's connected components, the largest first. Two points are neighbours where
-/// they differ by one step along one axis; a step from the last value of an axis that comes full
-/// circle leads to the first.
-pub fn components(set: &GridSet) -> Vec<u64> {
-    let runs: usize = set.span(set.rows().saturating_sub(1)).end;
+/// The connected components of a set, the largest first; of several of one size, the one with the first point.
+/// Two points are neighbours where they differ by one step along one axis; a step from the last value of an axis
+/// that comes full circle leads to the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Components<'a> {
+    set: &'a GridSet,
+    /// Points of each.
+    sizes: Vec<u64>,
+    /// Of each run of the set, the number of its component.
+    of_runs: Vec<u32>,
+}
+
+impl<'a> Components<'a> {
+    /// The components of a set.
+    pub fn new(set: &'a GridSet) -> Self {
+        let mut forest = joined(set);
+        let mut sizes = vec![0; forest.parents.len()];
+        for row in 0..set.rows() {
+            for (number, run) in set.span(row).zip(set.runs(row)) {
+                sizes[forest.root(number)] += run.to - run.from;
+            }
+        }
+        // The root of a component is its first run: a stable sort leaves ties in the order of the points.
+        let mut roots: Vec<usize> = (0..sizes.len()).filter(|&run| sizes[run] > 0).collect();
+        roots.sort_by_key(|&root| std::cmp::Reverse(sizes[root]));
+        let mut of_runs = vec![0; sizes.len()];
+        for (number, &root) in roots.iter().enumerate() {
+            of_runs[root] = number as u32;
+        }
+        for run in 0..sizes.len() {
+            of_runs[run] = of_runs[forest.root(run)];
+        }
+        Self { set, sizes: roots.into_iter().map(|root| sizes[root]).collect(), of_runs }
+    }
+
+    /// How many points each has.
+    pub fn sizes(&self) -> &[u64] {
+        &self.sizes
+    }
+
+    /// The runs of the set, by the numbers of their points, ascending; each with the number of its component.
+    pub fn runs(&self) -> impl Iterator<Item = (Run, u32)> + '_ {
+        (0..self.set.rows()).flat_map(move |row| {
+            let first = row as u64 * self.set.row();
+            let numbered = self.set.runs(row).iter().zip(self.set.span(row));
+            numbered.map(move |(run, number)| {
+                (Run { from: first + run.from, to: first + run.to }, self.of_runs[number])
+            })
+        })
+    }
+}
+
+/// The runs of a set, those of neighbours joined.
+fn joined(set: &GridSet) -> Forest {
+    let runs = set.span(set.rows().saturating_sub(1)).end;
     let mut forest = Forest { parents: (0..runs as u32).collect() };
     let row_axis = set.varying().first().copied().unwrap_or(0);
     for row in 0..set.rows() {
@@ -33,15 +84,7 @@ pub fn components(set: &GridSet) -> Vec<u64> {
             stride *= count;
         }
     }
-    let mut sizes = vec![0; runs];
-    for row in 0..set.rows() {
-        for (number, run) in set.span(row).zip(set.runs(row)) {
-            sizes[forest.root(number)] += run.to - run.from;
-        }
-    }
-    sizes.retain(|&size| size > 0);
-    sizes.sort_unstable_by(|a, b| b.cmp(a));
-    sizes
+    forest
 }
 
 /// Joins the runs of two neighbouring rows that overlap.

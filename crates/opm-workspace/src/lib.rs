@@ -20,7 +20,7 @@ mod sweep;
 mod visits;
 
 pub use boundary::{Outline, Ring, boundary, rings};
-pub use components::components;
+pub use components::Components;
 pub use condition::{ConditionLimit, Conditioned};
 pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};

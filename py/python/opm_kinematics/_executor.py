@@ -9,6 +9,10 @@ from ._native import OpmError
 
 __all__ = ["Workers", "run"]
 
+#: Parts for each worker, so that all have work to the end and little is lost with one; and for workers of an unknown number.
+SHARDS_EACH = 8
+SHARDS = 64
+
 #: How often a part is run again before it is given up.
 RETRIES = 3
 
@@ -48,6 +52,11 @@ class Workers:
         if self._made is not None:
             self._made.shutdown(wait=False, cancel_futures=True)
             self._made = None
+
+    def shards(self) -> int:
+        """How many parts are good for the executor, which is made where it is not yet."""
+        workers = _number_of_workers(self._executor())
+        return SHARDS if workers is None else SHARDS_EACH * workers
 
     def run(
         self,
@@ -163,6 +172,18 @@ def _round(
         for future in futures:
             future.cancel()
     return lost
+
+
+def _number_of_workers(executor: Executor) -> int | None:
+    """How many parts an executor works on at a time, where it tells.
+
+    The pools of the standard library, of loky and of mpi4py have a fixed number of workers. That of a Dask cluster
+    may grow with what it has to do.
+    """
+    number = getattr(executor, "_max_workers", None)
+    if number is None and (client := getattr(executor, "_client", None)) is not None:
+        number = max(sum(client.nthreads().values()), SHARDS // SHARDS_EACH)
+    return number if isinstance(number, int) and number > 0 else None
 
 
 def _work(plan: object, task: str, part: tuple[Any, ...]) -> Any:

@@ -6,9 +6,9 @@ from html import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import Decomposition, Manipulator, Singularity, Solutions, Sweep, Trajectory
+from ._native import Decomposition, Manipulator, Measure, Singularity, Solutions, Sweep, Trajectory
 
-__all__ = ["decomposition", "manipulator", "singularity", "solutions", "sweep", "trajectory"]
+__all__ = ["decomposition", "manipulator", "measure", "singularity", "solutions", "sweep", "trajectory"]
 
 # Rows of a table of results, half of them from its end.
 MOST_ROWS = 10
@@ -32,6 +32,17 @@ def manipulator(found: Manipulator) -> str:
         decomposition(found.decomposition)
         + _table(["task coordinate", "home", "unit"], coordinates)
         + _paragraph("; ".join(part for part in (f"actuated: {actuated}", modes) if part))
+    )
+
+
+def measure(found: Measure) -> str:
+    amounts = {"value": found.value, "lower": found.lower, "upper": found.upper, "whole": found.whole}
+    bounds = ([name, _number(amount), found.units, f"{amount / found.whole:.4%}"] for name, amount in amounts.items())
+    ranges = ([name, *map(_number, ends)] for name, ends in found.over.items())
+    return (
+        _paragraph(f"{_summary(found)}; {found.boxes} boxes, until {found.stop}")
+        + _table(["", "measure", "unit", "share"], bounds)
+        + _table(["over", "min", "max"], ranges)
     )
 
 

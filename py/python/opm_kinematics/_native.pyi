@@ -16,6 +16,7 @@ __all__ = [
     "Manipulator",
     "Measure",
     "Motion",
+    "Nearest",
     "OpmError",
     "Outline",
     "Singularity",
@@ -611,7 +612,28 @@ class Manipulator:
         Returns
         -------
         (n, d) ndarray
-            Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion.
+            Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion:
+            :meth:`nearest` says by how much.
+
+        Raises
+        ------
+        OpmError
+            A matrix that is no rotation and position.
+        """
+    def nearest(self, transforms: ArrayLike, *, threads: int | None = None) -> Nearest:
+        """The poses at which the platform is nearest to there, and what it lacks: for what :meth:`locate` has no pose.
+
+        Parameters
+        ----------
+        transforms : (n, 4, 4) array_like
+            Homogeneous matrices, metres.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. A processor each if not given.
+
+        Returns
+        -------
+        Nearest
+            Nearest by least squares, in which a rotation counts by the mechanism's size.
 
         Raises
         ------
@@ -667,6 +689,20 @@ class Motion:
     @property
     def regular(self) -> NDArray[np.bool_]:
         """(n,): in reach, and every joint has its rate."""
+
+@final
+class Nearest:
+    """The poses of a manipulator's motion that are nearest to displacements of the platform, and what these are off by."""
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(n, d): task coordinates, metres and radians."""
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        """(n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero in the motion."""
+    @property
+    def translation(self) -> NDArray[np.float64]:
+        """(n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero in the motion."""
 
 @final
 class Singularity:
@@ -959,7 +995,20 @@ class Sweep:
         """How many points each connected component has, the largest first.
 
         Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
-        last value next to the first.
+        last value next to the first. :meth:`labels` tells which point is in which.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
+        """
+    def labels(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.int32]:
+        """Which connected component each point belongs to, in the shape of the mask: 0 where the mask is False, 1 in the largest.
+
+        As of ``scipy.ndimage.label``, but for angles that come full circle. Component ``i`` has ``components()[i - 1]`` points;
+        of several of one size the one with the first point comes first.
 
         Parameters
         ----------
@@ -1123,7 +1172,8 @@ def sweep(
         process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
         takes no more work: give a function that makes one, and the shards that are missing go to a new one.
     shards : int, optional
-        How many parts the executor gets: 64 if not given, fewer for small grids.
+        How many parts the executor gets: 8 a worker if not given, 64 where it does not say how many it has; fewer for small
+        grids.
     **axes
         Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
         is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
@@ -1179,7 +1229,7 @@ def measure(
         more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
         executor that a function makes serves all rounds.
     shards : int, optional
-        How many parts of a round the executor gets: 64 if not given, at least 4096 boxes each but for the last.
+        How many parts of a round the executor gets: as for :func:`sweep`, but of at least 4096 boxes each but for the last.
 
     Raises
     ------

@@ -13,7 +13,7 @@ use std::ffi::CString;
 use std::num::NonZeroUsize;
 
 /// What is asked of a grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     pub kind: Kind,
     pub mode: String,

@@ -5,7 +5,7 @@ use crate::arguments;
 use crate::error::wrong;
 use crate::html::digits;
 use crate::parts::Parts;
-use crate::pickle::frozen;
+use crate::pickle::{equal, frozen};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use opm_cli::recording::Kind;
 use opm_workspace::boundary;
@@ -56,6 +56,10 @@ impl Outline {
     #[getter]
     fn holes<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         self.those(py, |area| area < 0.0)
+    }
+
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, Self>) -> PyResult<bool> {
+        equal(slf.as_any(), other.as_any(), &["axes", "at", "area", "rings"])
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Spec)> {

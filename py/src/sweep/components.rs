@@ -2,9 +2,11 @@
 
 use super::Sweep;
 use crate::arguments;
+use crate::error::failed;
 use crate::parts::Parts;
+use crate::rows::no_memory;
 use numpy::{IntoPyArray, PyArray1};
-use opm_workspace::components;
+use opm_workspace::Components;
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
@@ -13,7 +15,7 @@ impl Sweep {
     /// How many points each connected component has, the largest first.
     ///
     /// Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
-    /// last value next to the first.
+    /// last value next to the first. :meth:`labels` tells which point is in which.
     ///
     /// Parameters
     /// ----------
@@ -28,6 +30,40 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let set = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
-        Ok(slf.py().detach(|| components(&set)).into_pyarray(slf.py()))
+        let sizes = slf.py().detach(|| Components::new(&set).sizes().to_vec());
+        Ok(sizes.into_pyarray(slf.py()))
+    }
+
+    /// Which connected component each point belongs to, in the shape of the mask: 0 where the mask is False, 1 in the largest.
+    ///
+    /// As of ``scipy.ndimage.label``, but for angles that come full circle. Component ``i`` has ``components()[i - 1]`` points;
+    /// of several of one size the one with the first point comes first.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn labels<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let set = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
+        let points = usize::try_from(set.points()).map_err(|error| failed(&error))?;
+        let mut labels = Vec::new();
+        let short = |_| no_memory(format_args!("a label for each of {points} points"));
+        labels.try_reserve_exact(points).map_err(short)?;
+        py.detach(|| {
+            labels.resize(points, 0);
+            for (run, number) in Components::new(&set).runs() {
+                // A set has 2^27 runs at most, and no more components.
+                labels[run.from as usize..run.to as usize].fill(number as i32 + 1);
+            }
+        });
+        slf.get().shaped(&labels.into_pyarray(py))
     }
 }

@@ -3,7 +3,7 @@
 use super::Sweep;
 use super::asked::{Asked, named};
 use crate::error::failed;
-use crate::interrupt;
+use crate::interrupt::{self, few};
 use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
 use opm_workspace::{Axis, Count, Progress, Shard};
@@ -27,9 +27,11 @@ pub fn spread<'py>(
     task: &str,
     fold: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let count = parts.count(plan.get().grid.poses(), LEAST_PART);
-    let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
-    parts.session(plan.py(), |workers| workers.call_method1("run", (plan, task, numbers, fold)))
+    parts.session(plan.py(), |workers| {
+        let count = parts.count(workers, plan.get().grid.poses(), LEAST_PART)?;
+        let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
+        workers.call_method1("run", (plan, task, numbers, fold))
+    })
 }
 
 pub fn count_of((poses, reachable, imaginary): Counted) -> Count {
@@ -75,8 +77,8 @@ impl Sweep {
     pub fn counted(&self, py: Python<'_>, shard: Shard) -> PyResult<Count> {
         let progress = Progress::default();
         let sweep = self.swept(shard);
-        let count =
-            interrupt::run(py, self.threads, || sweep.count(&progress), || progress.cancel())?;
+        let threads = few(self.threads, sweep.pieces());
+        let count = interrupt::run(py, threads, || sweep.count(&progress), || progress.cancel())?;
         count.map_err(|error| failed(&error))
     }
 }
