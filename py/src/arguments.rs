@@ -74,6 +74,17 @@ pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     names.map(Some).ok_or_else(told)
 }
 
+/// `axes` of a cloud: three names, or the one of a point.
+pub fn cloud_axes(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    let names = given.extract().map(|name| vec![name]).or_else(|_| given.extract());
+    let told =
+        |_: PyErr| wrong(format!("axes is {}, expected three names or \"tip\"", shown(given)));
+    names.map(Some).map_err(told)
+}
+
 /// A path, as Python's own functions take it.
 pub fn path(given: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     given.py().import("os")?.call_method1("fsdecode", (given,))?.extract()

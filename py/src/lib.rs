@@ -8,6 +8,7 @@
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
 mod arguments;
+mod columns;
 mod command;
 mod decomposition;
 mod error;
@@ -22,7 +23,6 @@ mod pickle;
 mod place;
 mod rows;
 mod screws;
-mod shape;
 mod solids;
 mod solutions;
 mod sweep;
@@ -48,13 +48,11 @@ mod _native {
     #[pymodule_export]
     use crate::measure::{Measure, measure};
     #[pymodule_export]
-    use crate::shape::{Conditioning, Outline};
-    #[pymodule_export]
     use crate::solids::Solid;
     #[pymodule_export]
     use crate::solutions::Solutions;
     #[pymodule_export]
-    use crate::sweep::{Sweep, sweep};
+    use crate::sweep::{Conditioning, Outline, Sweep, sweep};
     #[pymodule_export]
     use crate::trajectory::{Trajectory, Violation, trajectory};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 //! What inverse kinematics finds for many poses, as arrays.
 
+use crate::columns::columns;
 use crate::error::failed;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
@@ -8,9 +9,8 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use opm_core::joint::Quantity;
 use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::{Answers, Batch, Manipulator, Mode, RowError};
-use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyEllipsis};
+use pyo3::types::PyBool;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -241,19 +241,7 @@ pub fn units(manipulator: &Manipulator) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// The entries of one name, along the last axis of whichever table has it: a view.
-pub fn column<'py>(
-    tables: [(&[String], &Bound<'py, PyAny>); 2],
-    name: &str,
-) -> PyResult<Bound<'py, PyAny>> {
-    for (names, table) in tables {
-        if let Some(number) = names.iter().position(|known| known == name) {
-            return table.get_item((PyEllipsis::get(table.py()), number));
-        }
-    }
-    let known = tables.map(|(names, _)| names.join(", ")).join(", ");
-    Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
-}
+columns!(Solutions);
 
 pickled!(Solutions {
     joints,
@@ -270,19 +258,6 @@ pickled!(Solutions {
 
 #[pymethods]
 impl Solutions {
-    fn __len__(&self) -> usize {
-        self.rows
-    }
-
-    /// The values of one joint or imaginary joint, (n,): a view.
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let tables = [
-            (&self.joint_names[..], self.joints.bind(py).as_any()),
-            (&self.imaginary_names[..], self.imaginary.bind(py).as_any()),
-        ];
-        column(tables, name)
-    }
-
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (poses, mode) = (self.rows, &self.mode);
         let [reachable, within] = [&self.reachable, &self.within_limits]

@@ -1,6 +1,7 @@
 //! Motions of the platform as the joints follow them.
 
 use crate::arguments;
+use crate::columns::columns;
 use crate::error::{failed, wrong};
 use crate::html::{self, digits};
 use crate::interrupt;
@@ -8,7 +9,7 @@ use crate::manipulator::Manipulator;
 use crate::parts::Pickled;
 use crate::pickle::{attribute, attributes, frozen, pickled};
 use crate::rows::{Rows, no_memory};
-use crate::solutions::{column, units};
+use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_cli::recording::{Attached, Followed, record_motion};
 use opm_core::manipulator::{self as core, Mode};
@@ -389,6 +390,8 @@ pickled!(Violation {
     message,
 });
 
+columns!(Trajectory);
+
 /// What of a trajectory is as Python sees it.
 const ATTRIBUTES: [&str; 21] = [
     "times",
@@ -501,19 +504,6 @@ impl Trajectory {
         let work = || record_motion(&followed, &path, cancelled);
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
             .map_err(wrong)
-    }
-
-    fn __len__(&self) -> usize {
-        self.rows
-    }
-
-    /// The values of one joint or imaginary joint, (n,): a view.
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let tables = [
-            (&self.joint_names[..], self.joints.bind(py).as_any()),
-            (&self.imaginary_names[..], self.imaginary.bind(py).as_any()),
-        ];
-        column(tables, name)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -129,6 +129,9 @@ def test_ranges_are_those_of_the_program(manipulator):
             swept.mask(shards=shards)
     with pytest.raises(opm.OpmError, match="^scalars is 'theta11', expected a sequence of names"):
         swept.write("a.mcap", scalars="theta11")
+    for write in (swept.write, swept.write_mcap):
+        with pytest.raises(opm.OpmError, match="^axes is 5, expected three names or \"tip\""):
+            write("a.mcap", axes=5)
     with pytest.raises(opm.OpmError, match=re.escape("pose has shape (3,), expected (5,): x, y, zeta, xi, psi")):
         manipulator.solids([0, 0, 0])
     with pytest.raises(opm.OpmError, match=re.escape("times has shape (1, 3), expected (n,) numbers")):

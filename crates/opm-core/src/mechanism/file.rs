@@ -203,10 +203,18 @@ pub(super) fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
     groups.into_iter().flat_map(str::chars).map(branch).collect()
 }
 
-/// Reports what keeps a family from assembling, each problem at the parameter to blame. A value
-/// that could not be read, and so is no number, has its problem already.
-pub(super) fn report_problems(error: &AssemblyError, root: &Table<'_>, legs: &[Table<'_>]) {
-    for problem in &error.problems {
+/// A family that was read, and what it assembles to. What keeps it from assembling is reported, each problem at
+/// the parameter to blame. A value that could not be read, and so is no number, has its problem already.
+pub(super) fn assembled(
+    family: Family,
+    root: &Table<'_>,
+    legs: &[Table<'_>],
+) -> Option<(Family, Mechanism)> {
+    let problems = match family.assemble() {
+        Ok(mechanism) => return Some((family, mechanism)),
+        Err(AssemblyError { problems }) => problems,
+    };
+    for problem in problems {
         let table = problem.leg.and_then(|leg| legs.get(leg)).unwrap_or(root);
         let value = problem.parameter.and_then(|parameter| table.get(parameter));
         let at = value.map_or(table.at, |value| value.at);
@@ -215,6 +223,7 @@ pub(super) fn report_problems(error: &AssemblyError, root: &Table<'_>, legs: &[T
             root.reader.report(at, problem.describe(root.reader.units()));
         }
     }
+    None
 }
 
 #[cfg(test)]

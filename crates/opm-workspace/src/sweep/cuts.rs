@@ -4,7 +4,7 @@
 //! interval. The loops are over rows, branch-free, and compiled for the processor at hand.
 
 use super::runs::Run;
-use opm_core::chain::region::{Convex, Precision, Region, Section, common};
+use opm_core::chain::region::{self, Convex, Precision, Region, Section};
 use pulp::{Simd, WithSimd};
 
 /// Rows that are cut together.
@@ -36,197 +36,264 @@ impl RowRegion {
     }
 }
 
-/// The whole numbers of a window of some rows that lie in one region: `first..=last` without
-/// `hole_first..=hole_last`.
+/// The whole numbers of a window that lie in every one of some regions, row by row.
 #[derive(Clone, Debug)]
 pub struct Cuts {
-    first: [f64; ROWS],
-    last: [f64; ROWS],
-    hole_first: [f64; ROWS],
-    hole_last: [f64; ROWS],
-    /// The region has a hole; without one `hole_first` and `hole_last` are not to be read.
-    hole: bool,
+    /// What the regions without their holes have in common.
+    common: Intervals,
+    /// What is missing of it.
+    holes: Vec<Hole>,
+    /// Not zero for rows of which an answer is too close to call; as wide as the numbers that decide it,
+    /// so that the loop over rows is vectorised without packing.
+    doubts: [u64; ROWS],
+    /// Numbers of poses; negative in rows that are to be asked for in another way.
+    counts: [f64; ROWS],
+    total: u64,
+    unsure: bool,
+    /// What some of the regions have in common, with one more by turns: a loop that writes over what it
+    /// reads is compiled to stores under a mask, which are slow.
+    narrowed: [Intervals; 2],
 }
 
-/// Not zero for rows of which an answer is too close to call; as wide as the numbers that decide it, so that
-/// the loop over rows is vectorised without packing.
-pub type Doubts = [u64; ROWS];
+/// An interval a row; empty where `last < first`.
+#[derive(Clone, Debug)]
+struct Intervals {
+    first: [f64; ROWS],
+    last: [f64; ROWS],
+}
+
+#[derive(Clone, Debug)]
+struct Hole {
+    rows: Intervals,
+    /// In any row is something missing.
+    met: bool,
+}
 
 impl Cuts {
     pub fn new() -> Self {
-        let none = [0.0; ROWS];
-        Self { first: none, last: none, hole_first: none, hole_last: none, hole: false }
+        Self {
+            common: Intervals::NONE,
+            holes: Vec::new(),
+            doubts: [0; ROWS],
+            counts: [0.0; ROWS],
+            total: 0,
+            unsure: false,
+            narrowed: [Intervals::NONE; 2],
+        }
     }
 
-    /// The poses of row number `row` that lie in the region, in order: at most two runs.
+    /// Poses of all rows that are counted.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// There are rows that are not counted.
+    pub fn unsure(&self) -> bool {
+        self.unsure
+    }
+
+    /// Row number `row` is counted: it is not in doubt, and no more than two holes take of it.
+    pub fn is_counted(&self, row: usize) -> bool {
+        self.counts[row] >= 0.0
+    }
+
+    /// An answer in row number `row` is too close to call.
+    pub fn in_doubt(&self, row: usize) -> bool {
+        self.doubts[row] != 0
+    }
+
+    /// The poses of row number `row`, in order.
     pub fn runs(&self, row: usize) -> impl Iterator<Item = Run> {
-        let run = |first: f64, last: f64| {
-            let (from, to) = (first as u64, (last + 1.0) as u64);
-            (from < to).then_some(Run { from, to })
+        let holes = move || {
+            let ends = self.holes.iter().map(move |hole| hole.rows.ends(row));
+            ends.filter(|[first, last]| first <= last)
         };
-        let (first, last) = (self.first[row], self.last[row]);
-        let [start, end] = [self.hole_first[row], self.hole_last[row]];
-        let pierced = self.hole && start.max(first) <= end.min(last);
-        let runs = if pierced {
-            [run(first, start - 1.0), run(end + 1.0, last)]
-        } else {
-            [run(first, last), None]
-        };
-        runs.into_iter().flatten()
+        let [mut next, last] = self.common.ends(row);
+        std::iter::from_fn(move || {
+            while let Some([_, end]) = holes().find(|&[start, end]| start <= next && next <= end) {
+                next = end + 1.0;
+            }
+            if next > last {
+                return None;
+            }
+            let from = next;
+            let starts = holes().map(|[start, _]| start).filter(|&start| start > from);
+            next = starts.fold(last + 1.0, f64::min);
+            Some(Run { from: from as u64, to: next as u64 })
+        })
     }
 }
 
-/// Cuts a region by a window of the rows at some second coordinates.
-pub struct Cut<'a> {
-    pub region: &'a RowRegion,
+impl Intervals {
+    const NONE: Self = Self { first: [0.0; ROWS], last: [-1.0; ROWS] };
+
+    fn ends(&self, row: usize) -> [f64; 2] {
+        [self.first[row], self.last[row]]
+    }
+}
+
+/// Cuts regions by a window of the rows at some second coordinates, and counts what they have in common.
+pub struct Cut<'a, R> {
+    pub regions: R,
     pub rows: &'a [f64],
     pub window: Run,
     pub cuts: &'a mut Cuts,
-    /// Added to.
-    pub doubts: &'a mut Doubts,
 }
 
-impl WithSimd for Cut<'_> {
+impl<'a, R: Iterator<Item = &'a RowRegion> + Clone> WithSimd for Cut<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { region, rows, window, cuts, doubts } = self;
-        let RowRegion { region: Region { whole, hole }, precision, tie } = region;
-        let Cuts { first, last, hole_first, hole_last, .. } = cuts;
-        let knife = Knife { rows, window, precision, tie: *tie };
-        knife.cut(whole, &mut Ends { first, last, doubts });
-        if let Some(hole) = hole {
-            knife.cut(hole, &mut Ends { first: hole_first, last: hole_last, doubts });
-        }
-        cuts.hole = hole.is_some();
-    }
-}
-
-/// Numbers of poses.
-#[derive(Clone, Debug)]
-pub struct Counts {
-    /// Of each row, negative where it is to be asked for in another way.
-    pub rows: [f64; ROWS],
-    /// Of all rows whose number is not negative.
-    pub total: u64,
-    /// The number of some row is negative.
-    pub unsure: bool,
-}
-
-impl Default for Counts {
-    fn default() -> Self {
-        Self { rows: [0.0; ROWS], total: 0, unsure: false }
-    }
-}
-
-/// Counts the poses of each row that lie in all regions, one a leg: negative for doubtful rows, and
-/// where more than two holes take of the same row, which [`Cuts::runs`] can tell. Holes are cut to
-/// what the regions without them have in common.
-pub struct Common<'a> {
-    pub legs: &'a mut [Cuts],
-    /// Number of rows.
-    pub rows: usize,
-    pub doubts: &'a Doubts,
-    pub counts: &'a mut Counts,
-}
-
-impl WithSimd for Common<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        const LANES: usize = 8;
-        let Self { legs, rows, doubts, counts } = self;
-        let count = rows.min(ROWS);
-        let rows = &mut counts.rows;
-        let (mut first, mut last) = (legs[0].first, legs[0].last);
-        for cuts in &legs[1..] {
-            for i in 0..count {
-                first[i] = larger(first[i], cuts.first[i]);
-                last[i] = smaller(last[i], cuts.last[i]);
-            }
-        }
-        for i in 0..count {
-            rows[i] = larger(last[i] - first[i] + 1.0, 0.0);
-        }
-        let mut holes = [0.0; ROWS];
-        for cuts in legs.iter_mut().filter(|cuts| cuts.hole) {
-            for i in 0..count {
-                cuts.hole_first[i] = larger(first[i], cuts.hole_first[i]);
-                cuts.hole_last[i] = smaller(last[i], cuts.hole_last[i]);
-                let missing = larger(cuts.hole_last[i] - cuts.hole_first[i] + 1.0, 0.0);
-                rows[i] -= missing;
-                holes[i] += if missing > 0.0 { 1.0 } else { 0.0 };
-            }
-        }
-        for (number, a) in legs.iter().enumerate() {
-            for b in legs[..number].iter().filter(|b| a.hole && b.hole) {
-                // What two holes both take was taken twice.
-                for (i, row) in rows.iter_mut().enumerate().take(count) {
-                    let first = larger(a.hole_first[i], b.hole_first[i]);
-                    *row += larger(smaller(a.hole_last[i], b.hole_last[i]) - first + 1.0, 0.0);
-                }
-            }
-        }
-        for i in 0..count {
-            rows[i] = if (holes[i] > 2.0) | (doubts[i] != 0) { -1.0 } else { rows[i] };
-        }
-        // Whole numbers: their sum does not depend on the order, which the compiler cannot know.
-        let (mut sums, mut least) = ([0.0; LANES], [0.0; LANES]);
-        for part in rows.as_chunks::<LANES>().0 {
-            for lane in 0..LANES {
-                sums[lane] += larger(part[lane], 0.0);
-                least[lane] = smaller(part[lane], least[lane]);
-            }
-        }
-        counts.total = sums.iter().sum::<f64>() as u64;
-        counts.unsure = least.iter().any(|&lane| lane < 0.0);
-    }
-}
-
-/// What cuts, and where.
-struct Knife<'a> {
-    rows: &'a [f64],
-    window: Run,
-    precision: &'a Precision,
-    tie: f64,
-}
-
-/// Where the sections go.
-struct Ends<'a> {
-    first: &'a mut [f64; ROWS],
-    last: &'a mut [f64; ROWS],
-    doubts: &'a mut Doubts,
-}
-
-impl Knife<'_> {
-    #[inline(always)]
-    fn cut(&self, set: &Convex, ends: &mut Ends<'_>) {
-        match set {
-            Convex::Bands(bands) => self.fill(ends, |y| common(bands, y, self.precision)),
-            Convex::Disc(disc) => self.fill(ends, |y| disc.section(y, self.precision)),
-            Convex::Stadium(stadium) => self.fill(ends, |y| stadium.section(y, self.precision)),
-        }
-    }
-
-    #[inline(always)]
-    fn fill(&self, ends: &mut Ends<'_>, section: impl Fn(f64) -> Section) {
+        let Self { regions, rows, window, cuts } = self;
+        let Cuts { common, holes, doubts, counts, narrowed: [now, next], .. } = cuts;
+        let rows = &rows[..rows.len().min(ROWS)];
+        let (doubts, counts) = (&mut doubts[..rows.len()], &mut counts[..rows.len()]);
+        let (mut now, mut next) = (now, next);
         // Half-way to the next pose on both sides: ends that are farther away are no ties.
-        let (low, high) = (self.window.from as f64 - 0.5, self.window.to as f64 - 0.5);
-        let within = |end: f64| smaller(larger(end, low), high);
-        let near = |end: f64| (end - end.round_ties_even()).abs() <= self.tie;
-        let count = self.rows.len().min(ROWS);
-        let (rows, first) = (&self.rows[..count], &mut ends.first[..count]);
-        let (last, doubts) = (&mut ends.last[..count], &mut ends.doubts[..count]);
-        for i in 0..count {
-            let Section { from, to, sure } = section(rows[i]);
-            let (from, to) = (within(from), within(to));
-            first[i] = from.ceil();
-            last[i] = to.floor();
-            doubts[i] |= u64::from(!sure) | u64::from(near(from)) | u64::from(near(to));
+        now.first.fill(window.from as f64 - 0.5);
+        now.last.fill(window.to as f64 - 0.5);
+        doubts.fill(0);
+        let mut tie = TIE;
+        for RowRegion { region, precision, tie: own } in regions.clone() {
+            narrow(&region.whole, precision, rows, now, next, doubts);
+            (now, next) = (next, now);
+            tie = larger(tie, *own);
+        }
+        let mut number = 0;
+        for RowRegion { region, precision, .. } in regions {
+            let Some(hole) = &region.hole else { continue };
+            if number == holes.len() {
+                holes.push(Hole { rows: Intervals::NONE, met: false });
+            }
+            // Cut to what is left of the row, since what is beyond is no tie either.
+            narrow(hole, precision, rows, now, next, doubts);
+            round(next, &mut holes[number].rows, tie, doubts);
+            number += 1;
+        }
+        holes.truncate(number);
+        round(now, common, tie, doubts);
+        count(common, counts);
+        count_holes(holes, counts);
+        for (count, &doubt) in counts.iter_mut().zip(&*doubts) {
+            *count -= if doubt != 0 { f64::INFINITY } else { 0.0 };
+        }
+        (cuts.total, cuts.unsure) = sum(counts);
+    }
+}
+
+/// Leaves of each row what is in a convex set.
+#[inline(always)]
+fn narrow(
+    set: &Convex,
+    precision: &Precision,
+    rows: &[f64],
+    from: &Intervals,
+    to: &mut Intervals,
+    doubts: &mut [u64],
+) {
+    match set {
+        Convex::Bands(bands) => {
+            cut(rows, from, to, doubts, |y| region::common(bands, y, precision))
+        }
+        Convex::Disc(disc) => cut(rows, from, to, doubts, |y| disc.section(y, precision)),
+        Convex::Stadium(stadium) => {
+            cut(rows, from, to, doubts, |y| stadium.section(y, precision));
         }
     }
+}
+
+#[inline(always)]
+fn cut(
+    rows: &[f64],
+    from: &Intervals,
+    to: &mut Intervals,
+    doubts: &mut [u64],
+    section: impl Fn(f64) -> Section,
+) {
+    let count = rows.len();
+    let doubts = &mut doubts[..count];
+    for i in 0..count.min(ROWS) {
+        let cut = section(rows[i]);
+        to.first[i] = larger(from.first[i], cut.from);
+        to.last[i] = smaller(from.last[i], cut.to);
+        doubts[i] |= u64::from(!cut.sure);
+    }
+}
+
+/// The first and last whole numbers in intervals.
+#[inline(always)]
+fn round(from: &Intervals, to: &mut Intervals, tie: f64, doubts: &mut [u64]) {
+    let near = |end: f64| (end - end.round_ties_even()).abs() <= tie;
+    for i in 0..doubts.len().min(ROWS) {
+        let (first, last) = (from.first[i], from.last[i]);
+        doubts[i] |= u64::from(near(first)) | u64::from(near(last));
+        to.first[i] = first.ceil();
+        to.last[i] = last.floor();
+    }
+}
+
+#[inline(always)]
+fn count(rows: &Intervals, counts: &mut [f64]) {
+    for i in 0..counts.len().min(ROWS) {
+        counts[i] = larger(rows.last[i] - rows.first[i] + 1.0, 0.0);
+    }
+}
+
+/// Takes from the poses of each row what holes leave out of it: what two of them both leave out was taken
+/// twice, and with more than two in a row the number becomes negative.
+#[inline(always)]
+fn count_holes(holes: &mut [Hole], counts: &mut [f64]) {
+    let rows = counts.len().min(ROWS);
+    let mut number = 0;
+    for Hole { rows: Intervals { first, last }, met } in holes.iter_mut() {
+        let mut any = 0;
+        for i in 0..rows {
+            let missing = larger(last[i] - first[i] + 1.0, 0.0);
+            counts[i] -= missing;
+            any |= missing.to_bits();
+        }
+        *met = any != 0;
+        number += usize::from(*met);
+    }
+    let met = || holes.iter().filter(|hole| hole.met).map(|hole| &hole.rows);
+    for (number, a) in met().enumerate() {
+        for b in met().take(number) {
+            for i in 0..rows {
+                let (first, last) = (larger(a.first[i], b.first[i]), smaller(a.last[i], b.last[i]));
+                counts[i] += larger(last - first + 1.0, 0.0);
+            }
+        }
+    }
+    if number > 2 {
+        let mut in_row = [0.0; ROWS];
+        for hole in met() {
+            for i in 0..rows {
+                in_row[i] += if hole.first[i] <= hole.last[i] { 1.0 } else { 0.0 };
+            }
+        }
+        for i in 0..rows {
+            counts[i] -= if in_row[i] > 2.0 { f64::INFINITY } else { 0.0 };
+        }
+    }
+}
+
+/// The sum of the numbers that are not negative, and whether any is. Whole numbers: their sum does not
+/// depend on the order, which the compiler cannot know.
+#[inline(always)]
+fn sum(counts: &[f64]) -> (u64, bool) {
+    const LANES: usize = 8;
+    let (mut sums, mut least) = ([0.0; LANES], [0.0; LANES]);
+    let mut add = |lane: usize, count: f64| {
+        sums[lane] += larger(count, 0.0);
+        least[lane] = smaller(count, least[lane]);
+    };
+    let (parts, rest) = counts.as_chunks::<LANES>();
+    for part in parts {
+        (0..LANES).for_each(|lane| add(lane, part[lane]));
+    }
+    rest.iter().enumerate().for_each(|(lane, &count)| add(lane, count));
+    (sums.iter().sum::<f64>() as u64, least.iter().any(|&lane| lane < 0.0))
 }
 
 #[inline(always)]

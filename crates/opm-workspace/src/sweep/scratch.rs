@@ -1,6 +1,6 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
-use super::cuts::{Common, Counts, Cut, Cuts, ROWS, RowRegion};
+use super::cuts::{Cut, Cuts, ROWS, RowRegion};
 use super::pieces::Changes;
 use super::runs::{self, Run};
 use super::{Count, Hits, Sweep};
@@ -47,7 +47,7 @@ pub struct Scratch<'a> {
     row_step: f64,
     /// Second coordinates of the rows that are being decided, in steps.
     rows: Vec<f64>,
-    /// A cut a way of every leg, in their order.
+    /// Of all legs together where they are `plain`, else of each way of every leg, in their order.
     cuts: Vec<Cuts>,
     /// All coordinates but the first.
     others: Vec<f64>,
@@ -220,34 +220,37 @@ impl<'a> Scratch<'a> {
         // To within the rounding that the cuts allow for.
         let height = |row: u64| self.first_row + self.row_step * row as f64;
         self.rows.extend(rows.clone().map(height));
-        let mut doubts = [0; ROWS];
-        let mut counts = Counts::default();
-        let plain = self.plain && hit.is_none() && self.limit.is_none();
         let ways = self.legs.iter().map(Vec::len).sum();
         self.cuts.resize_with(ways, Cuts::new);
         self.followed.resize_with(ways, Vec::new);
-        let (heights, doubts) = (&self.rows[..], &mut doubts);
-        for (cuts, way) in self.cuts.iter_mut().zip(self.legs.iter().flatten()) {
-            if let Some(region) = &way.region {
-                self.arch.dispatch(Cut { cuts, region, rows: heights, window, doubts });
+        let heights = &self.rows[..];
+        let all = self.legs.iter().flatten();
+        let mut reachable = 0;
+        // Nobody has to know which poses these are.
+        let counted = self.plain && hit.is_none() && self.limit.is_none();
+        if self.plain {
+            let (regions, cuts) = (all.filter_map(|way| way.region.as_ref()), &mut self.cuts[0]);
+            self.arch.dispatch(Cut { regions, rows: heights, window, cuts });
+            if counted {
+                reachable = cuts.total();
+            }
+            if counted && !cuts.unsure() {
+                rows.end = rows.start;
+            }
+        } else {
+            for (cuts, way) in self.cuts.iter_mut().zip(all) {
+                let regions = way.region.iter();
+                self.arch.dispatch(Cut { regions, rows: heights, window, cuts });
             }
         }
-        if plain {
-            let (legs, rows) = (&mut self.cuts[..], heights.len());
-            self.arch.dispatch(Common { legs, rows, doubts, counts: &mut counts });
-        }
-        let mut reachable = counts.total;
-        if plain && !counts.unsure {
-            rows.end = rows.start;
-        }
         for (i, row) in rows.enumerate() {
-            if plain && counts.rows[i] >= 0.0 {
+            if counted && self.cuts[0].is_counted(i) {
                 continue;
             }
             if planar {
                 self.others[0] = axes[1].value(row);
             }
-            let doubt = doubts[i] != 0;
+            let doubt = self.in_doubt(i);
             let mut count = self.decide_row(i, window, doubt);
             if count > 0 && self.limit.is_some() {
                 count = self.limit_row(hit.is_none(), found);
@@ -269,7 +272,7 @@ impl<'a> Scratch<'a> {
                 hit(&Hits { slice, row: self.row + row, runs, first, others });
             }
         }
-        if plain && reachable > 0 {
+        if counted && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
                     found.used(sweep.manipulator, &way.follow);
@@ -279,11 +282,21 @@ impl<'a> Scratch<'a> {
         found.reachable += reachable;
     }
 
+    /// Anything that was cut is too close to call in row number `i`.
+    fn in_doubt(&self, i: usize) -> bool {
+        let cuts = if self.plain { &self.cuts[..1] } else { &self.cuts[..] };
+        cuts.iter().any(|cuts| cuts.in_doubt(i))
+    }
+
     /// The reachable poses of row number `i`, in `runs`; returns how many they are. Legs of which all
     /// ways are cut come first, where the row is not in doubt, and leave the others fewer poses to ask
     /// for.
     fn decide_row(&mut self, i: usize, window: Run, doubt: bool) -> u64 {
         self.runs.clear();
+        if self.plain && !doubt {
+            self.runs.extend(self.cuts[0].runs(i));
+            return self.runs.iter().map(|run| run.to - run.from).sum();
+        }
         self.runs.push(window);
         let mut first = 0;
         for leg in 0..self.legs.len() {

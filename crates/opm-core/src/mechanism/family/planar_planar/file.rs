@@ -5,7 +5,7 @@ use crate::chain::Branch;
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{Family, Group, Parameter, TableKey};
 use crate::mechanism::file::{
-    Table, branches, leg_name, read_home, read_leg, report_problems, table_of, tables_of,
+    Table, assembled, branches, leg_name, read_home, read_leg, table_of, tables_of,
 };
 
 const KEYS: &[&str] =
@@ -38,14 +38,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
     (arm.lower, arm.fold) = signs(SLIDER_LEGS);
     read_leg(table.as_ref(), arm.parameters());
     legs.extend(table);
-
-    match family.assemble() {
-        Ok(mechanism) => Some((Family::PlanarPlanar(family), mechanism)),
-        Err(error) => {
-            report_problems(&error, root, &legs);
-            None
-        }
-    }
+    assembled(Family::PlanarPlanar(family), root, &legs)
 }
 
 impl PlanarPlanar {

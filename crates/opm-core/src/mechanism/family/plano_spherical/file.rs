@@ -4,7 +4,7 @@ use super::{ArmLeg, Home, PlanoSpherical, SLIDER_LEGS, SliderLeg};
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{Family, Group, Parameter, TableKey};
 use crate::mechanism::file::{
-    Table, branches, leg_name, read_home, read_leg, report_problems, table_of, tables_of,
+    Table, assembled, branches, leg_name, read_home, read_leg, table_of, tables_of,
 };
 
 const KEYS: &[&str] =
@@ -35,14 +35,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
     arm.elbow = mode.last().copied().unwrap_or_default();
     read_leg(table.as_ref(), arm.parameters());
     legs.extend(table);
-
-    match family.assemble() {
-        Ok(mechanism) => Some((Family::PlanoSpherical(family), mechanism)),
-        Err(error) => {
-            report_problems(&error, root, &legs);
-            None
-        }
-    }
+    assembled(Family::PlanoSpherical(family), root, &legs)
 }
 
 impl PlanoSpherical {

@@ -4,7 +4,7 @@ use super::{Home, TranslationalHelical, TranslationalLeg};
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{Family, Group, Parameter, TableKey};
 use crate::mechanism::file::{
-    Table, branches, leg_name, read_home, read_leg, report_problems, tables_of,
+    Table, assembled, branches, leg_name, read_home, read_leg, tables_of,
 };
 
 const KEYS: &[&str] = &["format", "name", "units", "family", "home", "mode", "leg"];
@@ -24,13 +24,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
         read_leg(Some(table), leg.parameters());
         family.legs.push(leg);
     }
-    match family.assemble() {
-        Ok(mechanism) => Some((Family::TranslationalHelical(family), mechanism)),
-        Err(error) => {
-            report_problems(&error, root, &legs);
-            None
-        }
-    }
+    assembled(Family::TranslationalHelical(family), root, &legs)
 }
 
 impl TranslationalHelical {

@@ -1,0 +1,158 @@
+//! The boundary of a workspace: closed lines in a plane, or in slices of a third coordinate.
+
+use super::Sweep;
+use crate::arguments;
+use crate::error::wrong;
+use crate::html::digits;
+use crate::parts::Parts;
+use crate::pickle::frozen;
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use opm_cli::recording::Kind;
+use opm_workspace::boundary;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::collections::BTreeMap;
+use std::num::NonZeroU64;
+
+/// The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
+///
+/// They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
+/// workspace goes on beyond.
+#[pyclass(frozen, module = "opm_kinematics")]
+pub struct Outline {
+    /// The coordinates of the plane: the columns of the polylines.
+    #[pyo3(get)]
+    axes: (String, String),
+    /// The coordinate that it is sliced by, and its value; empty where there is one plane.
+    #[pyo3(get)]
+    at: BTreeMap<String, f64>,
+    /// Of the pieces without the holes, in the product of both coordinates' units.
+    #[pyo3(get)]
+    area: f64,
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
+    rings: Vec<(f64, Py<PyArray2<f64>>)>,
+}
+
+/// An outline as it crosses processes.
+type Spec = ((String, String), BTreeMap<String, f64>, f64, Vec<(f64, Py<PyArray2<f64>>)>);
+
+#[pymethods]
+impl Outline {
+    /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
+    /// pieces of the workspace, clockwise around holes.
+    #[getter]
+    fn rings<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |_| true)
+    }
+
+    /// Those around pieces.
+    #[getter]
+    fn outer<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |area| area >= 0.0)
+    }
+
+    /// Those around holes.
+    #[getter]
+    fn holes<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        self.those(py, |area| area < 0.0)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Spec)> {
+        let Self { axes, at, area, rings } = slf.get();
+        let rings = rings.iter().map(|(area, ring)| (*area, ring.clone_ref(slf.py())));
+        let state = (axes.clone(), at.clone(), *area, rings.collect());
+        Ok((slf.get_type().getattr("_restored")?, state))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        py: Python<'_>,
+        axes: (String, String),
+        at: BTreeMap<String, f64>,
+        area: f64,
+        rings: Vec<(f64, Py<PyArray2<f64>>)>,
+    ) -> PyResult<Self> {
+        // Arrays come out of a pickle writable.
+        let rings = rings.into_iter().map(|(area, ring)| Ok((area, frozen(ring.into_bound(py))?)));
+        Ok(Self { axes, at, area, rings: rings.collect::<PyResult<_>>()? })
+    }
+
+    fn __repr__(&self) -> String {
+        let (x, y) = &self.axes;
+        let holes = self.rings.iter().filter(|(area, _)| *area < 0.0).count();
+        let at: String = self
+            .at
+            .iter()
+            .map(|(name, value)| format!(" at {name} = {}", digits(*value)))
+            .collect();
+        format!("<Outline in {x}, {y}{at}: {} rings, {holes} of them holes>", self.rings.len())
+    }
+}
+
+impl Outline {
+    fn those<'py>(&self, py: Python<'py>, wanted: impl Fn(f64) -> bool) -> Bound<'py, PyTuple> {
+        let rings = self.rings.iter().filter(|(area, _)| wanted(*area));
+        let rings: Vec<_> = rings.map(|(_, ring)| ring.clone_ref(py)).collect();
+        PyTuple::new(py, rings).expect("a list of known length")
+    }
+}
+
+#[pymethods]
+impl Sweep {
+    /// The boundary as closed polylines in the first two coordinates that have several values.
+    ///
+    /// Returns
+    /// -------
+    /// list of Outline
+    ///     One; or, where a third coordinate has several values, one for each of these.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
+    ///     says nothing of the imaginary joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// executor : concurrent.futures.Executor or callable, optional
+    ///     As for :func:`sweep`.
+    /// shards : int, optional
+    ///     As for :func:`sweep`.
+    #[pyo3(signature = (*, executor = None, shards = None))]
+    fn boundary<'py>(
+        slf: &Bound<'py, Self>,
+        executor: Option<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
+    ) -> PyResult<Vec<Outline>> {
+        let py = slf.py();
+        if slf.get().asked.kind == Kind::Imaginary {
+            let message = "the boundary of the orientations says nothing of the imaginary joints";
+            return Err(wrong(format!("{message}; kind imaginary has none")));
+        }
+        let set = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
+        let axes = set.varying();
+        let name = |number: usize| set.axes()[axes[number]].axis.name.clone();
+        let Some(outlines) = py.detach(|| boundary(&set)) else {
+            let several = axes.len();
+            return Err(wrong(format!(
+                "{several} coordinates have several values, expected two, or a third one to slice by"
+            )));
+        };
+        let outline = |outline: opm_workspace::Outline| {
+            let at = outline.slice.map(|number| (name(2), set.axes()[axes[2]].axis.value(number)));
+            let area = outline.area();
+            let rings = outline.rings.into_iter().map(|ring| -> PyResult<_> {
+                let area = ring.area();
+                // Closed for whoever draws it.
+                let corners = ring.points.iter().chain(ring.points.first());
+                let corners: Vec<f64> = corners.flatten().copied().collect();
+                let shape = [corners.len() / 2, 2];
+                Ok((area, frozen(corners.into_pyarray(py).reshape(shape)?)?))
+            });
+            let rings = rings.collect::<PyResult<_>>()?;
+            Ok(Outline { axes: (name(0), name(1)), at: at.into_iter().collect(), area, rings })
+        };
+        outlines.into_iter().map(outline).collect()
+    }
+}

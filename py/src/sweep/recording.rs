@@ -1,0 +1,89 @@
+//! Recordings of a sweep's points.
+
+use super::Sweep;
+use crate::arguments;
+use crate::error::wrong;
+use crate::interrupt;
+use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
+use opm_workspace::Progress;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+#[pymethods]
+impl Sweep {
+    /// Record the points as ``opm workspace -o`` does, byte for byte.
+    ///
+    /// With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
+    ///     when it is whole.
+    /// axes : sequence of three str, or "tip", optional
+    ///     The coordinates that are x, y and z of the cloud (of kind ``"imaginary"`` imaginary joints), or the platform's point.
+    /// scalars : sequence of str, optional
+    ///     Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; of places
+    ///     the ``share`` of orientations in which they are reached.
+    /// color : str, optional
+    ///     The one of them that the colour shows.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A name that is none, a file that cannot be written.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        #[pyo3(from_py_with = arguments::cloud_axes)] axes: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        let of = self.of.get();
+        let name = of.file_name();
+        let swept = Swept {
+            mechanism: Attached { name: &name, text: of.text() },
+            manipulator: &self.manipulator,
+            kind: self.asked.kind,
+            grid: &self.grid,
+            modes: self.modes,
+            limit: self.limit(),
+            length: self.asked.length,
+            found: &self.count,
+        };
+        let shown = Shown { axes: axes.unwrap_or_default(), scalars, color };
+        let progress = Progress::default();
+        let work = || record_sweep(&swept, shown, &path, &progress);
+        interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
+    }
+
+    /// :meth:`write`, of a name that ends in ``.mcap``.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file appears when it is whole.
+    /// axes : sequence of three str, or "tip", optional
+    ///     As for :meth:`write`.
+    /// scalars : sequence of str, optional
+    ///     As for :meth:`write`.
+    /// color : str, optional
+    ///     As for :meth:`write`.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    fn write_mcap(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        #[pyo3(from_py_with = arguments::cloud_axes)] axes: Option<Vec<String>>,
+        #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
+        color: Option<String>,
+    ) -> PyResult<()> {
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            let path = path.display();
+            return Err(wrong(format!("{path}, expected a name that ends in .mcap")));
+        }
+        self.write(py, path, axes, scalars, color)
+    }
+}

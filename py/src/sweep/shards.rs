@@ -1,0 +1,82 @@
+//! A sweep in parts, of which each crosses to another process: pickled, with the number of its shard.
+
+use super::Sweep;
+use super::asked::{Asked, named};
+use crate::error::failed;
+use crate::interrupt;
+use crate::manipulator::Manipulator;
+use crate::parts::{Parts, Pickled};
+use opm_workspace::{Axis, Count, Progress, Shard};
+use pyo3::prelude::*;
+use std::num::NonZeroUsize;
+
+/// Poses of a part at least: fewer are not worth the way to another process.
+const LEAST_PART: u64 = 1 << 15;
+
+/// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
+pub type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
+
+/// A sweep that is still to be done, as it crosses processes: axes, kind, mode, largest condition number,
+/// characteristic length, threads.
+type Spec = (Vec<(String, f64, f64, u64)>, String, String, Option<f64>, f64, Option<NonZeroUsize>);
+
+/// What `task` of a sweep gives for each of its parts, in their order; or what they `fold` to.
+pub fn spread<'py>(
+    plan: &Bound<'py, Sweep>,
+    parts: &Parts<'py>,
+    task: &str,
+    fold: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let count = parts.count(plan.get().grid.poses(), LEAST_PART);
+    let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
+    parts.session(plan.py(), |workers| workers.call_method1("run", (plan, task, numbers, fold)))
+}
+
+pub fn count_of((poses, reachable, imaginary): Counted) -> Count {
+    Count { poses, reachable, imaginary }
+}
+
+pub fn shard(number: u64, of: u64) -> PyResult<Shard> {
+    Shard::new(number, of).map_err(|error| failed(&error))
+}
+
+#[pymethods]
+impl Sweep {
+    /// Pickling: with the manipulator, not with what the grid holds.
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
+        let this = slf.get();
+        let axes = this.grid.axes().iter().map(|a| (a.name.clone(), a.min, a.max, a.count));
+        let Count { poses, reachable, imaginary } = this.count.clone();
+        let Asked { kind, mode, most, length } = this.asked.clone();
+        let spec = (axes.collect(), kind.name(), mode, most, length, this.threads);
+        let of = this.of.clone_ref(slf.py());
+        Ok((slf.get_type().getattr("_restored")?, (of, spec, (poses, reachable, imaginary))))
+    }
+
+    #[staticmethod]
+    fn _restored(manipulator: Py<Manipulator>, spec: Spec, count: Counted) -> PyResult<Self> {
+        let (axes, kind, mode, most, length, threads) = spec;
+        let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
+        let asked = Asked { kind: named(&kind)?, mode, most, length };
+        let planned = Self::planned(manipulator, axes.collect(), asked, threads)?;
+        Ok(Self { count: count_of(count), ..planned })
+    }
+
+    /// The count of one part, number `number` of `of`.
+    fn _count(&self, py: Python<'_>, number: u64, of: u64) -> PyResult<Counted> {
+        let Count { poses, reachable, imaginary } = self.counted(py, shard(number, of)?)?;
+        Ok((poses, reachable, imaginary))
+    }
+}
+
+impl Sweep {
+    pub fn counted(&self, py: Python<'_>, shard: Shard) -> PyResult<Count> {
+        let progress = Progress::default();
+        let sweep = self.swept(shard);
+        let count =
+            interrupt::run(py, self.threads, || sweep.count(&progress), || progress.cancel())?;
+        count.map_err(|error| failed(&error))
+    }
+}
