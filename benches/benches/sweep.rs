@@ -4,7 +4,6 @@
 //! `PEERS_PYTHON` names a Python with NumPy, numba and `opm_kinematics`, which `benches/peers/sweep.py` compares
 //! with; without it the table lacks these.
 
-use nalgebra::Complex;
 use opm_benches::peers::Peers;
 use opm_benches::{
     Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_passive_angles,
@@ -177,8 +176,9 @@ fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
         Convex::Disc(_) | Convex::Stadium(_) => 1,
     };
     let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
+    let v = manipulator.task().lower(&manipulator.task().home()[..grid.lower()]);
     let regions = ways.iter().map(|way| {
-        let region = manipulator.region(way, &[], Complex::ZERO, 1.0);
+        let region = manipulator.region(way, &v, 1.0);
         region.expect("only sliders are limited")
     });
     regions.map(|Region { whole, hole }| of(&whole) + hole.as_ref().map_or(0, of)).sum()

@@ -10,6 +10,12 @@ use opm_workspace::measure::check_tolerance;
 use opm_workspace::{MOST_THREADS, Sections, Shard};
 use std::path::PathBuf;
 
+/// Columns of the help on a terminal that has as many.
+const WIDEST: usize = 100;
+
+/// Boxes of a measure that no machine has the memory for.
+const MOST_BOXES: f64 = 1e12;
+
 /// Kinematics and workspaces of overconstrained parallel manipulators
 ///
 /// Reads a mechanism file, finds its partial subspaces and imaginary joints from the joint screws
@@ -20,7 +26,7 @@ use std::path::PathBuf;
 ///
 /// Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted.
 #[derive(Debug, Parser)]
-#[command(name = "opm", version, max_term_width = 100, after_long_help = ROOT_EXAMPLES)]
+#[command(name = "opm", version, max_term_width = WIDEST, after_long_help = ROOT_EXAMPLES)]
 pub struct Args {
     /// What to do.
     #[command(subcommand)]
@@ -39,7 +45,7 @@ Examples:
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
-  opm measure plano-spherical-5dof --section upper     how much of all orientations it has, with bounds
+  opm measure plano-spherical-5dof --section upper     its share of all orientations, with bounds
   opm merge part-*.mcap -o cloud.mcap                  a sweep that was shared among machines
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
@@ -461,6 +467,11 @@ pub struct MergeArgs {
 /// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
 /// positive xi has orientations twice if zeta has a whole turn.
 ///
+/// How many boxes that takes depends on how many coordinates have a range, and how wide it is: for three,
+/// some thousand; for five with whole turns among them, more than --budget allows unless told otherwise.
+/// Then the result and a warning say how far it came. Narrower ranges of --over, --section upper or a larger
+/// --budget take it further.
+///
 /// A coordinate without --over stays at home, but an angle of `--section upper` takes a whole turn. With
 /// no --over at all, ranges are fitted to the workspace as in `opm workspace`.
 ///
@@ -473,7 +484,8 @@ Examples:
   opm measure plano-spherical-5dof --section upper
   opm measure plano-spherical-5dof --over x=-200mm:200mm --over y=-200mm:300mm
   opm measure plano-spherical-5dof --section upper --over xi=0:60deg --tolerance 1e-4
-  opm measure translational-helical-3dof --over x=-1:1 --over y=-1:1 --over phi=30deg --tolerance 1e-9
+  opm measure translational-helical-3dof --tolerance 1e-9 --over x=-1:1 --over y=-1:1 \\
+      --over phi=30deg
   opm measure plano-cylindrical-4dof --mode any --budget 1000000 --format json")]
 pub struct MeasureArgs {
     /// Mechanism file, or the name of a shipped example
@@ -492,7 +504,7 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: f64,
     /// Stop before more than so many boxes are looked at; each takes some 100 bytes of memory
-    #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = boxes, allow_hyphen_values = true)]
     pub budget: u64,
     /// Threads to use, instead of one a processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
@@ -534,6 +546,16 @@ impl SectionName {
 fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().unwrap_or(f64::NAN);
     check_tolerance(number).map(|()| number).map_err(|expected| format!("{text:?}, {expected}"))
+}
+
+/// A number of boxes.
+fn boxes(text: &str) -> Result<u64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(boxes) if (1.0..=MOST_BOXES).contains(&boxes) && boxes.fract() == 0.0 => {
+            Ok(boxes as u64)
+        }
+        _ => Err(format!("{text:?}, expected a whole number of boxes from 1 to {MOST_BOXES:e}")),
+    }
 }
 
 /// A condition number to compare with.
@@ -629,11 +651,24 @@ pub struct CompletionsArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::Args;
+    use super::{Args, WIDEST};
     use clap::CommandFactory;
 
     #[test]
     fn arguments_do_not_contradict_each_other() {
         Args::command().debug_assert();
+    }
+
+    /// Commands are read, and copied, line by line: none is broken where help ends on the right.
+    #[test]
+    fn examples_in_the_help_are_not_wrapped() {
+        let program = Args::command();
+        let of = |command: &clap::Command| command.get_after_long_help().map(ToString::to_string);
+        let examples: Vec<String> =
+            program.get_subcommands().chain([&program]).filter_map(of).collect();
+        assert!(examples.len() > 10);
+        for line in examples.iter().flat_map(|text| text.lines()) {
+            assert!(line.chars().count() <= WIDEST, "{line:?}");
+        }
     }
 }

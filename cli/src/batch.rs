@@ -71,15 +71,22 @@ pub fn run(
     let place = path.display();
     let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, &error))?;
     let solve = || batch.solve(reader, &mut file, &rows, &progress);
-    let summary = watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve)
-        .and_then(|summary| file.commit().map(|()| summary).map_err(Stop::Write))
-        .map_err(|error| match error {
-            Stop::Write(error) => Failure::at(&place, &error),
-            Stop::Failure(Failure::Interrupted(message)) => {
-                Failure::Interrupted(format!("{message}; what was solved is in {place}.partial"))
-            }
-            Stop::Failure(failure) => failure,
-        })?;
+    let summary = match watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve) {
+        Ok(summary) => summary,
+        Err(Stop::Failure(Failure::Interrupted(message))) => {
+            let kept = format!("{message}; what was solved is in {place}.partial");
+            return Err(Failure::Interrupted(kept));
+        }
+        Err(stop) => {
+            // The rows before a wrong one look like the answer and are not all of it.
+            file.discard();
+            return Err(match stop {
+                Stop::Write(error) => Failure::at(&place, &error),
+                Stop::Failure(failure) => failure,
+            });
+        }
+    };
+    file.commit().map_err(|error| Failure::at(&place, &error))?;
     output.note(format_args!(
         "{place}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
         count(summary.poses),

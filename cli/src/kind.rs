@@ -6,7 +6,7 @@ pub use record::{FLAT, SetRecording, SetWishes, pose_boundary};
 
 use crate::args::WorkspaceArgs;
 use crate::failure::Failure;
-use crate::text::{count, short};
+use crate::text::{count, product, short};
 use clap::ValueEnum;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -432,14 +432,10 @@ pub fn measure<'a>(
     let mut powers = [(Quantity::Length, 0), (Quantity::Angle, 0)];
     for (axis, quantity) in axes {
         if axis.count > 1 {
-            value *= (axis.max - axis.min) / units.factor(quantity);
+            value *= axis.max - axis.min;
             powers.iter_mut().filter(|p| p.0 == quantity).for_each(|p| p.1 += 1);
         }
     }
-    let factors = powers.iter().filter(|p| p.1 > 0).map(|&(quantity, power)| {
-        let symbol = units.symbol(quantity);
-        if power == 1 { symbol.to_owned() } else { format!("{symbol}^{power}") }
-    });
-    let units: Vec<String> = factors.collect();
-    (value, if units.is_empty() { "1".to_owned() } else { units.join(" ") })
+    let (symbol, factor) = product(&powers, units);
+    (value / factor, symbol)
 }

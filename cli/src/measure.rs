@@ -6,15 +6,18 @@ use crate::load::{self, Loaded};
 use crate::progress::{interruptible, watch, watch_boxes};
 use crate::text::{self, Table, count, short};
 use crate::workspace::threads;
-use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::number::readable;
 use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, Over, Stop, measure, ranges};
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::time::Instant;
+
+/// Measures from here on are shown with an exponent.
+const LARGE: f64 = 1e7;
 
 /// Digits of a double.
 const MOST_DIGITS: i32 = 15;
@@ -39,12 +42,11 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     output.print(&run.json(&found, seconds), run.text(&found, seconds))?;
     match found.stop {
         Stop::Tolerance => {}
-        Stop::Budget => output.warn(
-            "the budget is spent before --tolerance is met; the bounds hold, a larger --budget brings \
-             them closer",
-        ),
+        Stop::Budget => output.warn(run.beyond(&found)),
         Stop::Exhausted => {
-            output.warn("the bounds hold, but what is between them is on the rim: no split decides it");
+            output.warn(
+                "the bounds hold, but what is between them is on the rim: no split decides it",
+            );
         }
         Stop::Cancelled => {
             return Err(Failure::Interrupted("interrupted; the bounds hold".into()));
@@ -106,25 +108,6 @@ impl Run<'_> {
         }
     }
 
-    /// The unit of the measure, and how many of SI's that is: lengths in the unit of `units`, angles
-    /// always in radians, since a tilt is weighed by its sine.
-    fn unit(&self, units: FileUnits) -> (String, f64) {
-        let mut factor = 1.0;
-        let mut symbols = Vec::new();
-        for (quantity, power) in self.domain.powers().into_iter().filter(|p| p.1 > 0) {
-            let symbol = match quantity {
-                Quantity::Length => units.symbol(quantity),
-                Quantity::Angle => FileUnits::SI.symbol(quantity),
-            };
-            if quantity == Quantity::Length {
-                factor *= units.factor(quantity).powi(power as i32);
-            }
-            symbols.push(if power == 1 { symbol.into() } else { format!("{symbol}^{power}") });
-        }
-        let symbol = if symbols.is_empty() { "1".into() } else { symbols.join(" ") };
-        (symbol, factor)
-    }
-
     fn json(&self, found: &Measured, seconds: f64) -> Value {
         let over: Map<String, Value> = (self.domain.axes().iter())
             .map(|axis| (axis.name.clone(), json!({ "min": axis.min, "max": axis.max })))
@@ -134,7 +117,7 @@ impl Run<'_> {
             "value": found.value(),
             "lower": found.lower,
             "upper": found.upper,
-            "units": self.unit(FileUnits::SI).0,
+            "units": text::product(&self.domain.powers(), FileUnits::SI).0,
             "fraction": found.fraction(),
             "boxes": found.boxes,
             "seconds": seconds,
@@ -168,7 +151,7 @@ impl Run<'_> {
         }
         let _ = writeln!(text, "\n\n{axes}");
 
-        let (symbol, factor) = self.unit(units);
+        let (symbol, factor) = text::product(&self.domain.powers(), units);
         let ends = [found.value(), found.lower, found.upper];
         let decimals = |ends: [f64; 3]| resolving(ends[2] - ends[1], ends[2]);
         let measures = ends.map(|end| end / factor);
@@ -179,14 +162,48 @@ impl Run<'_> {
             results.row([name, &value, &lower, &upper, unit]);
         }
         let _ = write!(text, "{results}");
-        let _ = writeln!(text, "\n{} boxes in {} s", count(found.boxes), short(seconds));
+        let (boxes, seconds) = (count(found.boxes), short(seconds));
+        let certain = percent(found.uncertainty());
+        let _ = writeln!(
+            text,
+            "\n{boxes} boxes in {seconds} s; the value is certain to within {certain}"
+        );
         text
     }
+
+    /// What came of a budget that does not do, and what helps.
+    fn beyond(&self, found: &Measured) -> String {
+        let section = match self.args.section {
+            SectionName::Whole => "--section upper, ",
+            SectionName::Upper | SectionName::Lower => "",
+        };
+        format!(
+            "the --budget of {} boxes ended before --tolerance was met: the value is certain to within \
+             {}, and {} was asked for; the bounds hold, and narrower ranges of --over, {section}or a \
+             larger --budget bring them closer",
+            count(self.args.budget),
+            percent(found.uncertainty()),
+            percent(self.args.tolerance),
+        )
+    }
+}
+
+/// A share, to two digits and not less.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let decimals = if percent > 0.0 { (1 - exponent(percent)).max(0) } else { 0 };
+    let power = 10_f64.powi(decimals);
+    // What the product with 100 is off by is no reason to round up.
+    format!("{} %", readable((percent * power * (1.0 - 1e-12)).ceil() / power))
+}
+
+/// The power of ten of the first digit of a number above zero.
+fn exponent(x: f64) -> i32 {
+    x.log10().floor() as i32
 }
 
 /// Decimals that tell two bounds so far apart from one another, and do not pretend more.
 fn resolving(gap: f64, size: f64) -> i32 {
-    let exponent = |x: f64| x.log10().floor() as i32;
     if size <= 0.0 {
         return 0;
     }
@@ -194,10 +211,14 @@ fn resolving(gap: f64, size: f64) -> i32 {
     if gap > 0.0 { (1 - exponent(gap)).min(most) } else { most }
 }
 
-/// Value and bounds with so many decimals, the bounds away from the value.
+/// Value and bounds with so many decimals, the bounds away from the value; large ones with an exponent.
 fn rounded([value, lower, upper]: [f64; 3], decimals: i32) -> [String; 3] {
     let power = 10_f64.powi(decimals);
-    let shown = |x: f64| format!("{:.*}", decimals.max(0) as usize, x / power);
+    let large = upper >= LARGE;
+    let shown = |x: f64| match x / power {
+        x if large && x > 0.0 => format!("{x:.*e}", (decimals + exponent(x)).max(0) as usize),
+        x => format!("{x:.*}", decimals.max(0) as usize),
+    };
     [shown((value * power).round()), shown((lower * power).floor()), shown((upper * power).ceil())]
 }
 
@@ -212,5 +233,15 @@ mod tests {
         assert_eq!(shown([5560.0, 5101.0, 6019.0]), ["5560", "5100", "6020"]);
         assert_eq!(shown([0.0, 0.0, 0.0]), ["0", "0", "0"]);
         assert_eq!(shown([1.0, 1.0, 1.0])[1], "1.00000000000000");
+        assert_eq!(shown([1.1876e7, 1.1805e7, 1.1944e7]), ["1.188e7", "1.180e7", "1.195e7"]);
+        assert_eq!(shown([3.9e11, 0.0, 7.8e11]), ["3.9e11", "0", "7.8e11"]);
+        assert_eq!(shown([5.1e11, 9.7e10, 9.24e11]), ["5.1e11", "9e10", "9.3e11"]);
+    }
+
+    #[test]
+    fn shares_are_rounded_up() {
+        let shown = [0.01, 0.07, 0.123_1, 0.005_71, 1e-9, 1.0, 0.0].map(percent);
+        let expected = ["1 %", "7 %", "13 %", "0.58 %", "0.0000001 %", "100 %", "0 %"];
+        assert_eq!(shown, expected);
     }
 }

@@ -14,13 +14,11 @@ use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::pose::Misread;
 use crate::progress::interruptible;
-use crate::record::partial;
 use clap::ValueEnum;
 use opm_mcap::{PartialFile, Sink};
 use opm_plot::{Drawing, Size, TooSmall, png, svg};
 use serde_json::json;
 use source::Source;
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -102,6 +100,13 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let target = Target::create(&args.output)?;
     let progress = interruptible()?;
     let source = Source::open(&args.file, output, &progress)?;
+    if let Some(shard) = source.metadata("shard").get("shard") {
+        return Err(Failure::Work(format!(
+            "{}: shard {shard} of a sweep, which has no points of its own; join all shards with `opm \
+             merge`, and draw what it writes",
+            source.label
+        )));
+    }
     let drawing = if source.is_workspace() {
         workspace::draw(&source, args, output)?
     } else {
@@ -173,8 +178,8 @@ impl Target {
 impl Drop for Target {
     /// Half a picture is of no use.
     fn drop(&mut self) {
-        if self.file.take().is_some() {
-            let _ = fs::remove_file(partial(&self.path));
+        if let Some(file) = self.file.take() {
+            file.discard();
         }
     }
 }

@@ -79,6 +79,17 @@ pub fn range([low, high]: [f64; 2], quantity: Quantity, units: FileUnits) -> Str
     format!("{} .. {}", number(low, quantity, units), number(high, quantity, units))
 }
 
+/// The unit of a product of so many values of each quantity, and how many of SI's it is.
+pub fn product(powers: &[(Quantity, usize)], units: FileUnits) -> (String, f64) {
+    let (mut symbols, mut factor) = (Vec::new(), 1.0);
+    for &(quantity, power) in powers.iter().filter(|(_, power)| *power > 0) {
+        let symbol = units.symbol(quantity);
+        symbols.push(if power == 1 { symbol.to_owned() } else { format!("{symbol}^{power}") });
+        factor *= units.factor(quantity).powi(power as i32);
+    }
+    (if symbols.is_empty() { "1".to_owned() } else { symbols.join(" ") }, factor)
+}
+
 /// A whole number with its digits in threes.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();

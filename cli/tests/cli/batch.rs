@@ -173,11 +173,16 @@ fn a_file_appears_when_it_is_whole() {
     assert_eq!(keys(&summary), expected);
     assert_eq!([&summary["poses"], &summary["reachable"]].map(number), [3.0, 2.0]);
 
-    // A bad row at the end: what was there stays as it was.
+    // A bad row, before or after rows enough to be on their way to the disk: what was there stays as it
+    // was, and nothing is left of the others.
     let before = folder.read("out.csv");
-    let bad = folder.write("bad.csv", "x\n0\nzero\n");
-    opm(&["ik", PLANO, "--poses", &bad, "-o", &output]).fails_with_one_line(1, &["bad.csv:3: "]);
-    assert_eq!(folder.read("out.csv"), before);
+    for rows in [1, 20_000] {
+        let bad = folder.write("bad.csv", "x\n".to_owned() + &"0\n".repeat(rows) + "zero\n");
+        let run = opm(&["ik", PLANO, "--poses", &bad, "-o", &output]);
+        run.fails_with_one_line(1, &[&format!("bad.csv:{}: ", rows + 2)]);
+        assert_eq!(folder.read("out.csv"), before);
+        assert!(!folder.path("out.csv.partial").exists(), "{rows} rows");
+    }
 }
 
 #[test]

@@ -65,6 +65,32 @@ fn a_square_in_the_workspace_is_its_area() {
     assert!(text.contains("mm^2") && text.contains("600.0"), "{text}");
 }
 
+/// Text is in the units of the file: a rectangle that is all in reach, of lengths, angles and both.
+#[test]
+fn text_is_in_the_units_of_the_file() {
+    // Of all orientations the sphere's area in square degrees is weighed by the sine, a turn is 360 degrees.
+    let sphere = 4.0 * PI * (180.0 / PI).powi(2);
+    for (args, unit, area) in [
+        (&[HELICAL, "--over", "x=-10mm:10mm", "--over", "phi=0:30deg"][..], "mm deg", 600.0),
+        (&[HELICAL, "--over", "phi=-1deg:1deg"], "deg", 2.0),
+        (&[PLANO, "--over", "zeta=-5deg:5deg", "--over", "psi=0:4deg"], "deg^2", 40.0),
+        (
+            &[PLANO, "--section", "upper", "--tolerance", "1e-3"],
+            "deg^3",
+            0.799_038 * sphere * 360.0,
+        ),
+    ] {
+        let run = opm(&[&["measure"], args].concat());
+        let line = run.text().lines().find(|line| line.starts_with("measure")).expect("a measure");
+        let cells: Vec<&str> = line.split("  ").filter(|cell| !cell.is_empty()).collect();
+        let [_, _, lower, upper, found] = cells[..] else { panic!("{line}") };
+        let [lower, upper]: [f64; 2] =
+            [lower, upper].map(|cell| cell.trim().parse().expect("a number"));
+        assert!(found.trim() == unit && lower <= area && area <= upper, "{line}");
+        assert!(upper - lower < 3e-3 * area, "{line}");
+    }
+}
+
 /// What a grid counts lies in the bounds, to what a grid can tell.
 #[test]
 fn it_measures_what_is_swept() {
@@ -110,7 +136,26 @@ fn a_budget_that_does_not_do_is_told_and_threads_change_nothing() {
     let args = ["measure", PLANO, "--over", "x=-200mm:200mm", "--over", "xi=0:30deg", "--over"];
     let args = [&args[..], &["psi=-1:1", "--tolerance", "1e-6", "--budget", "2000"]].concat();
     let run = opm(&[&args[..], &["--threads", "1"]].concat());
-    assert!(run.text().contains("measure") && run.stderr.contains("budget is spent"));
+    assert!(run.text().contains("measure"));
+    let found = measure(&args[1..]);
+    let [value, lower, upper] = ends(&found);
+    assert!(number(&found["boxes"]) <= 2000.0 && found["reached"] == false);
+    // The first digits, rounded up.
+    let percent = 100.0 * (upper - lower) / 2.0 / value;
+    let (least, most) = (percent, percent * 1.1);
+    let told = |text: &str| {
+        let (_, rest) =
+            text.split_once("the value is certain to within ").expect("how far it came");
+        let percent: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+        assert!(least <= percent && percent <= most, "{least} {text}");
+    };
+    told(run.text());
+    told(&run.stderr);
+    for part in
+        ["--budget of 2,000 boxes ended before", "0.0001 % was asked for", "--section upper"]
+    {
+        assert!(run.stderr.contains(part), "{part}: {}", run.stderr);
+    }
     let results =
         |text: &str| text.lines().filter(|line| !line.contains("boxes in")).collect::<String>();
     let two = opm(&[&args[..], &["--threads", "2"]].concat());
@@ -131,7 +176,19 @@ fn wrong_flags_are_named() {
         (&["--over", "xi=0:1e9"], &["--over", "xi", "half turns"]),
         (&["--tolerance", "1"], &["--tolerance", "less than 1"]),
         (&["--tolerance", "nan"], &["--tolerance", "\"nan\""]),
-        (&["--budget", "0"], &["--budget"]),
+        (
+            &["--budget", "0"],
+            &["--budget", "\"0\", expected a whole number of boxes from 1 to 1e12"],
+        ),
+        (&["--budget", "-1"], &["--budget", "a whole number of boxes"]),
+        (&["--budget", "2.5"], &["--budget", "a whole number of boxes"]),
+        (&["--budget", "18446744073709551616"], &["--budget", "from 1 to 1e12"]),
+        (
+            &["--over", "x=-1e308:1e308"],
+            &["--over", "x: -1e308 to 1e308, expected numbers up to 1e75"],
+        ),
+        (&["--over", "zeta=0:1e300"], &["--over", "zeta: 0 to 1e300, expected"]),
+        (&["--over", "xi=0:1e30"], &["--over", "xi: 0 to 1e30, expected at most 4096 half turns"]),
         (&["--section", "middle"], &["--section", "whole, upper, lower"]),
         (&["--mode", "++"], &["--mode", "2 signs for 7 choices"]),
     ] {

@@ -68,6 +68,18 @@ fn merged_shards_are_the_one_run_byte_for_byte() {
     }
 }
 
+#[test]
+fn a_shard_is_not_drawn_and_says_what_is() {
+    let folder = Folder::new();
+    let part = shard(&folder, 2, 3, &SMALL);
+    let plot = ["plot", &part, "-o", &folder.arg("part.svg")];
+    for flags in [&[][..], &["--slice", "xi=0"]] {
+        let run = opm(&[&plot[..], flags].concat());
+        run.fails_with_one_line(1, &["part-2.mcap: shard 2/3", "join", "`opm merge`"]);
+    }
+    assert_eq!(folder.names(), ["part-2.mcap"]);
+}
+
 /// Sets other than that of the poses are made when all poses are together, indices by each shard.
 #[test]
 fn merged_shards_are_the_one_run_of_every_kind() {

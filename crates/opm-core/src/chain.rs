@@ -18,6 +18,7 @@ pub mod cylindrical;
 pub mod equation;
 pub mod planar;
 pub mod region;
+pub mod shape;
 pub mod spherical;
 pub mod surface;
 pub mod translational;
@@ -29,6 +30,7 @@ use crate::task::{Displacement, Subspace, SubspaceKind};
 use cylindrical::{CoaxialJoint, CylindricalChain};
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use planar::{PlanarChain, PlanarJoint};
+use shape::Shape;
 use spherical::{Ball, SphericalChain};
 use std::f64::consts::TAU;
 use surface::Surface;
@@ -286,6 +288,16 @@ impl Chain {
                 let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
                 TranslationalChain::new(slides(subspace, joints)?).map(Self::Translational)
             }
+        }
+    }
+
+    /// The translations of a plane's target at which the chain closes within its limits; `None` of other
+    /// targets, and where limits on its angles make that more than a convex set less another.
+    pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
+        match self {
+            Self::Planar(chain) => chain.shape(branch, limits),
+            Self::Translational(chain) => Some(chain.shape(limits)),
+            Self::Spherical(_) | Self::Ball(_) | Self::Cylindrical(_) => None,
         }
     }
 

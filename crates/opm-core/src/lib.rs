@@ -53,6 +53,7 @@ pub mod manipulator;
 pub mod mechanism;
 pub mod mobility;
 pub mod motion;
+pub mod number;
 pub mod screw;
 pub mod skeleton;
 pub mod subspace;

@@ -25,7 +25,8 @@ impl Sink for io::Cursor<&mut Vec<u8>> {
 /// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
 ///
 /// Until then whatever stands under `NAME` stays as it is; afterwards it is replaced. A run that
-/// ends early, however it ends, leaves the `.partial` file, which the next run overwrites.
+/// ends early, however it ends, leaves the `.partial` file, which the next run overwrites, unless that is
+/// [discarded](Self::discard).
 #[derive(Debug)]
 pub struct PartialFile {
     file: BufWriter<File>,
@@ -73,6 +74,11 @@ impl PartialFile {
         let file = BufWriter::with_capacity(1 << 17, file);
         Ok(Self { file, partial, target: target.into(), begun: false })
     }
+
+    /// Ends it without a trace: what was written is of no use to anybody.
+    pub fn discard(mut self) {
+        self.begun = false;
+    }
 }
 
 impl Write for PartialFile {
@@ -109,7 +115,7 @@ impl Sink for PartialFile {
 impl Drop for PartialFile {
     fn drop(&mut self) {
         if !self.begun {
-            // It is empty; if it stays, so be it.
+            // Empty or of no use; if it stays, so be it.
             let _ = fs::remove_file(&self.partial);
         }
     }

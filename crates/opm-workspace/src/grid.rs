@@ -3,6 +3,7 @@
 
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
+use opm_core::number::readable;
 use std::f64::consts::TAU;
 
 /// Most poses of a grid: indices beyond are not exact in double precision, which JSON readers use.
@@ -42,7 +43,9 @@ pub enum GridError {
     Twice(String),
     /// An end that is not a number, or the ends reversed.
     #[error(
-        "grid axis {name}: {min} to {max}, expected {}",
+        "grid axis {name}: {} to {}, expected {}",
+        readable(*min),
+        readable(*max),
         if min > max { "the smaller one first".to_owned() } else { format!("numbers up to {LARGEST:e}") }
     )]
     Range {
@@ -54,7 +57,11 @@ pub enum GridError {
         max: f64,
     },
     /// A number of values that cannot hold both ends.
-    #[error("grid axis {name}: {count} values from {min} to {max}, expected {expected}")]
+    #[error(
+        "grid axis {name}: {count} values from {} to {}, expected {expected}",
+        readable(*min),
+        readable(*max)
+    )]
     Count {
         /// The axis.
         name: String,
@@ -68,7 +75,7 @@ pub enum GridError {
         expected: &'static str,
     },
     /// Too many poses.
-    #[error("grid of {given} poses, expected at most {MOST_POSES} (2^53)")]
+    #[error("grid of {given} poses, expected at most 2^53, some 9e15")]
     Size {
         /// As a number or a product.
         given: String,

@@ -96,9 +96,15 @@ impl Measured {
         self.value() / self.whole
     }
 
+    /// How far the measure may be from the value, as a share of the value.
+    pub fn uncertainty(&self) -> f64 {
+        let half = 0.5 * (self.upper - self.lower);
+        if half > 0.0 { half / self.value() } else { 0.0 }
+    }
+
     /// Whether the measure is certain to be within a share of the value from it.
     pub fn meets(&self, tolerance: f64) -> bool {
-        0.5 * (self.upper - self.lower) <= tolerance * self.value()
+        self.uncertainty() <= tolerance
     }
 }
 

@@ -20,7 +20,7 @@ pub use rpr::Rpr;
 pub use rrp::Rrp;
 pub use rrr::Rrr;
 
-use super::region::Region;
+use super::shape::Shape;
 use super::{Amount, Branch, ChainError, ClosedForm, Gap};
 use crate::limits::Limits;
 use nalgebra::Complex;
@@ -215,42 +215,22 @@ impl PlanarChain {
         }
     }
 
-    /// The translations at which the chain closes within its limits on a target that is turned by
-    /// `rotation`; `None` where limits on its angles make that more than a convex set less another,
-    /// or its sliders are all but parallel.
-    pub fn region(
-        &self,
-        rotation: Complex<f64>,
-        branch: Branch,
-        limits: [&Limits; 3],
-    ) -> Option<Region> {
+    /// The translations at which the chain closes within its limits; `None` where limits on its angles
+    /// make that more than a convex set less another.
+    pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
         let free = |turns: &[usize]| turns.iter().all(|&i| *limits[i] == Limits::Free);
-        let range = |slider: usize| {
-            let (low, high) = limits[slider].range();
-            [low, high]
-        };
-        // Of chains with two sliders the rotation fixes the angle.
-        let target = PlanarDisplacement { rotation, translation: Complex::new(0.0, 0.0) };
-        let within = |turn: usize, amounts: [Amount; 3]| limits[turn].admits(amounts[turn]);
-        let if_within = |within, region| if within { region } else { Region::NOTHING };
+        let range = |slider: usize| <[f64; 2]>::from(limits[slider].range());
+        // Of chains with two sliders the rotation is that of the pivot.
+        let within = |turn: usize, shape: Shape| shape.within(&self.joints()[turn], limits[turn]);
         Some(match self {
-            Self::Rrr(chain) if free(&[0, 1, 2]) => chain.region(rotation),
-            Self::Prr(chain) if free(&[1, 2]) => chain.region(rotation, branch, range(0)),
-            Self::Rrp(chain) if free(&[0, 1]) => chain.region(rotation, branch, range(2)),
-            Self::Rpr(chain) if free(&[0, 2]) => chain.region(rotation, branch, range(1)),
+            Self::Rrr(chain) if free(&[0, 1, 2]) => chain.shape(),
+            Self::Prr(chain) if free(&[1, 2]) => chain.shape(branch, range(0)),
+            Self::Rrp(chain) if free(&[0, 1]) => chain.shape(branch, range(2)),
+            Self::Rpr(chain) if free(&[0, 2]) => chain.shape(branch, range(1)),
             Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_) => return None,
-            Self::Rpp(chain) => if_within(
-                within(0, chain.attempt(&target, branch).amounts),
-                chain.region(rotation, [range(1), range(2)]),
-            ),
-            Self::Ppr(chain) => if_within(
-                within(2, chain.attempt(&target, branch).amounts),
-                chain.region(rotation, [range(0), range(1)]),
-            ),
-            Self::Prp(chain) => {
-                let region = chain.region(rotation, [range(0), range(2)])?;
-                if_within(limits[1].admits(chain.turn(rotation)), region)
-            }
+            Self::Rpp(chain) => within(0, chain.shape([range(1), range(2)])),
+            Self::Ppr(chain) => within(2, chain.shape([range(0), range(1)])),
+            Self::Prp(chain) => within(1, chain.shape([range(0), range(2)])),
         })
     }
 }

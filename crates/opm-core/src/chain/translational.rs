@@ -1,9 +1,11 @@
 //! Chains of two prismatic joints in a plane.
 
 use super::planar::{along, cross};
-use super::region::{Region, parallelogram};
+use super::region::parallelogram;
+use super::shape::Shape;
 use super::surface::Surface;
 use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
+use crate::limits::Limits;
 use nalgebra::Complex;
 
 /// Two sliders, each a unit direction of the plane: one solution.
@@ -31,8 +33,9 @@ impl TranslationalChain {
     }
 
     /// The translations at which the sliders are in their ranges.
-    pub fn region(&self, ranges: [[f64; 2]; 2]) -> Region {
-        parallelogram(self.slides, Complex::new(0.0, 0.0), ranges)
+    pub fn shape(&self, limits: [&Limits; 3]) -> Shape {
+        let ranges = [0, 1].map(|slider| limits[slider].range().into());
+        Shape::of_places(parallelogram(self.slides, Complex::ZERO, ranges), Complex::ZERO)
     }
 
     /// The targets with slider number `joint` at `amount`: taken across the other one.

@@ -1,5 +1,6 @@
 //! One leg, cut in two closed-form chains.
 
+use crate::chain::shape::Shape;
 use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
 use crate::decomposition::{Freedom, LegSplit};
 use crate::joint::JointKind;
@@ -71,6 +72,8 @@ pub(crate) struct CompiledLeg {
     pub cut: Section,
     /// Number of its imaginary joint.
     pub imaginary: Option<usize>,
+    /// Where the lower section closes, on each branch, if that is a region of the plane.
+    pub shapes: [Option<Shape>; 2],
     /// The upper section has a say in whether the leg follows, or drives it.
     pub upper_decides: bool,
     /// The cut is a turn, and the section that it is handed on to counts whole turns.
@@ -152,6 +155,9 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
+        let of_joint =
+            lower.slots.map(|slot| slot.map_or(&Limits::Free, |s| &limits[s.coordinate]));
+        let shapes = Branch::BOTH.map(|branch| lower.chain.shape(branch, of_joint));
         // Solved second, an upper section may be out of reach; a ball never is.
         let may_fail = cut == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
         Ok(Self {
@@ -159,6 +165,7 @@ impl CompiledLeg {
             lower,
             upper,
             cut,
+            shapes,
             imaginary: None,
             unwinds: task.cut_point.is_some()
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
@@ -234,6 +241,15 @@ impl CompiledLeg {
                     .map_err(of(Section::Upper))?;
                 Ok(LegSolution { lower, upper, tau: cut.inverse() })
             }
+        }
+    }
+
+    /// Where the lower section closes, if that is a region of the plane.
+    pub fn shape(&self, branch: Branch) -> Option<&Shape> {
+        let [plus, minus] = &self.shapes;
+        match branch {
+            Branch::Plus => plus.as_ref(),
+            Branch::Minus => minus.as_ref(),
         }
     }
 

@@ -16,7 +16,6 @@ use super::leg::{LegBranches, Section};
 use super::{ImaginaryJoint, Manipulator, Mode};
 use crate::chain::region::Region;
 use crate::chain::{Amount, Chain};
-use crate::limits::Limits;
 use crate::task::Displacement;
 use nalgebra::Complex;
 
@@ -169,45 +168,23 @@ impl Manipulator {
         }
     }
 
-    /// Where the leg follows to, as a region of the first two coordinates of `v`, when those after
-    /// them are `others`: the same answer as [`Manipulator::follows`] gives, rounding apart. The
-    /// first two are counted from `origin`, in units of `1 / scale`. `None` where `v` does not move a
-    /// plane or the leg's limits leave no region of that shape.
-    pub fn region(
-        &self,
-        way: &Follow,
-        others: &[f64],
-        origin: Complex<f64>,
-        scale: f64,
-    ) -> Option<Region> {
-        let leg = &self.legs[way.leg];
+    /// Where the leg follows to, as a region of the plane: of the translations that may be added to the
+    /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::follows`] gives,
+    /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
+    /// shape.
+    pub fn region(&self, way: &Follow, v: &Displacement, scale: f64) -> Option<Region> {
         if way.asks_upper {
             return None;
         }
-        let limits = leg.lower.slots.map(|slot| match slot {
-            Some(slot) => &self.limits[slot.coordinate],
-            None => &Limits::Free,
-        });
-        // The first two coordinates of v translate it; home has none of that.
-        let home = |i: usize| self.task.coordinates[i].home;
-        let mut v = [0.0; 3];
-        v[..2].copy_from_slice(&[home(0), home(1)]);
-        v[2..2 + others.len()].copy_from_slice(others);
-        let v = self.task.lower(&v);
+        let shape = self.legs[way.leg].shape(way.branches.lower)?;
         let target = match way.tau {
-            Some(tau) => self.task.lower_cut.after(&v, tau),
+            Some(tau) => &self.task.lower_cut.after(v, tau),
             None => v,
         };
-        let (region, at_home) = match (&leg.lower.chain, target) {
-            (Chain::Planar(chain), Displacement::Planar(g)) => {
-                (chain.region(g.rotation, way.branches.lower, limits)?, g.translation)
-            }
-            (Chain::Translational(chain), Displacement::Translational(t)) => {
-                let range = |slider: usize| <[f64; 2]>::from(limits[slider].range());
-                (chain.region([range(0), range(1)]), t)
-            }
-            _ => return None,
-        };
-        Some(region.placed(Complex::new(home(0), home(1)) - at_home - origin, scale))
+        match target {
+            Displacement::Planar(g) => shape.at(g.rotation, -g.translation, scale),
+            Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),
+            Displacement::Spherical(_) | Displacement::Cylindrical { .. } => None,
+        }
     }
 }

@@ -5,10 +5,15 @@ use crate::grid::Sections;
 use opm_core::enclosure::{Asked, MOST, Piece, Side};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
+use opm_core::number::readable;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::RangeInclusive;
 
 /// Most first boxes: half turns of tilts.
 const MOST_PIECES: usize = 4096;
+
+/// Measures that are numbers in any units of length and angle, too.
+const MEASURES: RangeInclusive<f64> = 1e-280..=1e280;
 
 /// A range of one coordinate, as it is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +126,11 @@ pub enum DomainError {
     #[error("{0} is given twice")]
     Twice(String),
     /// An end that is not a number, or the ends reversed.
-    #[error("{name}: {min} to {max}, expected numbers up to {LARGEST:e}, the smaller one first")]
+    #[error(
+        "{name}: {} to {}, expected numbers up to {LARGEST:e}, the smaller one first",
+        readable(*min),
+        readable(*max)
+    )]
     Range {
         /// The coordinate.
         name: String,
@@ -131,7 +140,11 @@ pub enum DomainError {
         max: f64,
     },
     /// A tilt over too many turns.
-    #[error("{name}: {min} to {max}, expected at most {MOST_PIECES} half turns")]
+    #[error(
+        "{name}: {} to {}, expected at most {MOST_PIECES} half turns",
+        readable(*min),
+        readable(*max)
+    )]
     Turns {
         /// The coordinate.
         name: String,
@@ -208,7 +221,7 @@ impl Domain {
                 .flat_map(|sides| parts.iter().map(move |part| [&sides[..], &[*part]].concat()))
                 .collect();
         }
-        if !whole.is_normal() {
+        if !MEASURES.contains(&whole) {
             return Err(DomainError::Measure(whole));
         }
         Ok(Self { sections, axes, wide, first, whole })

@@ -196,7 +196,9 @@ fn narrow(
         Convex::Bands(bands) => {
             cut(rows, from, to, doubts, |y| region::common(bands, y, precision))
         }
-        Convex::Disc(disc) => cut(rows, from, to, doubts, |y| disc.section(y, precision)),
+        Convex::Disc(disc) => {
+            cut(rows, from, to, doubts, |y| disc.section(y, precision));
+        }
         Convex::Stadium(stadium) => {
             cut(rows, from, to, doubts, |y| stadium.section(y, precision));
         }
@@ -259,21 +261,21 @@ fn count_holes(holes: &mut [Hole], counts: &mut [f64]) {
     let met = || holes.iter().filter(|hole| hole.met).map(|hole| &hole.rows);
     for (number, a) in met().enumerate() {
         for b in met().take(number) {
-            for i in 0..rows {
+            for (i, count) in counts.iter_mut().enumerate().take(ROWS) {
                 let (first, last) = (larger(a.first[i], b.first[i]), smaller(a.last[i], b.last[i]));
-                counts[i] += larger(last - first + 1.0, 0.0);
+                *count += larger(last - first + 1.0, 0.0);
             }
         }
     }
     if number > 2 {
         let mut in_row = [0.0; ROWS];
         for hole in met() {
-            for i in 0..rows {
-                in_row[i] += if hole.first[i] <= hole.last[i] { 1.0 } else { 0.0 };
+            for (i, number) in in_row.iter_mut().enumerate() {
+                *number += if hole.first[i] <= hole.last[i] { 1.0 } else { 0.0 };
             }
         }
-        for i in 0..rows {
-            counts[i] -= if in_row[i] > 2.0 { f64::INFINITY } else { 0.0 };
+        for (count, number) in counts.iter_mut().zip(in_row) {
+            *count -= if number > 2.0 { f64::INFINITY } else { 0.0 };
         }
     }
 }

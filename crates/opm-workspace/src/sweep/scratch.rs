@@ -6,7 +6,6 @@ use super::runs::{self, Run};
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Sections, fill};
-use nalgebra::Complex;
 use opm_core::chain::equation::Span;
 use opm_core::manipulator::{Breaks, Follow};
 use pulp::Arch;
@@ -42,10 +41,9 @@ pub struct Scratch<'a> {
     /// A row's step, and the largest number of the grid, in steps.
     step: f64,
     extent: f64,
-    /// Second coordinate of the first row, and its increase a row, in steps.
-    first_row: f64,
+    /// From a row to the next, in steps.
     row_step: f64,
-    /// Second coordinates of the rows that are being decided, in steps.
+    /// How far the rows that are being decided are from the first, in steps.
     rows: Vec<f64>,
     /// Of all legs together where they are `plain`, else of each way of every leg, in their order.
     cuts: Vec<Cuts>,
@@ -80,11 +78,9 @@ impl<'a> Scratch<'a> {
             1 => 1.0,
             count => (axes[0].max - axes[0].min) / (count - 1) as f64,
         };
-        let rows = match &axes[1..] {
-            [axis, ..] if planar => {
-                [axis.min, (axis.max - axis.min) / (axis.count.max(2) - 1) as f64]
-            }
-            _ => [0.0; 2],
+        let row_step = match &axes[1..] {
+            [axis, ..] if planar => (axis.max - axis.min) / (axis.count.max(2) - 1) as f64,
+            _ => 0.0,
         };
         Self {
             sweep,
@@ -97,8 +93,7 @@ impl<'a> Scratch<'a> {
             plain: false,
             step,
             extent: plane / step,
-            first_row: rows[0] / step,
-            row_step: rows[1] / step,
+            row_step: row_step / step,
             rows: Vec::with_capacity(ROWS),
             cuts: Vec::new(),
             // A row of the upper section alone has no first coordinate that could differ.
@@ -131,18 +126,22 @@ impl<'a> Scratch<'a> {
         if !self.alive || sweep.grid.sections() == Sections::Upper {
             return;
         }
-        let (axes, lower) = (sweep.grid.axes(), sweep.grid.lower());
-        let rest = if lower > 2 { 1..lower - 1 } else { 0..0 };
-        if lower > 2 {
-            fill(&axes[2..lower], sheet, &mut self.others[rest.clone()]);
+        let axes = &sweep.grid.axes()[..sweep.grid.lower()];
+        // The sheet's first pose, which its regions are seen from.
+        let mut first = [0.0; 3];
+        for (value, axis) in first.iter_mut().zip(&axes[..axes.len().min(2)]) {
+            *value = axis.min;
         }
-        let origin = Complex::new(axes[0].min, 0.0);
+        if axes.len() > 2 {
+            fill(&axes[2..], sheet, &mut first[2..axes.len()]);
+            self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
+        }
+        let v = sweep.manipulator.task().lower(&first[..axes.len()]);
         let scale = self.step.recip();
         self.plain = true;
         for ways in &mut self.legs {
             for way in ways.iter_mut() {
-                let others = &self.others[rest.clone()];
-                let region = sweep.manipulator.region(&way.follow, others, origin, scale);
+                let region = sweep.manipulator.region(&way.follow, &v, scale);
                 way.region = region.and_then(|region| RowRegion::new(region, self.extent));
                 self.plain &= way.region.is_some();
             }
@@ -218,8 +217,7 @@ impl<'a> Scratch<'a> {
         }
         self.rows.clear();
         // To within the rounding that the cuts allow for.
-        let height = |row: u64| self.first_row + self.row_step * row as f64;
-        self.rows.extend(rows.clone().map(height));
+        self.rows.extend(rows.clone().map(|row| self.row_step * row as f64));
         let ways = self.legs.iter().map(Vec::len).sum();
         self.cuts.resize_with(ways, Cuts::new);
         self.followed.resize_with(ways, Vec::new);

@@ -1,7 +1,7 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
 use super::{Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
-use crate::chain::region::Region;
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm};
 use nalgebra::Complex;
 
@@ -23,11 +23,10 @@ impl Ppr {
         [first, second, third]
     }
 
-    /// The region of the RPP, for targets backwards: `t ↦ -conj(r) t`.
-    pub(super) fn region(&self, rotation: Complex<f64>, [first, second]: [[f64; 2]; 2]) -> Region {
+    /// That of the RPP, backwards.
+    pub(super) fn shape(&self, [first, second]: [[f64; 2]; 2]) -> Shape {
         let backwards = |[low, high]: [f64; 2]| [-high, -low];
-        let region = self.0.region(rotation.conj(), [backwards(second), backwards(first)]);
-        region.turned(-rotation)
+        self.0.shape([backwards(second), backwards(first)]).backwards()
     }
 }
 

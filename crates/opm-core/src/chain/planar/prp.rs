@@ -2,6 +2,7 @@
 
 use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
 use crate::chain::region::{Region, parallelogram};
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM};
 use nalgebra::Complex;
 
@@ -22,17 +23,21 @@ impl Prp {
         [first, self.pivot.joint(), second]
     }
 
-    /// A parallelogram; `None` where the slides come to be all but parallel.
-    pub(super) fn region(&self, rotation: Complex<f64>, ranges: [[f64; 2]; 2]) -> Option<Region> {
+    /// A parallelogram of which one side turns with the target.
+    pub(super) fn shape(&self, ranges: [[f64; 2]; 2]) -> Shape {
+        Shape::sheared(*self, ranges)
+    }
+
+    /// The parallelogram; `None` where the slides come to be all but parallel.
+    pub(in crate::chain) fn region(
+        &self,
+        rotation: Complex<f64>,
+        ranges: [[f64; 2]; 2],
+    ) -> Option<Region> {
         let slides = [self.slides[0], rotation * self.slides[1]];
         let offset = rotation * self.pivot.at - self.pivot.at;
         let crossing = cross(slides[0], slides[1]).abs() > DEGENERATE;
         crossing.then(|| parallelogram(slides, offset, ranges))
-    }
-
-    /// The pivot's amount for a target that is turned by `rotation`.
-    pub(super) fn turn(&self, rotation: Complex<f64>) -> Amount {
-        self.pivot.amount(rotation)
     }
 
     /// What the sliders have to make up for: the way of the pivot's own point of the outer link.

@@ -3,6 +3,7 @@
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Band, Convex, Region, Stadium};
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, RIM};
 use nalgebra::Complex;
 
@@ -52,15 +53,9 @@ impl Prr {
     }
 
     /// What half the circle about the inner pivot sweeps, as the slider goes through its range: what
-    /// it sweeps from the one end on, without what it sweeps beyond the other.
-    pub(super) fn region(
-        &self,
-        rotation: Complex<f64>,
-        branch: Branch,
-        [low, high]: [f64; 2],
-    ) -> Region {
-        // Targets that leave the outer pivot where the inner one is at home.
-        let home = self.pivots[0].at - rotation * self.outer();
+    /// it sweeps from the one end on, without what it sweeps beyond the other. For the outer pivot.
+    pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
+        let home = self.pivots[0].at;
         // The slider is ahead of the outer pivot by the root, or behind: sweep towards that side.
         let (along, start, end) = match branch {
             Branch::Plus => (self.slide, low, high),
@@ -74,7 +69,8 @@ impl Prr {
         } else {
             Convex::Stadium(stadium(start))
         };
-        Region { whole, hole: (end < f64::INFINITY).then(|| Convex::Stadium(stadium(end))) }
+        let hole = (end < f64::INFINITY).then(|| Convex::Stadium(stadium(end)));
+        Shape::of_places(Region { whole, hole }, self.outer())
     }
 }
 

@@ -1,7 +1,8 @@
 //! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
 
 use super::{Amount, Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
-use crate::chain::region::{Region, parallelogram};
+use crate::chain::region::parallelogram;
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, DEGENERATE};
 use nalgebra::Complex;
 
@@ -29,10 +30,11 @@ impl Rpp {
         [self.pivot.joint(), first, second]
     }
 
-    /// A parallelogram, turned with the target.
-    pub(super) fn region(&self, rotation: Complex<f64>, ranges: [[f64; 2]; 2]) -> Region {
-        let offset = rotation * self.pivot.at - self.pivot.at;
-        parallelogram(self.slides.map(|slide| rotation * slide), offset, ranges)
+    /// A parallelogram, turned with the target: see [`Shape::backwards`].
+    pub(super) fn shape(&self, ranges: [[f64; 2]; 2]) -> Shape {
+        // For the pivot, seen from the end: minus the way that the sliders go.
+        let places = parallelogram(self.slides, self.pivot.at, ranges).turned((-1.0).into());
+        Shape::of_places(places, self.pivot.at).backwards()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, RIM, direction};
 use nalgebra::Complex;
 
@@ -25,26 +26,22 @@ impl Rpr {
         [inner, PlanarJoint::Prismatic { along: self.slide }, outer]
     }
 
-    /// A ring about the first pivot, between the lengths that the slider allows.
-    pub(super) fn region(
-        &self,
-        rotation: Complex<f64>,
-        branch: Branch,
-        [low, high]: [f64; 2],
-    ) -> Region {
-        let centre = self.pivots[0].at - rotation * self.pivots[1].at;
+    /// A ring about the first pivot, between the lengths that the slider allows, for the second.
+    pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
+        let [centre, outer] = self.pivots.map(|pivot| pivot.at);
         let [low, high] = [low + self.offset.re, high + self.offset.re];
         let [low, high] = match branch {
             Branch::Plus => [low, high],
             Branch::Minus => [-high, -low],
         };
         if high < 0.0 {
-            return Region::NOTHING;
+            return Shape::of_places(Region::NOTHING, outer);
         }
         let aside = self.offset.im * self.offset.im;
         let disc = |square: f64| Convex::Disc(Disc::new(centre, square));
         let inner = if low > 0.0 { aside + low * low } else { aside * (1.0 - 2.0 * RIM) };
-        Region { whole: disc(aside + high * high), hole: (inner > 0.0).then(|| disc(inner)) }
+        let hole = (inner > 0.0).then(|| disc(inner));
+        Shape::of_places(Region { whole: disc(aside + high * high), hole }, outer)
     }
 
     /// From the inner pivot to the outer one.

@@ -1,7 +1,7 @@
 //! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint, Prr};
-use crate::chain::region::Region;
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm};
 use nalgebra::Complex;
 
@@ -19,15 +19,9 @@ impl Rrp {
         [first, second, third]
     }
 
-    /// The region of the PRR, for targets backwards: `t ↦ -conj(r) t`.
-    pub(super) fn region(
-        &self,
-        rotation: Complex<f64>,
-        branch: Branch,
-        [low, high]: [f64; 2],
-    ) -> Region {
-        let backwards = self.0.region(rotation.conj(), branch, [-high, -low]);
-        backwards.turned(-rotation)
+    /// That of the PRR, backwards.
+    pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
+        self.0.shape(branch, [-high, -low]).backwards()
     }
 }
 

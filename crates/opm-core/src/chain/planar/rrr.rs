@@ -2,6 +2,7 @@
 
 use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
 use crate::chain::region::{Convex, Disc, Region};
+use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM, direction};
 use nalgebra::Complex;
 
@@ -49,13 +50,13 @@ impl Rrr {
         cosine.abs() <= 1.0 + RIM
     }
 
-    /// A ring about the first pivot.
-    pub(super) fn region(&self, rotation: Complex<f64>) -> Region {
-        let centre = self.pivots[0].at - rotation * self.wrist();
+    /// A ring about the first pivot, for the wrist.
+    pub(super) fn shape(&self) -> Shape {
         let swing = self.product * (1.0 + RIM);
-        let disc = |half_square: f64| Convex::Disc(Disc::new(centre, 2.0 * half_square));
+        let disc = |half_square: f64| Convex::Disc(Disc::new(self.pivots[0].at, 2.0 * half_square));
         let inner = self.mean_square - swing;
-        Region { whole: disc(self.mean_square + swing), hole: (inner > 0.0).then(|| disc(inner)) }
+        let hole = (inner > 0.0).then(|| disc(inner));
+        Shape::of_places(Region { whole: disc(self.mean_square + swing), hole }, self.wrist())
     }
 
     /// The home position of the wrist, which a target displaces.

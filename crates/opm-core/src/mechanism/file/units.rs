@@ -1,6 +1,7 @@
 //! The units that a mechanism file names for its own numbers; everything after reading is SI.
 
 use crate::joint::Quantity;
+use crate::number::readable;
 use std::fmt;
 
 /// A unit of length.
@@ -136,7 +137,7 @@ impl FileUnits {
 fn six_digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     // `-0` reads like a mistake.
-    if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
+    if rounded == 0.0 { "0".to_owned() } else { readable(rounded) }
 }
 
 #[cfg(test)]
