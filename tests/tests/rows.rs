@@ -4,10 +4,12 @@
 use fastrand::Rng;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Follow, Manipulator};
+use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
 use opm_tests::random::{Options, PAIRS, mechanism, order};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 
 /// Poses that are decided both ways.
 const POSES: u64 = 100_000_000;
@@ -246,4 +248,144 @@ fn fine_grids_are_no_exception() {
     }
     println!("{judged} grids");
     assert!(judged > 300);
+}
+
+/// Rows that touch the rim of a ring in a pose, to the last digits: where the root that a row's ends are
+/// taken from is all rounding, the chains are asked.
+#[test]
+fn rows_that_touch_a_rim_are_no_exception() {
+    const STEP: f64 = 1e-4;
+    /// Rows on either side of the rim.
+    const ROWS: f64 = 40.0;
+    let mut rng = Rng::with_seed(24);
+    let (mut judged, mut parted) = (0, 0);
+    for round in 0..3000 {
+        let pair = [PAIRS[0], PAIRS[3]][round % 2];
+        let options = Options { limited: 0.0, balls: false };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let rings: Vec<usize> = (0..mechanism.legs.len())
+            .filter(|&leg| {
+                let split = &decomposition.legs[leg];
+                ["RRR", "RR"].contains(&&*order(&mechanism.legs[leg], &split.lower))
+            })
+            .collect();
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let mode = manipulator.home_mode();
+        let mut pose = manipulator.task().home();
+        pose.iter_mut().for_each(|q| *q += 0.2 * (rng.f64() - 0.5));
+        let lower = manipulator.task().lower_count;
+        let b = manipulator.task().upper(&pose[lower..]);
+        for leg in rings {
+            let mut ways = Vec::new();
+            manipulator.follow(leg, &b, Some(mode), &mut ways);
+            let [way] = &ways[..] else { continue };
+            let closes = |[x, y]: [f64; 2]| -> bool {
+                let mut v = pose[..lower].to_vec();
+                [v[0], v[1]] = [x, y];
+                manipulator.follows(way, &manipulator.task().lower(&v))
+            };
+            let Some([middle, high]) = top(closes, [pose[0], pose[1]]) else { continue };
+            // In a pose that is above the middle, or beside it by less than a step.
+            let beside = if rng.bool() { 0.0 } else { STEP * 10f64.powf(-4.0 * rng.f64()) };
+            let x = middle + beside;
+            let [_, y] = edge(closes, [x, high - NEAR], [x, high + NEAR]);
+            let half = ROWS * f64::EPSILON * y.abs().max(0.1);
+            let axes = manipulator.task_coordinates().iter().zip(&pose).enumerate();
+            let axes = axes.map(|(i, (c, &at))| match i {
+                0 => Axis::new(c.name, x - 10.0 * STEP, x + 10.0 * STEP, 21),
+                1 => Axis::new(c.name, y - half, y + half, 2 * ROWS as u64 + 1),
+                _ => Axis::fixed(c.name, at),
+            });
+            let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+            let modes = Modes::One(mode);
+            let count = Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap();
+            let expected = by_predicate(&manipulator, &grid, modes);
+            assert_eq!(count.reachable, expected, "round {round}: {pair:?}, leg {leg}");
+            judged += 1;
+            parted += u32::from(0 < expected && expected < grid.poses());
+        }
+    }
+    println!("{judged} grids, {parted} of them in part");
+    assert!(parted > 400, "{parted} of {judged}");
+}
+
+/// How near the highest point of a disc is found, before it is searched for.
+const NEAR: f64 = 1e-6;
+
+/// The last point that is in, from one that is to one that is not.
+fn edge(within: impl Fn([f64; 2]) -> bool, mut inner: [f64; 2], mut outer: [f64; 2]) -> [f64; 2] {
+    for _ in 0..100 {
+        let middle = [0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])];
+        *(if within(middle) { &mut inner } else { &mut outer }) = middle;
+    }
+    inner
+}
+
+/// The highest point of a disc that a point is in, by two of its chords; `None` where these do not belong to one,
+/// as where there is a hole.
+fn top(within: impl Fn([f64; 2]) -> bool, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+    const BEYOND: f64 = 20.0;
+    /// Between two chords.
+    const APART: f64 = 0.05;
+    let chord = |y: f64| {
+        let ends = [-BEYOND, BEYOND].map(|to| edge(&within, [x, y], [x + to, y])[0]);
+        within([x, y]).then_some([0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])])
+    };
+    let ([middle, half], [again, other]) = (chord(y)?, chord(y + APART)?);
+    let up = (other * other - half * half + APART * APART) / (2.0 * APART);
+    let top = y + up + half.hypot(up);
+    let one_disc = (middle - again).abs() < 1e-9;
+    let found = one_disc && within([middle, top - NEAR]) && !within([middle, top + NEAR]);
+    found.then_some([middle, top])
+}
+
+/// Rows that run along the edge of a region, or all but along it: a slider of the shipped mechanism has the direction
+/// of the rows, to within a tilt of some size.
+#[test]
+fn rows_along_an_edge_are_no_exception() {
+    const STEP: f64 = 1e-4;
+    const ROWS: f64 = 40.0;
+    let mut rng = Rng::with_seed(25);
+    let text = examples::find("plano-spherical-5dof").unwrap().text;
+    let family = file::read(text).unwrap().family.unwrap();
+    let (mut judged, mut parted) = (0, 0);
+    for round in 0..400 {
+        let tilt = if round % 4 == 0 { 0.0 } else { 10f64.powf(-5.0 - 8.0 * rng.f64()) };
+        let alpha = ParameterValue::Number(FRAC_PI_2 + tilt);
+        // A slider without ends sweeps a band, else half of one with a blunt end.
+        let ends =
+            if rng.bool() { ParameterValue::None } else { ParameterValue::Pair([-0.3, 0.3]) };
+        let family = family.with([("leg3.alpha", alpha), ("leg3.limits.S", ends)]).unwrap();
+        let manipulator = Manipulator::new(family.assemble().unwrap()).unwrap();
+        let mut pose = manipulator.task().home();
+        pose.iter_mut().for_each(|q| *q += 0.2 * (rng.f64() - 0.5));
+        let modes = Modes::One(manipulator.home_mode());
+        let b = manipulator.task().upper(&pose[2..]);
+        let mut ways = Vec::new();
+        manipulator.follow(2, &b, modes.one(), &mut ways);
+        let [way] = &ways[..] else { continue };
+        let within = |at: [f64; 2]| manipulator.follows(way, &manipulator.task().lower(&at));
+        let [x, y] = [pose[0], pose[1]];
+        for beyond in [y - 5.0, y + 5.0] {
+            if !within([x, y]) || within([x, beyond]) {
+                continue;
+            }
+            let [_, y] = edge(within, [x, y], [x, beyond]);
+            let half = (ROWS * f64::EPSILON * 0.1).max(10.0 * STEP * tilt);
+            let axes = manipulator.task_coordinates().iter().zip(&pose).enumerate();
+            let axes = axes.map(|(i, (c, &at))| match i {
+                0 => Axis::new(c.name, at - 10.0 * STEP, at + 10.0 * STEP, 21),
+                1 => Axis::new(c.name, y - half, y + half, 2 * ROWS as u64 + 1),
+                _ => Axis::fixed(c.name, at),
+            });
+            let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+            let count = Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap();
+            let expected = by_predicate(&manipulator, &grid, modes);
+            assert_eq!(count.reachable, expected, "round {round}: tilt {tilt:e}");
+            judged += 1;
+            parted += u32::from(0 < expected && expected < grid.poses());
+        }
+    }
+    println!("{judged} grids, {parted} of them in part");
+    assert!(parted > 150, "{parted} of {judged}");
 }
