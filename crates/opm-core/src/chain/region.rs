@@ -295,11 +295,17 @@ impl Disc {
         self.centre.l1_norm() + if radius.is_finite() { radius } else { 0.0 }
     }
 
+    /// The square of half the chord that the row at the second coordinate `y` cuts from it.
+    #[inline(always)]
+    fn square(&self, y: f64) -> f64 {
+        let up = y - self.centre.im;
+        self.square - up * up
+    }
+
     /// What the row at the second coordinate `y` cuts from it.
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        let up = y - self.centre.im;
-        let square = self.square - up * up;
+        let square = self.square(y);
         let half = larger(square, 0.0).sqrt();
         let gap = missed(square >= 0.0);
         Section {
@@ -331,13 +337,17 @@ impl Stadium {
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
         let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));
-        let tip = self.tip.section(y, precision);
         let (from, to) = (larger(band.from, half.from), smaller(band.to, half.to));
-        let gap = missed(from <= to);
+        let met = from <= to;
+        let from = if met { from } else { f64::INFINITY };
+        let to = if met { to } else { f64::NEG_INFINITY };
+        // Not a number where the row misses the disc: then the second of two is taken.
+        let square = self.tip.square(y);
+        let chord = square.sqrt();
         Section {
-            from: smaller(from + gap, tip.from),
-            to: larger(to - gap, tip.to),
-            sure: tip.sure,
+            from: smaller(self.tip.centre.re - chord, from),
+            to: larger(self.tip.centre.re + chord, to),
+            sure: square.abs() > precision.square,
         }
     }
 }
@@ -356,7 +366,7 @@ fn missed(met: bool) -> f64 {
     if met { 0.0 } else { f64::INFINITY }
 }
 
-/// The smaller of two numbers, one instruction where neither is a NaN.
+/// The smaller of two numbers, the second where either is none: one instruction.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
