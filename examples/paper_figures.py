@@ -107,8 +107,10 @@ def figure_11() -> Figure:
 def figure_13() -> Figure:
     """The 3-DoF manipulator, on rails that are shorter than its own: these would dwarf it."""
     figure = plt.figure(figsize=(7, 5), layout="constrained")
-    panel = figure.add_subplot(projection="3d", elev=32, azim=-60)
-    plot.mechanism(HELICAL.with_parameters({"limits.S": (-0.06, 0.06)}), [0.03, 0.02, 1.0], ax=panel)
+    panel = figure.add_subplot(projection="3d", elev=45, azim=-75)
+    plot.mechanism(HELICAL.with_parameters({"limits.S": (-0.026, 0.022)}), [0.03, 0.02, 1.0], ax=panel)
+    for axis in (panel.xaxis, panel.yaxis, panel.zaxis):
+        axis.labelpad = 10
     return figure
 
 

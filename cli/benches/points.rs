@@ -1,9 +1,11 @@
 //! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes.
 
 use opm_benches::{Contender, compare};
-use opm_mcap::{CHUNK_BYTES, COMPRESSION_LEVEL};
+use opm_mcap::workspace::{CHUNK_BYTES, OVERVIEW_TOPIC, SLICES_TOPIC};
+use opm_mcap::{COMPRESSION_LEVEL, ReadError, read};
 use std::fs;
 use std::hint::black_box;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use zstd::bulk::Compressor;
 
@@ -11,9 +13,6 @@ const MECHANISM: &str = "plano-spherical-5dof";
 /// Twenty million poses of it are in reach; many more than an overview has.
 const GRID: [&str; 5] =
     ["x=-0.15:0.15:201", "y=-0.15:0.15:201", "zeta=-0.4:0.4:9", "xi=-0.4:0.4:9", "psi=-0.4:0.4:9"];
-/// What ends the header of a PLY file.
-const END: &[u8] = b"end_header\n";
-
 fn main() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
@@ -27,13 +26,16 @@ fn main() {
         assert!(status.expect("the program starts").success());
     };
     run("2", Some(&mcap));
-    run("2", Some(&ply));
-    // As the recording has them, but for what is between them there.
-    let table = fs::read(&ply).expect("what was written");
-    let header = table.windows(END.len()).position(|bytes| bytes == END).expect("a header");
-    let bytes = &table[header + END.len()..];
-    let points = points(&table[..header]);
-    let stride = bytes.len() as u64 / points;
+    // What is in the recording: an overview, then all points.
+    let mut bytes = Vec::new();
+    let recording = read(Path::new(&mcap), |message| {
+        bytes.extend_from_slice(message.data);
+        Ok::<(), ReadError>(())
+    });
+    let recording = recording.expect("what was written");
+    let [points, overview] = [SLICES_TOPIC, OVERVIEW_TOPIC]
+        .map(|topic| recording.topic(topic).and_then(|topic| topic.points).expect("points"));
+    let stride = bytes.len() as u64 / (points + overview);
     let recorded = fs::metadata(&mcap).expect("what was written").len();
 
     let mut compressor = Compressor::new(COMPRESSION_LEVEL as i32).expect("a level of zstd");
@@ -41,17 +43,17 @@ fn main() {
     let timings = compare(vec![
         Contender::new("recorded, one thread", points, || run("1", Some(&mcap))),
         Contender::new("recorded, two threads", points, || run("2", Some(&mcap))),
-        Contender::new("as PLY, which is not compressed, one thread", points, || {
+        Contender::new("as PLY, not compressed, every coordinate, one thread", points, || {
             run("1", Some(&ply));
         }),
         Contender::new("only counted, one thread", points, || run("1", None)),
-        Contender::new("their bytes compressed, by zstd alone", points, || {
+        Contender::new("its bytes compressed, by zstd alone", points, || {
             for chunk in bytes.chunks(CHUNK_BYTES as usize) {
                 black_box(compressor.compress(chunk)).expect("room for a chunk");
             }
         }),
-        Contender::new("their bytes copied", points, || {
-            copy.copy_from_slice(bytes);
+        Contender::new("its bytes copied", points, || {
+            copy.copy_from_slice(&bytes);
             black_box(&copy);
         }),
     ]);
@@ -61,17 +63,9 @@ fn main() {
         println!("| {} | {:.1} | {:.2} |", t.name, 1e-6 / t.seconds, t.ratio);
     }
     println!(
-        "{points} points of {stride} bytes, in the recording {:.2}; the program's whole time, counting \
-         included. Compressing alone takes {:.0} % of it.",
+        "{points} points of {stride} bytes, in the recording {:.2}, the {overview} of its overview among \
+         them; the program's whole time, counting included. Compressing alone takes {:.0} % of it.",
         recorded as f64 / points as f64,
         100.0 * timings[4].ratio,
     );
-}
-
-/// How many points the header of a PLY file announces.
-fn points(header: &[u8]) -> u64 {
-    let header = std::str::from_utf8(header).expect("a header in UTF-8");
-    let mut lines = header.lines();
-    let number = lines.find_map(|line| line.strip_prefix("element vertex "));
-    number.and_then(|number| number.parse().ok()).expect("a number of points")
 }

@@ -325,6 +325,7 @@ pub struct Points<'a> {
     plain: bool,
     joints: Joints<'a>,
     pose: Vec<f64>,
+    row: Vec<f64>,
     portions: Vec<Portion>,
     /// A pose that the sweep found and inverse kinematics did not, or a value that is no number.
     wrong: Option<Failure>,
@@ -363,21 +364,26 @@ impl<'a> Points<'a> {
             }
         };
         let plain = columns.iter().all(|column| matches!(column, Column::Task(_)));
-        let (pose, portions) = (Vec::new(), Vec::new());
-        Self { cloud, columns, packing, plain, joints, pose, portions, wrong: None }
+        let (pose, row, portions) = (Vec::new(), Vec::new(), Vec::new());
+        Self { cloud, columns, packing, plain, joints, pose, row, portions, wrong: None }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
+        self.line(hits.slice, hits.first, hits.others);
+    }
+
+    /// The points of a slice that have these first coordinates, and all others in common.
+    pub fn line(&mut self, slice: u64, first: &[f64], others: &[f64]) {
         let mut pose = std::mem::take(&mut self.pose);
         pose.clear();
         pose.push(0.0);
-        pose.extend(hits.others);
+        pose.extend(others);
         match self.packing {
-            Some(packing) if self.plain => self.line(&packing.packer, hits, &pose),
+            Some(packing) if self.plain => self.plain_line(&packing.packer, slice, first, &pose),
             _ => {
-                for &first in hits.first {
-                    pose[0] = first;
-                    self.point(hits.slice, &pose);
+                for &value in first {
+                    pose[0] = value;
+                    self.point(slice, &pose);
                 }
                 self.pack();
             }
@@ -385,19 +391,23 @@ impl<'a> Points<'a> {
         self.pose = pose;
     }
 
-    /// Points that differ in the first coordinate, and have nothing but coordinates.
-    fn line(&mut self, packer: &Packer, hits: &Hits<'_>, pose: &[f64]) {
+    /// Points that have nothing but coordinates.
+    fn plain_line(&mut self, packer: &Packer, slice: u64, first: &[f64], pose: &[f64]) {
         let value = |column: &Column| match *column {
             Column::Task(number) => pose[number],
             _ => unreachable!("plain points are made of task coordinates"),
         };
-        let row: Vec<f64> = self.columns.iter().map(value).collect();
-        let first = self.columns.iter().position(|column| *column == Column::Task(0));
-        self.open(hits.slice);
-        let Some(portion) = self.portions.last_mut() else { return };
-        if let Err(error) = packer.pack_line(&row, first, hits.first, &mut portion.packed) {
+        let mut row = std::mem::take(&mut self.row);
+        row.clear();
+        row.extend(self.columns.iter().map(value));
+        let column = self.columns.iter().position(|column| *column == Column::Task(0));
+        self.open(slice);
+        if let Some(portion) = self.portions.last_mut()
+            && let Err(error) = packer.pack_line(&row, column, first, &mut portion.packed)
+        {
             self.wrong.get_or_insert(Failure::at("a point", &error));
         }
+        self.row = row;
     }
 
     /// Packs the values so far.
@@ -419,7 +429,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    pub fn point(&mut self, slice: u64, pose: &[f64]) {
+    fn point(&mut self, slice: u64, pose: &[f64]) {
         let manipulator = self.cloud.manipulator;
         let found = match (&mut self.joints, self.cloud.modes) {
             (Joints::One(drives), Modes::One(mode)) => {

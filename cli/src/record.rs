@@ -296,19 +296,26 @@ impl Job<'_> {
         // Of all points, how many there were, and which is the overview's next.
         let (mut seen, mut next) = (0, 0);
         let mut overview = Points::new(cloud, &columns, Some(&packing));
-        let mut pose = vec![0.0; run.grid.axes().len()];
+        let first = &run.grid.axes()[0];
+        let (mut pose, mut chosen) = (vec![0.0; run.grid.axes().len()], Vec::new());
         source
             .points(
                 progress,
                 |hits, runs: &mut Vec<_>| runs.extend(hits.numbers(run.grid)),
                 Vec::new,
                 |runs| {
-                    for opm_workspace::Run { from, to } in runs {
-                        let end = seen + (to - from);
-                        while next < end {
-                            run.grid.pose_into(from + (next - seen), &mut pose);
-                            overview.point(0, &pose);
-                            next += every;
+                    for poses in runs {
+                        let end = seen + (poses.to - poses.from);
+                        if next < end {
+                            // A run is in one row.
+                            run.grid.pose_into(poses.from, &mut pose);
+                            let place = poses.from % first.count;
+                            chosen.clear();
+                            while next < end {
+                                chosen.push(first.value(place + (next - seen)));
+                                next += every;
+                            }
+                            overview.line(0, &chosen, &pose[1..]);
                         }
                         seen = end;
                     }

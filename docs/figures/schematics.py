@@ -113,7 +113,9 @@ def schematic(name, picture, view, radii):
     panel.set(ylim=center[1] + span[1] * np.array((-1, 1)), ylabel="y (mm)")
     panel.set(zlim=center[2] + span[2] * np.array((-1, 1)), zlabel="z (mm)")
     panel.locator_params(nbins=5)
-    panel.set_box_aspect(span, zoom=0.92)
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.labelpad = 10
+    panel.set_box_aspect(span, zoom=0.87)
     panel.view_init(*view)
     for axis in (panel.xaxis, panel.yaxis, panel.zaxis):
         axis.pane.set_facecolor("#fafafa")

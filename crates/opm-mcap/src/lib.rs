@@ -1,7 +1,7 @@
 //! MCAP recordings of what a manipulator does, and reading them back.
 //!
 //! A recording opens in Foxglove, Lichtblick and Rerun. Its messages are of well-known schemas
-//! (`foxglove.PointCloud`), or flat ones that carry their own ([`joints`]), in chunks of about 1 MiB
+//! (`foxglove.PointCloud`), or flat ones that carry their own ([`joints`]), in chunks of 1 MiB, of points 4 MiB,
 //! compressed with zstd on one thread. What is in a recording is said in [`workspace`] and
 //! [`trajectory`], what in a part of a sweep in [`shard`], and
 //! as what else points can be written in [`table`].
@@ -31,7 +31,7 @@ pub use decode::{Cloud, Column};
 pub use error::{ReadError, RecordError};
 pub use file::{PartialFile, Sink};
 pub use flat::Flat;
-pub use log::{CHUNK_BYTES, COMPRESSION_LEVEL, Metadata};
+pub use log::{COMPRESSION_LEVEL, Metadata};
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
 pub use scene::ClosedLine;
 pub use shard::{Shard, ShardRecorder};

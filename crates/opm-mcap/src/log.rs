@@ -12,10 +12,11 @@ use crate::{RecordError, Sink};
 /// Key and value pairs of a metadata record, in the order of their keys.
 pub type Metadata = BTreeMap<String, String>;
 
-/// Uncompressed bytes after which a chunk is closed.
-pub const CHUNK_BYTES: u64 = 1 << 20;
-/// The fastest regular zstd level: half as fast again as the default here, for a file a fifth larger.
-pub const COMPRESSION_LEVEL: u32 = 1;
+/// Uncompressed bytes after which a chunk is closed, where nothing else is said: what a process that is killed
+/// may lose.
+pub(crate) const CHUNK_BYTES: u64 = 1 << 20;
+/// zstd's default: what takes the time is the number of matches, and it finds longer ones than level 1.
+pub const COMPRESSION_LEVEL: u32 = 3;
 
 /// A topic of an open log.
 pub(crate) struct Topic {
@@ -32,15 +33,17 @@ pub(crate) struct Topic {
 ///
 /// Chunks are closed, and the operating system is given everything, by the volume of data and not
 /// by the clock: the same messages give the same bytes, and a killed process loses at most the last
-/// [`CHUNK_BYTES`] and the message being written.
+/// chunk and the message being written.
 pub(crate) struct Log<W: Sink> {
     writer: Option<Writer<W>>,
+    /// Uncompressed bytes after which a chunk is closed.
+    chunk_bytes: u64,
     /// Message bytes in the open chunk.
     pending: u64,
 }
 
 impl<W: Sink> Log<W> {
-    pub fn new(sink: W) -> Result<Self, RecordError> {
+    pub fn new(sink: W, chunk_bytes: u64) -> Result<Self, RecordError> {
         let writer = WriteOptions::new()
             .library(concat!("opm-mcap/", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Zstd))
@@ -48,7 +51,7 @@ impl<W: Sink> Log<W> {
             .compression_threads(0)
             .chunk_size(None)
             .create(sink)?;
-        Ok(Self { writer: Some(writer), pending: 0 })
+        Ok(Self { writer: Some(writer), chunk_bytes, pending: 0 })
     }
 
     /// Adds a topic that carries messages of type `M`.
@@ -88,7 +91,7 @@ impl<W: Sink> Log<W> {
     ) -> Result<(), RecordError> {
         let size = data.len() as u64;
         // A big message gets a chunk of its own, so that reading its neighbours stays cheap.
-        if size >= CHUNK_BYTES && self.pending > 0 {
+        if size >= self.chunk_bytes && self.pending > 0 {
             self.flush()?;
         }
         let header = MessageHeader {
@@ -100,7 +103,7 @@ impl<W: Sink> Log<W> {
         self.attempt(|writer| Ok(writer.write_to_known_channel(&header, data)?))?;
         topic.sequence = topic.sequence.wrapping_add(1);
         self.pending += size;
-        if self.pending >= CHUNK_BYTES { self.flush() } else { Ok(()) }
+        if self.pending >= self.chunk_bytes { self.flush() } else { Ok(()) }
     }
 
     /// Writes a metadata record.

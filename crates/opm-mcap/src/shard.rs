@@ -15,7 +15,7 @@
 
 use crate::decode::varint;
 use crate::joints::{self, Field};
-use crate::log::{Log, Topic};
+use crate::log::{CHUNK_BYTES, Log, Topic};
 use crate::{Metadata, PartialFile, RecordError, Sink};
 
 /// Topic of the runs.
@@ -62,7 +62,7 @@ impl<W: Sink> ShardRecorder<W> {
     /// # Errors
     /// A failed write.
     pub fn new(sink: W, shard: &Shard<'_>) -> Result<Self, RecordError> {
-        let mut log = Log::new(sink)?;
+        let mut log = Log::new(sink, CHUNK_BYTES)?;
         log.attach(shard.mechanism_name, "application/toml", START, shard.mechanism)?;
         log.metadata("run", &shard.run)?;
         log.metadata("shard", &shard.shard)?;

@@ -31,7 +31,7 @@ use foxglove::messages::{
 };
 
 use crate::joints::{JointsTopic, fields};
-use crate::log::{Log, Topic};
+use crate::log::{CHUNK_BYTES, Log, Topic};
 use crate::scene::{Body, check, surface, update};
 use crate::workspace::START;
 use crate::{Metadata, PartialFile, RecordError, Sink};
@@ -231,7 +231,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
                 }
             }
         }
-        let mut log = Log::new(sink)?;
+        let mut log = Log::new(sink, CHUNK_BYTES)?;
         for (name, text) in &trajectory.files {
             let kind = if name.ends_with(".csv") { "text/csv" } else { "application/toml" };
             log.attach(name, kind, START, text)?;

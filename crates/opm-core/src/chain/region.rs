@@ -114,6 +114,7 @@ impl Region {
     }
 
     /// The region after every one of its points `z` has moved to `scale · (z + shift)`.
+    #[inline]
     #[must_use]
     pub fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         Self {
@@ -145,6 +146,27 @@ impl Region {
 }
 
 impl Convex {
+    /// Second coordinates between which all of its points lie whose first ones are in a range: none where
+    /// the second number is less than the first.
+    pub fn rows(&self, first: [f64; 2]) -> [f64; 2] {
+        let common = |a: [f64; 2], b: [f64; 2]| [larger(a[0], b[0]), smaller(a[1], b[1])];
+        match self {
+            Self::Bands([a, b]) => common(a.rows(first), b.rows(first)),
+            Self::Disc(disc) => disc.rows(first),
+            Self::Stadium(Stadium { band, half, tip }) => {
+                let (straight, round) =
+                    (common(band.rows(first), half.rows(first)), tip.rows(first));
+                if straight[1] < straight[0] {
+                    round
+                } else if round[1] < round[0] {
+                    straight
+                } else {
+                    [smaller(straight[0], round[0]), larger(straight[1], round[1])]
+                }
+            }
+        }
+    }
+
     /// The empty set.
     const NOTHING: Self = {
         let band = Band {
@@ -167,6 +189,7 @@ impl Convex {
         }
     }
 
+    #[inline]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         match self {
             Self::Bands(bands) => Self::Bands(bands.map(|band| band.placed(shift, scale))),
@@ -194,6 +217,7 @@ impl Band {
         Self::new(turn * self.across, if self.inverse > 0.0 { [near, far] } else { [far, near] })
     }
 
+    #[inline]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         let offset = self.across.re * shift.re + self.across.im * shift.im;
         Self { met: self.met.map(|end| scale * (end + offset)), ..*self }
@@ -209,6 +233,17 @@ impl Band {
 
     fn is_everything(&self) -> bool {
         self.met.iter().all(|end| end.is_infinite())
+    }
+
+    fn rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let Complex { re, im } = self.across;
+        if im.abs() <= LEVEL {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        }
+        let (near, far) = if self.inverse > 0.0 { (0, 1) } else { (1, 0) };
+        let low = (self.met[near] - larger(re * from, re * to)) / im;
+        let high = (self.met[far] - smaller(re * from, re * to)) / im;
+        if im > 0.0 { [low, high] } else { [high, low] }
     }
 
     fn size(&self) -> f64 {
@@ -240,8 +275,19 @@ impl Disc {
         Self::new(turn * self.centre, self.square)
     }
 
+    #[inline]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         Self::new((self.centre + shift) * scale, self.square * scale * scale)
+    }
+
+    fn rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let off = larger(larger(from - self.centre.re, self.centre.re - to), 0.0);
+        let square = self.square - off * off;
+        if square < 0.0 {
+            return [f64::INFINITY, f64::NEG_INFINITY];
+        }
+        let half = square.sqrt();
+        [self.centre.im - half, self.centre.im + half]
     }
 
     fn size(&self) -> f64 {
@@ -249,11 +295,17 @@ impl Disc {
         self.centre.l1_norm() + if radius.is_finite() { radius } else { 0.0 }
     }
 
+    /// The square of half the chord that the row at the second coordinate `y` cuts from it.
+    #[inline(always)]
+    fn square(&self, y: f64) -> f64 {
+        let up = y - self.centre.im;
+        self.square - up * up
+    }
+
     /// What the row at the second coordinate `y` cuts from it.
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        let up = y - self.centre.im;
-        let square = self.square - up * up;
+        let square = self.square(y);
         let half = larger(square, 0.0).sqrt();
         let gap = missed(square >= 0.0);
         Section {
@@ -285,13 +337,17 @@ impl Stadium {
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
         let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));
-        let tip = self.tip.section(y, precision);
         let (from, to) = (larger(band.from, half.from), smaller(band.to, half.to));
-        let gap = missed(from <= to);
+        let met = from <= to;
+        let from = if met { from } else { f64::INFINITY };
+        let to = if met { to } else { f64::NEG_INFINITY };
+        // Not a number where the row misses the disc: then the second of two is taken.
+        let square = self.tip.square(y);
+        let chord = square.sqrt();
         Section {
-            from: smaller(from + gap, tip.from),
-            to: larger(to - gap, tip.to),
-            sure: tip.sure,
+            from: smaller(self.tip.centre.re - chord, from),
+            to: larger(self.tip.centre.re + chord, to),
+            sure: square.abs() > precision.square,
         }
     }
 }
@@ -310,7 +366,7 @@ fn missed(met: bool) -> f64 {
     if met { 0.0 } else { f64::INFINITY }
 }
 
-/// The smaller of two numbers, one instruction where neither is a NaN.
+/// The smaller of two numbers, the second where either is none: one instruction.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

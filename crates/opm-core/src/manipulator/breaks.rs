@@ -13,6 +13,7 @@ use crate::chain::surface::Surface;
 use crate::chain::{Amount, unit};
 use crate::joint::Quantity;
 use crate::limits::Limits;
+use crate::task::Displacement;
 use std::f64::consts::PI;
 
 /// How far a cut may slide, in sizes of the leg, and its upper section still be asked for: beyond, its
@@ -69,22 +70,22 @@ impl Manipulator {
             size,
             most: None,
         };
-        if way.asks_upper {
-            self.add_cuts(way, &mut breaks)?;
+        if let Some(b) = &way.with_upper {
+            self.add_cuts(way, b, &mut breaks)?;
         }
         Some(breaks)
     }
 
     /// What the upper section allows, as limits of the cut.
-    fn add_cuts(&self, way: &Follow, breaks: &mut Breaks) -> Option<()> {
+    fn add_cuts(&self, way: &Follow, b: &Displacement, breaks: &mut Breaks) -> Option<()> {
         let leg = &self.legs[way.leg];
         let last = leg.lower.chain.freedoms() - 1;
-        breaks.size += leg.upper.size(self) + way.b.size();
+        breaks.size += leg.upper.size(self) + b.size();
         let turns = self.task.cut_point.is_some();
         let most = if turns { PI } else { FAR * breaks.size };
         breaks.most = (!turns).then_some(most);
         let span = Span { from: -most, to: most, step: 0.0 };
-        let path = self.task.upper_cut.path(&way.b);
+        let path = self.task.upper_cut.path(b);
         let hold = |at: f64| {
             let amount = if turns { Amount::Turn(unit(at)) } else { Amount::Value(at) };
             leg.lower.chain.held(last, amount)

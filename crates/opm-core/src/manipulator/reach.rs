@@ -24,11 +24,10 @@ use nalgebra::Complex;
 pub struct Follow {
     pub(super) leg: usize,
     pub(super) branches: LegBranches,
-    pub(super) b: Displacement,
     /// Found from `b`, where the leg's upper section takes the cut.
     pub(super) tau: Option<Amount>,
-    /// The leg takes the cut in its lower section, and its upper one has a say at every pose.
-    pub(super) asks_upper: bool,
+    /// `b`, where the leg takes the cut in its lower section, and its upper one has a say at every pose.
+    pub(super) with_upper: Option<Displacement>,
 }
 
 impl Follow {
@@ -68,8 +67,8 @@ impl Manipulator {
                     }
                 }
             };
-            let asks_upper = tau.is_none() && compiled.upper_decides;
-            ways.push(Follow { leg, branches, b: *b, tau, asks_upper });
+            let with_upper = (tau.is_none() && compiled.upper_decides).then_some(*b);
+            ways.push(Follow { leg, branches, tau, with_upper });
         };
         match mode {
             Some(mode) => solve(self.modes.branches(mode, leg)),
@@ -103,11 +102,10 @@ impl Manipulator {
     pub fn follow_lower(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<Follow>) {
         let compiled = &self.legs[leg];
         let tau = (compiled.cut == Section::Upper).then_some(Amount::Value(tau));
-        let b = self.task.upper(&self.task.home()[self.task.lower_count..]);
         let mut push = |branches: LegBranches| {
             // Choices of the upper section make no difference.
             if ways.iter().all(|way| way.branches.lower != branches.lower) {
-                ways.push(Follow { leg, branches, b, tau, asks_upper: false });
+                ways.push(Follow { leg, branches, tau, with_upper: None });
             }
         };
         match mode {
@@ -152,19 +150,21 @@ impl Manipulator {
     #[inline]
     pub fn follows(&self, way: &Follow, v: &Displacement) -> bool {
         let leg = &self.legs[way.leg];
-        match way.tau {
-            Some(tau) => leg
+        match (way.tau, &way.with_upper) {
+            (Some(tau), _) => leg
                 .solve_lower(&self.task, v, tau, way.branches.lower)
                 .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
-            None if !way.asks_upper => leg
+            (None, None) => leg
                 .lower
                 .chain
                 .inverse(v, way.branches.lower)
                 .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
-            None => leg.solve(&self.task, [v, &way.b], way.branches, 0.0).is_ok_and(|solution| {
-                leg.lower.admits(&self.limits, &solution.lower)
-                    && leg.upper.admits(&self.limits, &solution.upper)
-            }),
+            (None, Some(b)) => {
+                leg.solve(&self.task, [v, b], way.branches, 0.0).is_ok_and(|solution| {
+                    leg.lower.admits(&self.limits, &solution.lower)
+                        && leg.upper.admits(&self.limits, &solution.upper)
+                })
+            }
         }
     }
 
@@ -172,8 +172,9 @@ impl Manipulator {
     /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::follows`] gives,
     /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
     /// shape.
+    #[inline]
     pub fn region(&self, way: &Follow, v: &Displacement, scale: f64) -> Option<Region> {
-        if way.asks_upper {
+        if way.with_upper.is_some() {
             return None;
         }
         let shape = self.legs[way.leg].shape(way.branches.lower)?;

@@ -6,6 +6,7 @@
 use super::runs::Run;
 use opm_core::chain::region::{self, Convex, Precision, Region, Section};
 use pulp::{Simd, WithSimd};
+use std::ops::Range;
 
 /// Rows that are cut together.
 pub const ROWS: usize = 64;
@@ -17,22 +18,33 @@ const TIE: f64 = 1e-6;
 /// Ends that are rounded by more than this many steps are of no use.
 const COARSE: f64 = 0.1;
 
-/// A region in steps, with the tolerance that its sections are right to.
+/// How the rows of a sheet are cut from a region in steps.
 #[derive(Clone, Copy, Debug)]
-pub struct RowRegion {
-    region: Region,
+pub struct Fit {
+    /// Of its sections, and the tolerance that they are right to.
     precision: Precision,
     tie: f64,
+    /// Second coordinates between which the hole meets the rows.
+    hole_rows: [f64; 2],
 }
 
-impl RowRegion {
-    /// `None` where rounding leaves no use in it. `extent` is the largest number of the grid, in steps.
-    pub fn new(region: Region, extent: f64) -> Option<Self> {
-        let size = region.size().max(extent);
+impl Fit {
+    /// `None` where rounding leaves no use in the region. `last` is the last pose of a row, and `extent`
+    /// the largest number of the grid, in steps.
+    pub fn new(region: &Region, last: f64, extent: f64) -> Option<Self> {
+        let size = larger(region.size(), extent);
         // As fine as the numbers allow, and a hundred roundings at least.
         let tie = TIE.max(size * 1e-12);
         let precision = Precision::new(size, tie);
-        (tie < COARSE && region.suits(&precision)).then_some(Self { region, precision, tie })
+        if tie >= COARSE || !region.suits(&precision) {
+            return None;
+        }
+        // A step more on all sides, so that nothing that is left out is too close to call.
+        let hole_rows = region.hole.as_ref().map_or([0.0, -1.0], |hole| {
+            let [from, to] = hole.rows([-1.0, last + 1.0]);
+            [from - 1.0, to + 1.0]
+        });
+        Some(Self { precision, tie, hole_rows })
     }
 }
 
@@ -64,7 +76,9 @@ struct Intervals {
 
 #[derive(Clone, Debug)]
 struct Hole {
-    rows: Intervals,
+    /// Numbers of the rows that it can meet; what the intervals of others are does not matter.
+    rows: Range<usize>,
+    missing: Intervals,
     /// In any row is something missing.
     met: bool,
 }
@@ -105,7 +119,8 @@ impl Cuts {
     /// The poses of row number `row`, in order.
     pub fn runs(&self, row: usize) -> impl Iterator<Item = Run> {
         let holes = move || {
-            let ends = self.holes.iter().map(move |hole| hole.rows.ends(row));
+            let holes = self.holes.iter().filter(move |hole| hole.rows.contains(&row));
+            let ends = holes.map(move |hole| hole.missing.ends(row));
             ends.filter(|[first, last]| first <= last)
         };
         let [mut next, last] = self.common.ends(row);
@@ -132,91 +147,130 @@ impl Intervals {
     }
 }
 
-/// Cuts regions by a window of the rows at some second coordinates, and counts what they have in common.
+/// Second coordinates of rows, and how many count.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// Ascending.
+    pub at: [f64; ROWS],
+    pub count: usize,
+}
+
+impl Rows {
+    /// Those whose second coordinate lies in a range, and some more so that they are whole vectors.
+    fn between(&self, [from, to]: [f64; 2]) -> Range<usize> {
+        const LANES: usize = 8;
+        let rows = &self.at[..self.count];
+        let first = rows.partition_point(|&at| at < from);
+        let end = rows.partition_point(|&at| at <= to);
+        if first >= end {
+            return 0..0;
+        }
+        first / LANES * LANES..end.next_multiple_of(LANES).min(self.count)
+    }
+}
+
+/// Cuts regions by a window of rows, and counts what they have in common.
 pub struct Cut<'a, R> {
     pub regions: R,
-    pub rows: &'a [f64],
+    pub rows: &'a Rows,
     pub window: Run,
     pub cuts: &'a mut Cuts,
 }
 
-impl<'a, R: Iterator<Item = &'a RowRegion> + Clone> WithSimd for Cut<'_, R> {
+impl<'a, R: Iterator<Item = (&'a Region, &'a Fit)> + Clone> WithSimd for Cut<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { regions, rows, window, cuts } = self;
         let Cuts { common, holes, doubts, counts, narrowed: [now, next], .. } = cuts;
-        let rows = &rows[..rows.len().min(ROWS)];
-        let (doubts, counts) = (&mut doubts[..rows.len()], &mut counts[..rows.len()]);
+        let all = 0..rows.count.min(ROWS);
         let (mut now, mut next) = (now, next);
         // Half-way to the next pose on both sides: ends that are farther away are no ties.
         now.first.fill(window.from as f64 - 0.5);
         now.last.fill(window.to as f64 - 0.5);
         doubts.fill(0);
         let mut tie = TIE;
-        for RowRegion { region, precision, tie: own } in regions.clone() {
-            narrow(&region.whole, precision, rows, now, next, doubts);
+        for (region, fit) in regions.clone() {
+            let knife = Knife::new(&region.whole, fit, &rows.at, all.clone());
+            knife.narrow(now, next, doubts);
             (now, next) = (next, now);
-            tie = larger(tie, *own);
+            tie = larger(tie, fit.tie);
         }
         let mut number = 0;
-        for RowRegion { region, precision, .. } in regions {
-            let Some(hole) = &region.hole else { continue };
-            if number == holes.len() {
-                holes.push(Hole { rows: Intervals::NONE, met: false });
+        for (region, fit) in regions {
+            let Some(set) = &region.hole else { continue };
+            let met = rows.between(fit.hole_rows);
+            if met.is_empty() {
+                continue;
             }
+            if number == holes.len() {
+                holes.push(Hole { rows: 0..0, missing: Intervals::NONE, met: false });
+            }
+            let hole = &mut holes[number];
+            hole.rows = met.clone();
             // Cut to what is left of the row, since what is beyond is no tie either.
-            narrow(hole, precision, rows, now, next, doubts);
-            round(next, &mut holes[number].rows, tie, doubts);
+            let knife = Knife::new(set, fit, &rows.at, met.clone());
+            knife.narrow(now, next, doubts);
+            round(met, next, &mut hole.missing, tie, doubts);
             number += 1;
         }
         holes.truncate(number);
-        round(now, common, tie, doubts);
-        count(common, counts);
-        count_holes(holes, counts);
-        for (count, &doubt) in counts.iter_mut().zip(&*doubts) {
-            *count -= if doubt != 0 { f64::INFINITY } else { 0.0 };
+        round(all.clone(), now, common, tie, doubts);
+        for i in all.clone() {
+            counts[i] = larger(common.last[i] - common.first[i] + 1.0, 0.0);
         }
-        (cuts.total, cuts.unsure) = sum(counts);
+        count_holes(holes, counts);
+        for i in all.clone() {
+            counts[i] -= if doubts[i] != 0 { f64::INFINITY } else { 0.0 };
+        }
+        (cuts.total, cuts.unsure) = sum(&counts[all]);
     }
 }
 
-/// Leaves of each row what is in a convex set.
-#[inline(always)]
-fn narrow(
-    set: &Convex,
-    precision: &Precision,
-    rows: &[f64],
-    from: &Intervals,
-    to: &mut Intervals,
-    doubts: &mut [u64],
-) {
-    match set {
-        Convex::Bands(bands) => {
-            cut(rows, from, to, doubts, |y| region::common(bands, y, precision))
-        }
-        Convex::Disc(disc) => {
-            cut(rows, from, to, doubts, |y| disc.section(y, precision));
-        }
-        Convex::Stadium(stadium) => {
-            cut(rows, from, to, doubts, |y| stadium.section(y, precision));
+/// A convex set that some rows cut.
+struct Knife<'a> {
+    set: &'a Convex,
+    precision: &'a Precision,
+    at: &'a [f64; ROWS],
+    rows: Range<usize>,
+}
+
+impl<'a> Knife<'a> {
+    #[inline(always)]
+    fn new(set: &'a Convex, fit: &'a Fit, at: &'a [f64; ROWS], rows: Range<usize>) -> Self {
+        Self { set, precision: &fit.precision, at, rows }
+    }
+
+    /// Leaves of each row what is in the set.
+    #[inline(always)]
+    fn narrow(self, from: &Intervals, to: &mut Intervals, doubts: &mut [u64; ROWS]) {
+        let Self { set, precision, at, rows } = self;
+        match set {
+            Convex::Bands(bands) => {
+                cut(at, rows, from, to, doubts, |y| region::common(bands, y, precision));
+            }
+            Convex::Disc(disc) => {
+                cut(at, rows, from, to, doubts, |y| disc.section(y, precision));
+            }
+            Convex::Stadium(stadium) => {
+                cut(at, rows, from, to, doubts, |y| stadium.section(y, precision));
+            }
         }
     }
 }
 
 #[inline(always)]
 fn cut(
-    rows: &[f64],
+    at: &[f64; ROWS],
+    rows: Range<usize>,
     from: &Intervals,
     to: &mut Intervals,
-    doubts: &mut [u64],
+    doubts: &mut [u64; ROWS],
     section: impl Fn(f64) -> Section,
 ) {
-    let count = rows.len();
-    let doubts = &mut doubts[..count];
-    for i in 0..count.min(ROWS) {
-        let cut = section(rows[i]);
+    for i in rows {
+        let cut = section(at[i]);
         to.first[i] = larger(from.first[i], cut.from);
         to.last[i] = smaller(from.last[i], cut.to);
         doubts[i] |= u64::from(!cut.sure);
@@ -225,9 +279,15 @@ fn cut(
 
 /// The first and last whole numbers in intervals.
 #[inline(always)]
-fn round(from: &Intervals, to: &mut Intervals, tie: f64, doubts: &mut [u64]) {
+fn round(
+    rows: Range<usize>,
+    from: &Intervals,
+    to: &mut Intervals,
+    tie: f64,
+    doubts: &mut [u64; ROWS],
+) {
     let near = |end: f64| (end - end.round_ties_even()).abs() <= tie;
-    for i in 0..doubts.len().min(ROWS) {
+    for i in rows {
         let (first, last) = (from.first[i], from.last[i]);
         doubts[i] |= u64::from(near(first)) | u64::from(near(last));
         to.first[i] = first.ceil();
@@ -235,22 +295,14 @@ fn round(from: &Intervals, to: &mut Intervals, tie: f64, doubts: &mut [u64]) {
     }
 }
 
-#[inline(always)]
-fn count(rows: &Intervals, counts: &mut [f64]) {
-    for i in 0..counts.len().min(ROWS) {
-        counts[i] = larger(rows.last[i] - rows.first[i] + 1.0, 0.0);
-    }
-}
-
 /// Takes from the poses of each row what holes leave out of it: what two of them both leave out was taken
 /// twice, and with more than two in a row the number becomes negative.
 #[inline(always)]
-fn count_holes(holes: &mut [Hole], counts: &mut [f64]) {
-    let rows = counts.len().min(ROWS);
+fn count_holes(holes: &mut [Hole], counts: &mut [f64; ROWS]) {
     let mut number = 0;
-    for Hole { rows: Intervals { first, last }, met } in holes.iter_mut() {
+    for Hole { rows, missing: Intervals { first, last }, met } in holes.iter_mut() {
         let mut any = 0;
-        for i in 0..rows {
+        for i in rows.clone() {
             let missing = larger(last[i] - first[i] + 1.0, 0.0);
             counts[i] -= missing;
             any |= missing.to_bits();
@@ -258,20 +310,22 @@ fn count_holes(holes: &mut [Hole], counts: &mut [f64]) {
         *met = any != 0;
         number += usize::from(*met);
     }
-    let met = || holes.iter().filter(|hole| hole.met).map(|hole| &hole.rows);
+    let met = || holes.iter().filter(|hole| hole.met);
     for (number, a) in met().enumerate() {
         for b in met().take(number) {
-            for (i, count) in counts.iter_mut().enumerate().take(ROWS) {
+            let rows = a.rows.start.max(b.rows.start)..a.rows.end.min(b.rows.end);
+            let (a, b) = (&a.missing, &b.missing);
+            for i in rows {
                 let (first, last) = (larger(a.first[i], b.first[i]), smaller(a.last[i], b.last[i]));
-                *count += larger(last - first + 1.0, 0.0);
+                counts[i] += larger(last - first + 1.0, 0.0);
             }
         }
     }
     if number > 2 {
         let mut in_row = [0.0; ROWS];
-        for hole in met() {
-            for (i, number) in in_row.iter_mut().enumerate() {
-                *number += if hole.first[i] <= hole.last[i] { 1.0 } else { 0.0 };
+        for Hole { rows, missing, .. } in met() {
+            for i in rows.clone() {
+                in_row[i] += if missing.first[i] <= missing.last[i] { 1.0 } else { 0.0 };
             }
         }
         for (count, number) in counts.iter_mut().zip(in_row) {

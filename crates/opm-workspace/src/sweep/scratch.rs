@@ -1,12 +1,13 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
-use super::cuts::{Cut, Cuts, ROWS, RowRegion};
+use super::cuts::{Cut, Cuts, Fit, ROWS, Rows};
 use super::pieces::Changes;
 use super::runs::{self, Run};
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Sections, fill};
 use opm_core::chain::equation::Span;
+use opm_core::chain::region::Region;
 use opm_core::manipulator::{Breaks, Follow};
 use pulp::Arch;
 use std::cell::OnceCell;
@@ -17,11 +18,20 @@ use std::ops::Range;
 struct Way {
     follow: Follow,
     /// Where it does, if that is a region of the plane.
-    region: Option<RowRegion>,
+    region: Option<Region>,
+    /// How rows are cut from it, if they can be.
+    fit: Option<Fit>,
     /// What else tells where it does, if anything but asking does; found when first needed.
     breaks: OnceCell<Option<Breaks>>,
     /// No reachable pose has used it yet.
     pending: bool,
+}
+
+impl Way {
+    /// What rows are cut from.
+    fn cut(&self) -> Option<(&Region, &Fit)> {
+        self.region.as_ref().zip(self.fit.as_ref())
+    }
 }
 
 /// A thread's working memory. A sheet is a set of poses that share all coordinates but the lower
@@ -44,7 +54,9 @@ pub struct Scratch<'a> {
     /// From a row to the next, in steps.
     row_step: f64,
     /// How far the rows that are being decided are from the first, in steps.
-    rows: Vec<f64>,
+    rows: Rows,
+    /// Number of the first of them.
+    first_row: Option<u64>,
     /// Of all legs together where they are `plain`, else of each way of every leg, in their order.
     cuts: Vec<Cuts>,
     /// All coordinates but the first.
@@ -94,7 +106,8 @@ impl<'a> Scratch<'a> {
             step,
             extent: plane / step,
             row_step: row_step / step,
-            rows: Vec::with_capacity(ROWS),
+            rows: Rows { at: [0.0; ROWS], count: 0 },
+            first_row: None,
             cuts: Vec::new(),
             // A row of the upper section alone has no first coordinate that could differ.
             others: vec![0.0; axes.len() - usize::from(sweep.grid.lower() > 0)],
@@ -137,13 +150,14 @@ impl<'a> Scratch<'a> {
             self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
         }
         let v = sweep.manipulator.task().lower(&first[..axes.len()]);
-        let scale = self.step.recip();
+        let (scale, last) = (self.step.recip(), (axes[0].count - 1) as f64);
         self.plain = true;
         for ways in &mut self.legs {
             for way in ways.iter_mut() {
-                let region = sweep.manipulator.region(&way.follow, &v, scale);
-                way.region = region.and_then(|region| RowRegion::new(region, self.extent));
-                self.plain &= way.region.is_some();
+                way.region = sweep.manipulator.region(&way.follow, &v, scale);
+                let region = way.region.as_ref();
+                way.fit = region.and_then(|region| Fit::new(region, last, self.extent));
+                self.plain &= way.fit.is_some();
             }
             self.plain &= ways.len() == 1;
         }
@@ -174,6 +188,7 @@ impl<'a> Scratch<'a> {
             ways.extend(self.found.iter().map(|&follow| Way {
                 follow,
                 region: None,
+                fit: None,
                 breaks: OnceCell::new(),
                 pending: true,
             }));
@@ -215,20 +230,22 @@ impl<'a> Scratch<'a> {
             self.values.clear();
             self.values.extend((window.from..window.to).map(|pose| axes[0].value(pose)));
         }
-        self.rows.clear();
-        // To within the rounding that the cuts allow for.
-        self.rows.extend(rows.clone().map(|row| self.row_step * row as f64));
+        if self.first_row != Some(rows.start) {
+            self.first_row = Some(rows.start);
+            // To within the rounding that the cuts allow for.
+            self.rows.at = std::array::from_fn(|i| self.row_step * (rows.start + i as u64) as f64);
+        }
+        self.rows.count = (rows.end - rows.start) as usize;
         let ways = self.legs.iter().map(Vec::len).sum();
         self.cuts.resize_with(ways, Cuts::new);
         self.followed.resize_with(ways, Vec::new);
-        let heights = &self.rows[..];
         let all = self.legs.iter().flatten();
         let mut reachable = 0;
         // Nobody has to know which poses these are.
         let counted = self.plain && hit.is_none() && self.limit.is_none();
         if self.plain {
-            let (regions, cuts) = (all.filter_map(|way| way.region.as_ref()), &mut self.cuts[0]);
-            self.arch.dispatch(Cut { regions, rows: heights, window, cuts });
+            let (regions, cuts) = (all.filter_map(Way::cut), &mut self.cuts[0]);
+            self.arch.dispatch(Cut { regions, rows: &self.rows, window, cuts });
             if counted {
                 reachable = cuts.total();
             }
@@ -237,8 +254,8 @@ impl<'a> Scratch<'a> {
             }
         } else {
             for (cuts, way) in self.cuts.iter_mut().zip(all) {
-                let regions = way.region.iter();
-                self.arch.dispatch(Cut { regions, rows: heights, window, cuts });
+                let regions = way.cut().into_iter();
+                self.arch.dispatch(Cut { regions, rows: &self.rows, window, cuts });
             }
         }
         for (i, row) in rows.enumerate() {
@@ -406,5 +423,5 @@ impl<'a> Scratch<'a> {
 
 /// All ways are regions of the plane.
 fn is_cut(ways: &[Way]) -> bool {
-    ways.iter().all(|way| way.region.is_some())
+    ways.iter().all(|way| way.fit.is_some())
 }
