@@ -6,7 +6,7 @@ use std::hint::black_box;
 /// Numbers that are held together, as many as a sweep cuts rows together.
 const TOGETHER: usize = 64;
 
-const PASSES: usize = 1000;
+const PASSES: usize = 50_000;
 
 /// Roots that one call of [`take`] takes.
 pub const EACH: u64 = (TOGETHER * PASSES) as u64;
