@@ -230,32 +230,14 @@ impl<'a> Scratch<'a> {
             self.values.clear();
             self.values.extend((window.from..window.to).map(|pose| axes[0].value(pose)));
         }
-        if self.first_row != Some(rows.start) {
-            self.first_row = Some(rows.start);
-            // To within the rounding that the cuts allow for.
-            self.rows.at = std::array::from_fn(|i| self.row_step * (rows.start + i as u64) as f64);
-        }
-        self.rows.count = (rows.end - rows.start) as usize;
-        let ways = self.legs.iter().map(Vec::len).sum();
-        self.cuts.resize_with(ways, Cuts::new);
-        self.followed.resize_with(ways, Vec::new);
-        let all = self.legs.iter().flatten();
+        self.cut(&rows, window);
         let mut reachable = 0;
         // Nobody has to know which poses these are.
         let counted = self.plain && hit.is_none() && self.limit.is_none();
-        if self.plain {
-            let (regions, cuts) = (all.filter_map(Way::cut), &mut self.cuts[0]);
-            self.arch.dispatch(Cut { regions, rows: &self.rows, window, cuts });
-            if counted {
-                reachable = cuts.total();
-            }
-            if counted && !cuts.unsure() {
+        if counted {
+            reachable = self.cuts[0].total();
+            if !self.cuts[0].unsure() {
                 rows.end = rows.start;
-            }
-        } else {
-            for (cuts, way) in self.cuts.iter_mut().zip(all) {
-                let regions = way.cut().into_iter();
-                self.arch.dispatch(Cut { regions, rows: &self.rows, window, cuts });
             }
         }
         for (i, row) in rows.enumerate() {
@@ -295,6 +277,28 @@ impl<'a> Scratch<'a> {
             }
         }
         found.reachable += reachable;
+    }
+
+    /// Cuts a window of some rows from what are regions of the plane.
+    fn cut(&mut self, rows: &Range<u64>, window: Run) {
+        if self.first_row != Some(rows.start) {
+            self.first_row = Some(rows.start);
+            // To within the rounding that the cuts allow for.
+            self.rows.at = std::array::from_fn(|i| self.row_step * (rows.start + i as u64) as f64);
+        }
+        self.rows.count = (rows.end - rows.start) as usize;
+        let ways = self.legs.iter().map(Vec::len).sum();
+        self.cuts.resize_with(ways, Cuts::new);
+        self.followed.resize_with(ways, Vec::new);
+        let (all, rows) = (self.legs.iter().flatten(), &self.rows);
+        if self.plain {
+            let (regions, cuts) = (all.filter_map(Way::cut), &mut self.cuts[0]);
+            self.arch.dispatch(Cut { regions, rows, window, cuts });
+        } else {
+            for (cuts, way) in self.cuts.iter_mut().zip(all) {
+                self.arch.dispatch(Cut { regions: way.cut().into_iter(), rows, window, cuts });
+            }
+        }
     }
 
     /// Anything that was cut is too close to call in row number `i`.
