@@ -32,6 +32,7 @@ fn main() {
     for size in sizes {
         table(&manipulator, size, &pools, peers.as_ref());
     }
+    table_of_threads(&manipulator, &pools);
     if peers.is_none() {
         println!("PEERS_PYTHON names no Python with NumPy and numba to compare with.");
     }
@@ -133,30 +134,54 @@ fn table(
         }
     }
     contenders.push(Contender::new("", square_roots::EACH, square_roots::take));
-    contenders.push(Contender::new("", 2 * square_roots::EACH, || {
-        two.broadcast(|_| square_roots::take());
-    }));
     let mut timings = compare(contenders);
-    let [two_roots, roots] =
-        [(); 2].map(|()| timings.pop().expect("the machine's own rate").seconds.recip());
+    let roots = timings.pop().expect("the machine's own rate").seconds.recip();
     print_table(&format!("sweep, {points} poses a row"), &timings);
     let rows = 1.0 / (timings[0].seconds * points as f64);
     let each = roots_a_row(manipulator, grid);
     println!(
-        "Each counts the same {expected} of {} poses. Two threads: {:.2} times one; where two threads take \
-         nothing but square roots, {:.2} times. The machine's limit: a row takes {each} square roots, and \
-         one more for each hole that it can meet; {:.1} million rows a second take at least {:.0} million. \
-         One thread that does nothing else takes {:.0} million a second (vectorised for {}): {:.0} % of \
-         the limit.",
+        "Each counts the same {expected} of {} poses. The machine's limit: a row takes {each} square roots, \
+         and one more for each hole that it can meet; {:.1} million rows a second take at least {:.0} \
+         million. One thread that does nothing else takes {:.0} million a second (vectorised for {}): \
+         {:.0} % of the limit.",
         grid.poses(),
-        timings[0].seconds / timings[1].seconds,
-        two_roots / roots,
         rows * 1e-6,
         rows * 1e-6 * each as f64,
         roots * 1e-6,
         square_roots::instructions(),
         100.0 * rows * each as f64 / roots,
     );
+}
+
+/// What a second thread gives where a sweep takes longer than threads take to wake up, beside what it gives to
+/// work that needs nothing but the processor.
+fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
+    println!("| two threads for one | poses | times as fast |");
+    println!("|---|---:|---:|");
+    for size in [[64, 25], [256, 21]] {
+        let grid = &sweep_grid(manipulator, size);
+        let expected = by_rows(manipulator, grid, one);
+        let timings = compare(
+            [("one", one), ("two", two)]
+                .map(|(name, pool)| {
+                    contender(name, grid, expected, move || by_rows(manipulator, grid, pool))
+                })
+                .into(),
+        );
+        println!(
+            "| opm, {} poses a row | {} | {:.2} |",
+            size[0],
+            grid.poses(),
+            timings[1].ratio.recip()
+        );
+    }
+    let roots = [(1, one), (2, two)].map(|(threads, pool)| {
+        Contender::new("", threads * square_roots::EACH, move || {
+            pool.broadcast(|_| square_roots::take());
+        })
+    });
+    let timings = compare(roots.into());
+    println!("| nothing but square roots | | {:.2} |", timings[1].ratio.recip());
 }
 
 /// With limits on angles a leg leaves no region of the plane, and rows are decided in pieces.
