@@ -8,6 +8,8 @@
 
 use crate::grid::Axis;
 use crate::set::GridSet;
+use crate::sweep::{Run, runs};
+use std::collections::HashSet;
 
 /// A closed polyline: the last point is joined to the first. The set lies to its left, so that it runs
 /// counter-clockwise around a piece of the set, and clockwise around a hole.
@@ -50,18 +52,11 @@ pub fn boundary(set: &GridSet) -> Option<Vec<Outline>> {
     let ([x, y] | [x, y, _]) = axes[..] else { return None };
     let [x, y] = [x, y].map(|number| &set.axes()[number].axis);
     let high = y.count as usize;
-    let slices = set.rows() / high;
     let outline = |slice: usize| {
-        let mut inside = vec![false; (x.count * y.count) as usize];
-        for row in 0..high {
-            for run in set.runs(slice * high + row) {
-                let first = row * x.count as usize;
-                inside[first + run.from as usize..first + run.to as usize].fill(true);
-            }
-        }
-        Outline { slice: axes.get(2).map(|_| slice as u64), rings: rings(x, y, &inside) }
+        let rings = trace(x, y, |row| set.runs(slice * high + row));
+        Outline { slice: axes.get(2).map(|_| slice as u64), rings }
     };
-    Some((0..slices).map(outline).collect())
+    Some((0..set.rows() / high).map(outline).collect())
 }
 
 /// The boundary of the points of a plane grid that are `inside`, row by row.
@@ -69,28 +64,42 @@ pub fn boundary(set: &GridSet) -> Option<Vec<Outline>> {
 /// # Panics
 /// Where `inside` has another number of points than the grid.
 pub fn rings(x: &Axis, y: &Axis, inside: &[bool]) -> Vec<Ring> {
+    assert!(inside.len() as u64 == x.count * y.count, "{} points", inside.len());
+    let runs = |row: &[bool]| {
+        let mut runs = Vec::new();
+        let numbers = (0..).zip(row).filter(|(_, inside)| **inside);
+        numbers.for_each(|(number, _)| runs::push(&mut runs, number));
+        runs
+    };
+    let rows: Vec<Vec<Run>> = inside.chunks(x.count as usize).map(runs).collect();
+    trace(x, y, |row| &rows[row])
+}
+
+/// The boundary of a set that has these runs in each row; in time and memory as many as there are runs, not
+/// points.
+fn trace<'a>(x: &Axis, y: &Axis, runs: impl Fn(usize) -> &'a [Run]) -> Vec<Ring> {
     let [width, height] = [x, y].map(|axis| axis.count as i64);
-    assert!(inside.len() as i64 == width * height, "{} points", inside.len());
-    let mask = Mask { inside, width, height };
-    // Every ring runs to the right below some point of the set.
-    let mut seen = vec![false; inside.len()];
+    let mask = Mask { runs, width, height };
+    // Every ring runs to the right below some point of the set; each stretch of that is in one ring.
+    let mut seen = HashSet::new();
     let mut found = vec![];
-    for start in 0..inside.len() {
-        let point = [start as i64 % width, start as i64 / width];
-        if seen[start] || !mask.has(point) || mask.has(step(point, DOWN)) {
+    for start in (0..height).flat_map(|row| mask.bare_below(row)) {
+        if seen.contains(&start) {
             continue;
         }
-        let first = Crossing { point, out: DOWN };
+        let first = Crossing { point: start, out: DOWN };
         let (mut crossing, mut corners) = (first, vec![]);
         loop {
             if crossing.out == DOWN {
-                seen[(crossing.point[1] * width + crossing.point[0]) as usize] = true;
+                seen.insert(crossing.point);
             }
-            let corner = mask.corner(crossing);
-            if corners.last() != Some(&corner) {
-                corners.push(corner);
+            let end = mask.straight(crossing);
+            for corner in [crossing, end].map(|crossing| mask.corner(crossing)) {
+                if corners.last() != Some(&corner) {
+                    corners.push(corner);
+                }
             }
-            crossing = mask.next(crossing);
+            crossing = mask.next(end);
             if crossing == first {
                 break;
             }
@@ -136,16 +145,58 @@ struct Crossing {
     out: [i64; 2],
 }
 
-struct Mask<'a> {
-    inside: &'a [bool],
+struct Mask<F> {
+    runs: F,
     width: i64,
     height: i64,
 }
 
-impl Mask<'_> {
-    fn has(&self, [i, j]: [i64; 2]) -> bool {
-        let within = (0..self.width).contains(&i) && (0..self.height).contains(&j);
-        within && self.inside[(j * self.width + i) as usize]
+impl<'a, F: Fn(usize) -> &'a [Run]> Mask<F> {
+    /// None in rows beyond the grid.
+    fn row(&self, row: i64) -> &'a [Run] {
+        if (0..self.height).contains(&row) { (self.runs)(row as usize) } else { &[] }
+    }
+
+    /// The run that a point is in.
+    fn run(&self, [i, j]: [i64; 2]) -> Option<Run> {
+        let runs = self.row(j);
+        let next = runs.partition_point(|run| run.from as i64 <= i);
+        runs[..next].last().copied().filter(|run| i < run.to as i64)
+    }
+
+    fn has(&self, point: [i64; 2]) -> bool {
+        self.run(point).is_some()
+    }
+
+    /// The first point of each stretch of a row below which there is nothing.
+    fn bare_below(&self, row: i64) -> impl Iterator<Item = [i64; 2]> {
+        let below = self.row(row - 1);
+        self.row(row).iter().flat_map(move |run| {
+            let first = below.partition_point(|under| under.to <= run.from);
+            let under = below[first..].iter().take_while(|under| under.from < run.to);
+            let bare = below.get(first).is_none_or(|under| run.from < under.from);
+            let after = under.map(|under| under.to).filter(|&end| end < run.to);
+            bare.then_some(run.from).into_iter().chain(after).map(move |i| [i as i64, row])
+        })
+    }
+
+    /// The last crossing in line with one, in its row.
+    fn straight(&self, crossing: Crossing) -> Crossing {
+        let Crossing { point: [i, j], out } = crossing;
+        let Some(run) = self.run([i, j]) else { return crossing };
+        let beyond = self.row(j + out[1]);
+        let end = match out {
+            [0, -1] => {
+                let next = beyond.partition_point(|next| next.from as i64 <= i);
+                beyond.get(next).map_or(run.to, |next| next.from.min(run.to)) as i64 - 1
+            }
+            [0, _] => {
+                let next = beyond.partition_point(|last| last.to as i64 <= i);
+                beyond[..next].last().map_or(run.from, |last| last.to.max(run.from)) as i64
+            }
+            _ => i,
+        };
+        Crossing { point: [end, j], out }
     }
 
     /// The crossing's place in half steps, not beyond the edge of the grid.
@@ -166,5 +217,38 @@ impl Mask<'_> {
         } else {
             Crossing { point: right, out: [-ahead[0], -ahead[1]] }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::set::{SetAxis, SetBuilder};
+    use std::f64::consts::PI;
+
+    /// A disc on a grid of more points than any machine holds.
+    #[test]
+    fn a_boundary_takes_no_memory_for_points() {
+        const RADIUS: f64 = 0.9;
+        let axes = [("x", 1_000_000_001), ("y", 10_001)];
+        let axes = axes.map(|(name, count)| Axis::new(name, -1.0, 1.0, count));
+        let [x, y] = &axes;
+        let step = 2.0 / (x.count - 1) as f64;
+        let number = |x: f64| ((x + 1.0) / step) as u64;
+        let plain = axes.iter().map(|axis| SetAxis { axis: axis.clone(), circle: false });
+        let mut set = SetBuilder::new(plain.collect()).unwrap();
+        for row in 0..y.count {
+            let half = (RADIUS * RADIUS - y.value(row).powi(2)).max(0.0).sqrt();
+            let [from, to] = [-half, half].map(|end| row * x.count + number(end));
+            if from < to {
+                set.push(Run { from, to }).unwrap();
+            }
+        }
+        let outlines = boundary(&set.finish()).unwrap();
+        let [Outline { rings, slice: None }] = &outlines[..] else { panic!("{outlines:?}") };
+        assert_eq!(rings.len(), 1);
+        let area = rings[0].area();
+        // Its two caps are lower than a step of y.
+        assert!((area - PI * RADIUS * RADIUS).abs() < 1e-5, "{area}");
     }
 }

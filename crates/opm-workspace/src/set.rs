@@ -179,14 +179,14 @@ pub(crate) fn set_axes(grid: &Grid, axes: Range<usize>) -> Vec<SetAxis> {
 }
 
 /// A set whose points come in the order of their numbers.
-struct SetBuilder {
+pub(crate) struct SetBuilder {
     set: GridSet,
     /// Of the grid.
     points: u64,
 }
 
 impl SetBuilder {
-    fn new(axes: Vec<SetAxis>) -> Result<Self, SetError> {
+    pub fn new(axes: Vec<SetAxis>) -> Result<Self, SetError> {
         let row = axes.iter().map(|a| a.axis.count).find(|&count| count > 1).unwrap_or(1);
         let points = axes.iter().map(|a| a.axis.count).product::<u64>();
         let rows = points / row;
@@ -198,7 +198,7 @@ impl SetBuilder {
     }
 
     /// Adds points after all that are in.
-    fn push(&mut self, points: Run) -> Result<(), SetError> {
+    pub fn push(&mut self, points: Run) -> Result<(), SetError> {
         let Self { set: GridSet { row: length, ends, runs, .. }, .. } = self;
         let mut from = points.from;
         while from < points.to {
@@ -221,7 +221,7 @@ impl SetBuilder {
         Ok(())
     }
 
-    fn finish(self) -> GridSet {
+    pub fn finish(self) -> GridSet {
         let Self { mut set, points } = self;
         set.ends.resize((points / set.row) as usize, set.runs.len());
         set

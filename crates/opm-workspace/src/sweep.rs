@@ -6,7 +6,7 @@
 
 mod cuts;
 mod pieces;
-mod runs;
+pub(crate) mod runs;
 mod scratch;
 mod shard;
 
