@@ -9,6 +9,7 @@ mod pieces;
 pub(crate) mod runs;
 mod scratch;
 mod shard;
+mod spans;
 
 pub use runs::Run;
 pub use shard::{Shard, ShardError};
@@ -21,6 +22,7 @@ use cuts::ROWS;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
 use scratch::Scratch;
+use spans::Spans;
 use std::ops::Range;
 
 /// Poses of a row that are decided together, of which a block has room for several.
@@ -81,8 +83,11 @@ impl Count {
         self
     }
 
-    /// Takes the imaginary joint of a leg that follows in this way.
-    fn used(&mut self, manipulator: &Manipulator, way: &Follow) {
+    /// Takes the imaginary joint of a leg that follows in this way, unless it lies between others.
+    fn used(&mut self, manipulator: &Manipulator, way: &Follow, spans: &mut Spans) {
+        if spans.hold(way) {
+            return;
+        }
         if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
             self.widen(imaginary, value);
         }

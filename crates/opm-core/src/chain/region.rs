@@ -333,7 +333,8 @@ impl Stadium {
 
     /// What the row at the second coordinate `y` cuts from it: the ends that half a band and the disc
     /// have together, since the disc covers the band's blunt end. Where the row runs along the band,
-    /// it is near to the band's edge when it is near to touching the disc.
+    /// it is near to the band's edge when it is near to touching the disc: the rim, which the band has
+    /// more, is far less than what a square has to be for its root to be sure.
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
         let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));

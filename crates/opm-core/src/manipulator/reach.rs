@@ -36,6 +36,19 @@ impl Follow {
     pub fn cut(&self) -> Option<f64> {
         self.tau.map(Amount::value)
     }
+
+    /// Number of the leg.
+    pub fn leg(&self) -> usize {
+        self.leg
+    }
+
+    /// The displacement as the direction of a vector, where it is a turn of which whole turns do not matter.
+    pub fn direction(&self) -> Option<Complex<f64>> {
+        match self.tau {
+            Some(Amount::Turn(direction)) => Some(direction),
+            Some(Amount::Value(_)) | None => None,
+        }
+    }
 }
 
 impl Manipulator {

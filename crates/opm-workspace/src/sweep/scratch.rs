@@ -3,6 +3,7 @@
 use super::cuts::{Cut, Cuts, Fit, ROWS, Rows};
 use super::pieces::Changes;
 use super::runs::{self, Run};
+use super::spans::Spans;
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Sections, fill};
@@ -46,6 +47,8 @@ pub struct Scratch<'a> {
     pub alive: bool,
     legs: Vec<Vec<Way>>,
     found: Vec<Follow>,
+    /// Of the poses that this thread found.
+    spans: Spans,
     /// Every leg has one way, and that a region.
     plain: bool,
     /// A row's step, and the largest number of the grid, in steps.
@@ -102,6 +105,7 @@ impl<'a> Scratch<'a> {
             alive: false,
             legs: vec![Vec::new(); manipulator.legs()],
             found: Vec::new(),
+            spans: Spans::new(manipulator.legs()),
             plain: false,
             step,
             extent: plane / step,
@@ -155,7 +159,8 @@ impl<'a> Scratch<'a> {
         for ways in &mut self.legs {
             for way in ways.iter_mut() {
                 way.region = sweep.manipulator.region(&way.follow, &v, scale);
-                let region = way.region.as_ref();
+                // Steps may be too small to count in.
+                let region = way.region.as_ref().filter(|_| scale.is_finite());
                 way.fit = region.and_then(|region| Fit::new(region, last, self.extent));
                 self.plain &= way.fit.is_some();
             }
@@ -197,9 +202,9 @@ impl<'a> Scratch<'a> {
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.
-    fn take_slice(&self, count: &mut Count, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
+    fn take_slice(&mut self, count: &mut Count, hit: &mut Option<&mut dyn FnMut(&Hits<'_>)>) {
         for way in self.legs.iter().flatten() {
-            count.used(self.sweep.manipulator, &way.follow);
+            count.used(self.sweep.manipulator, &way.follow, &mut self.spans);
         }
         count.reachable += 1;
         if let Some(hit) = hit {
@@ -272,7 +277,7 @@ impl<'a> Scratch<'a> {
         if counted && reachable > 0 {
             for way in self.legs.iter_mut().flatten() {
                 if std::mem::take(&mut way.pending) {
-                    found.used(sweep.manipulator, &way.follow);
+                    found.used(sweep.manipulator, &way.follow, &mut self.spans);
                 }
             }
         }
@@ -416,7 +421,7 @@ impl<'a> Scratch<'a> {
                             self.followed[number].iter().copied().any(reached)
                         });
                 if used {
-                    found.used(self.sweep.manipulator, &way.follow);
+                    found.used(self.sweep.manipulator, &way.follow, &mut self.spans);
                     way.pending = false;
                 }
                 number += 1;
