@@ -170,7 +170,13 @@ impl Target {
 
     fn commit(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let Some(mut file) = self.file.take() else { return Ok(()) };
-        let written = file.write_all(bytes).and_then(|()| file.commit());
+        let written = match file.write_all(bytes) {
+            Ok(()) => file.commit(),
+            Err(error) => {
+                file.discard();
+                Err(error)
+            }
+        };
         written.map_err(|error| Failure::at(self.path.display(), &error))
     }
 }

@@ -162,7 +162,11 @@ impl Stored {
         let wrong = |problem| Err(Failure::Work(format!("{label}: {problem}")));
         let known = recording.metadata("shard").and_then(|record| record.get("shard"));
         let Some(shard) = known.and_then(|text| text.parse().ok()) else {
-            return wrong("no shard of `opm workspace --shard`");
+            return wrong(if recording.complete {
+                "no shard of `opm workspace --shard`"
+            } else {
+                "cut short, before it says which shard it is: sweep that one again"
+            });
         };
         if recording.topic(RUNS_TOPIC).is_none() || recording.metadata("run").is_none() {
             return wrong("not a shard that this program knows");

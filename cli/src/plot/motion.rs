@@ -27,8 +27,9 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
         let mut names: Vec<&str> = topics().map(|topic| &*topic.name).collect();
         names.truncate(8);
         let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+        let cut = if source.recording.complete { "" } else { "cut short, and " };
         return Err(Failure::Work(format!(
-            "{}: nothing to draw: it holds {found}, expected /workspace/slices or /joints, as opm \
+            "{}: {cut}nothing to draw: it holds {found}, expected /workspace/slices or /joints, as opm \
              records them",
             source.label
         )));

@@ -259,6 +259,9 @@ fn shards_that_do_not_belong_together_are_refused() {
     refused(&[&one, &text], &["text.mcap", "is not an MCAP file"]);
     refused(&[&one, "nowhere.mcap"], &["nowhere.mcap: "]);
     let bytes = fs::read(&two).unwrap();
+    // Before it says which one it is.
+    let begun = others.write("begun.mcap", &bytes[..100]);
+    refused(&[&one, &begun], &["begun.mcap: cut short"]);
     let short = others.write("short.mcap", &bytes[..bytes.len() / 2]);
     opm(&["merge", &one, &short]).fails(1, &["short.mcap: "]);
 
