@@ -31,6 +31,7 @@ enum Motion {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turn {
+    /// The joint counts clockwise.
     reversed: bool,
     limits: Limits,
 }
