@@ -19,7 +19,7 @@ const LEVEL: f64 = 1e-12;
 const ROUNDING: f64 = 1e-14;
 
 /// In place of the inverse of zero: what it multiplies is beyond any grid, and zero stays zero.
-const HUGE: f64 = 1e300;
+const HUGE: f64 = 1e200;
 
 /// The translations at which a chain closes: those of a convex set that are not inside the `hole`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,8 @@ pub struct Band {
 pub struct Disc {
     centre: Complex<f64>,
     square: f64,
+    /// Its root, zero where there is none.
+    radius: f64,
 }
 
 /// The points no farther than a radius from a ray: half a band, and the disc about its end.
@@ -114,7 +116,7 @@ impl Region {
     }
 
     /// The region after every one of its points `z` has moved to `scale · (z + shift)`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         Self {
@@ -189,7 +191,7 @@ impl Convex {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         match self {
             Self::Bands(bands) => Self::Bands(bands.map(|band| band.placed(shift, scale))),
@@ -217,7 +219,7 @@ impl Band {
         Self::new(turn * self.across, if self.inverse > 0.0 { [near, far] } else { [far, near] })
     }
 
-    #[inline]
+    #[inline(always)]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
         let offset = self.across.re * shift.re + self.across.im * shift.im;
         Self { met: self.met.map(|end| scale * (end + offset)), ..*self }
@@ -254,13 +256,16 @@ impl Band {
     /// What the row at the second coordinate `y` cuts from it.
     #[inline(always)]
     pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        let up = self.across.im * y;
-        let [near, far] = self.met.map(|end| end - up);
-        Section {
-            from: near * self.inverse,
-            to: far * self.inverse,
-            sure: !self.is_level() | (near.abs().min(far.abs()) > precision.level),
-        }
+        // Nothing but `up` differs from row to row.
+        let [from, to] = self.met.map(|end| end * self.inverse);
+        let up = self.across.im * self.inverse * y;
+        let (from, to) = (from - up, to - up);
+        let sure = if self.is_level() {
+            smaller(from.abs(), to.abs()) > precision.level * HUGE
+        } else {
+            true
+        };
+        Section { from, to, sure }
     }
 }
 
@@ -268,16 +273,20 @@ impl Disc {
     /// The points whose squared distance from the centre is at most `square`; none where it is
     /// negative.
     pub fn new(centre: Complex<f64>, square: f64) -> Self {
-        Self { centre, square }
+        Self { centre, square, radius: square.max(0.0).sqrt() }
     }
 
     fn turned(&self, turn: Complex<f64>) -> Self {
-        Self::new(turn * self.centre, self.square)
+        Self { centre: turn * self.centre, ..*self }
     }
 
-    #[inline]
+    #[inline(always)]
     fn placed(&self, shift: Complex<f64>, scale: f64) -> Self {
-        Self::new((self.centre + shift) * scale, self.square * scale * scale)
+        Self {
+            centre: (self.centre + shift) * scale,
+            square: self.square * scale * scale,
+            radius: self.radius * scale,
+        }
     }
 
     fn rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
@@ -291,8 +300,7 @@ impl Disc {
     }
 
     fn size(&self) -> f64 {
-        let radius = self.square.max(0.0).sqrt();
-        self.centre.l1_norm() + if radius.is_finite() { radius } else { 0.0 }
+        self.centre.l1_norm() + if self.radius.is_finite() { self.radius } else { 0.0 }
     }
 
     /// The square of half the chord that the row at the second coordinate `y` cuts from it.

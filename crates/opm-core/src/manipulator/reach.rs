@@ -37,6 +37,11 @@ impl Follow {
         self.tau.map(Amount::value)
     }
 
+    /// Whether the leg follows alike in every slice: `b` makes no difference to it.
+    pub fn is_alike(&self) -> bool {
+        self.tau.is_none() && self.with_upper.is_none()
+    }
+
     /// Number of the leg.
     pub fn leg(&self) -> usize {
         self.leg
@@ -185,7 +190,7 @@ impl Manipulator {
     /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::follows`] gives,
     /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
     /// shape.
-    #[inline]
+    #[inline(always)]
     pub fn region(&self, way: &Follow, v: &Displacement, scale: f64) -> Option<Region> {
         if way.with_upper.is_some() {
             return None;

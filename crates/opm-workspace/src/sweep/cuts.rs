@@ -11,6 +11,9 @@ use std::ops::Range;
 /// Rows that are cut together.
 pub const ROWS: usize = 64;
 
+/// A number of rows that vectors divide.
+const LANES: usize = 8;
+
 /// How near to a pose the end of an interval may come, in steps, and still tell on which side of it
 /// the pose is; the ends are right to within this.
 const TIE: f64 = 1e-6;
@@ -48,23 +51,35 @@ impl Fit {
     }
 }
 
-/// The whole numbers of a window that lie in every one of some regions, row by row.
-#[derive(Clone, Debug)]
-pub struct Cuts {
-    /// What the regions without their holes have in common.
-    common: Intervals,
-    /// What is missing of it.
-    holes: Vec<Hole>,
-    /// Not zero for rows of which an answer is too close to call; as wide as the numbers that decide it,
-    /// so that the loop over rows is vectorised without packing.
-    doubts: [u64; ROWS],
-    /// Numbers of poses; negative in rows that are to be asked for in another way.
-    counts: [f64; ROWS],
-    total: u64,
-    unsure: bool,
-    /// What some of the regions have in common, with one more by turns: a loop that writes over what it
-    /// reads is compiled to stores under a mask, which are slow.
-    narrowed: [Intervals; 2],
+/// Rows of a sheet, evenly apart, and the window of each that is looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// Second coordinates.
+    at: [f64; ROWS],
+    step: f64,
+    count: usize,
+    window: Run,
+}
+
+impl Rows {
+    /// So many, whose second coordinates begin with `first`.
+    pub fn new(first: f64, step: f64, count: usize, window: Run) -> Self {
+        Self { at: std::array::from_fn(|i| first + step * i as f64), step, count, window }
+    }
+
+    /// All of them, and some more so that they are whole vectors.
+    fn all(&self) -> Range<usize> {
+        0..self.count.next_multiple_of(LANES).min(ROWS)
+    }
+
+    /// Those whose second coordinate lies in a range, and some more.
+    fn between(&self, [from, to]: [f64; 2]) -> Range<usize> {
+        // Of a row alone the step is zero, and the quotient infinite, or no number on the row itself.
+        let row = |at: f64| (at - self.at[0]) / self.step;
+        let (first, last) = (row(from).ceil() as usize, row(to));
+        let end = if last < self.count as f64 { (last + 1.0) as usize } else { self.count };
+        if first < end { first / LANES * LANES..end.next_multiple_of(LANES).min(ROWS) } else { 0..0 }
+    }
 }
 
 /// An interval a row; empty where `last < first`.
@@ -72,6 +87,33 @@ pub struct Cuts {
 struct Intervals {
     first: [f64; ROWS],
     last: [f64; ROWS],
+}
+
+/// What some regions without their holes have in common, before any end is rounded.
+#[derive(Clone, Debug)]
+pub struct Common {
+    left: Intervals,
+    doubts: Each,
+    doubtful: bool,
+    tie: f64,
+}
+
+/// The whole numbers of a window that lie in every one of some regions, row by row.
+#[derive(Clone, Debug)]
+pub struct Cuts {
+    /// What the regions without their holes have in common.
+    common: Intervals,
+    /// What is missing of it.
+    holes: Vec<Hole>,
+    doubts: Each,
+    doubtful: bool,
+    /// Numbers of poses; negative in rows that are to be asked for in another way.
+    counts: [f64; ROWS],
+    total: u64,
+    unsure: bool,
+    /// What some of the regions have in common, with one more by turns: a loop that writes over what it
+    /// reads is compiled to stores under a mask, which are slow.
+    narrowed: [Intervals; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -83,12 +125,46 @@ struct Hole {
     met: bool,
 }
 
+/// In which rows an answer is too close to call: as wide as the numbers that decide it, so that loops over
+/// rows are vectorised without packing.
+trait Doubts {
+    fn add(&mut self, row: usize, doubt: bool);
+}
+
+/// Not zero where there is one in any row.
+#[derive(Clone, Copy, Debug)]
+struct Any(u64);
+
+/// Not zero for rows in which there is one.
+type Each = [u64; ROWS];
+
+impl Doubts for Any {
+    #[inline(always)]
+    fn add(&mut self, _: usize, doubt: bool) {
+        self.0 |= u64::from(doubt);
+    }
+}
+
+impl Doubts for Each {
+    #[inline(always)]
+    fn add(&mut self, row: usize, doubt: bool) {
+        self[row] |= u64::from(doubt);
+    }
+}
+
+impl Common {
+    pub fn new() -> Self {
+        Self { left: Intervals::NONE, doubts: [0; ROWS], doubtful: false, tie: TIE }
+    }
+}
+
 impl Cuts {
     pub fn new() -> Self {
         Self {
             common: Intervals::NONE,
             holes: Vec::new(),
             doubts: [0; ROWS],
+            doubtful: false,
             counts: [0.0; ROWS],
             total: 0,
             unsure: false,
@@ -113,7 +189,7 @@ impl Cuts {
 
     /// An answer in row number `row` is too close to call.
     pub fn in_doubt(&self, row: usize) -> bool {
-        self.doubts[row] != 0
+        self.doubtful && self.doubts[row] != 0
     }
 
     /// The poses of row number `row`, in order.
@@ -140,65 +216,99 @@ impl Cuts {
 }
 
 impl Intervals {
-    const NONE: Self = Self { first: [0.0; ROWS], last: [-1.0; ROWS] };
+    /// Empty, and no end is a tie.
+    const NONE: Self = Self { first: [0.5; ROWS], last: [-0.5; ROWS] };
 
     fn ends(&self, row: usize) -> [f64; 2] {
         [self.first[row], self.last[row]]
     }
 }
 
-/// Second coordinates of rows, and how many count.
-#[derive(Clone, Debug)]
-pub struct Rows {
-    /// Ascending.
-    pub at: [f64; ROWS],
-    pub count: usize,
-}
-
-impl Rows {
-    /// Those whose second coordinate lies in a range, and some more so that they are whole vectors.
-    fn between(&self, [from, to]: [f64; 2]) -> Range<usize> {
-        const LANES: usize = 8;
-        let rows = &self.at[..self.count];
-        let first = rows.partition_point(|&at| at < from);
-        let end = rows.partition_point(|&at| at <= to);
-        if first >= end {
-            return 0..0;
-        }
-        first / LANES * LANES..end.next_multiple_of(LANES).min(self.count)
-    }
-}
-
-/// Cuts regions by a window of rows, and counts what they have in common.
-pub struct Cut<'a, R> {
+/// Takes what some regions have in common, which stays so for other regions to come.
+pub struct Begin<'a, R> {
     pub regions: R,
     pub rows: &'a Rows,
-    pub window: Run,
+    pub common: &'a mut Common,
+}
+
+/// Cuts regions, and those that `begun` was taken from, by rows, and counts what they have in common.
+/// All of them give their holes.
+pub struct Cut<'a, R, H> {
+    pub rows: &'a Rows,
+    pub begun: &'a Common,
+    pub regions: R,
+    pub holes: H,
     pub cuts: &'a mut Cuts,
 }
 
-impl<'a, R: Iterator<Item = (&'a Region, &'a Fit)> + Clone> WithSimd for Cut<'_, R> {
+impl<'a, R: Iterator<Item = (&'a Region, &'a Fit)>> WithSimd for Begin<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { regions, rows, window, cuts } = self;
-        let Cuts { common, holes, doubts, counts, narrowed: [now, next], .. } = cuts;
-        let all = 0..rows.count.min(ROWS);
-        let (mut now, mut next) = (now, next);
+        let Self { regions, rows, common } = self;
+        *common = Common::new();
+        let Common { left, doubts, doubtful, tie } = common;
         // Half-way to the next pose on both sides: ends that are farther away are no ties.
-        now.first.fill(window.from as f64 - 0.5);
-        now.last.fill(window.to as f64 - 0.5);
-        doubts.fill(0);
-        let mut tie = TIE;
+        left.first[..rows.count].fill(rows.window.from as f64 - 0.5);
+        left.last[..rows.count].fill(rows.window.to as f64 - 0.5);
+        for (region, fit) in regions {
+            let knife = Knife { set: &region.whole, precision: &fit.precision };
+            knife.narrow(rows, &left.clone(), left, doubts);
+            *tie = larger(*tie, fit.tie);
+        }
+        *doubtful = doubts.iter().any(|&doubt| doubt != 0);
+    }
+}
+
+impl<'a, R, H> WithSimd for Cut<'_, R, H>
+where
+    R: Iterator<Item = (&'a Region, &'a Fit)> + Clone,
+    H: Iterator<Item = (&'a Region, &'a Fit)> + Clone,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        // In few windows is anything in doubt: then it is found out where.
+        let mut any = Any(0);
+        if !self.begun.doubtful {
+            self.cut(&mut any);
+            self.cuts.doubtful = any.0 != 0;
+        }
+        if self.begun.doubtful || any.0 != 0 {
+            let mut doubts = self.begun.doubts;
+            self.cut(&mut doubts);
+            for (count, &doubt) in self.cuts.counts.iter_mut().zip(&doubts) {
+                *count -= if doubt != 0 { f64::INFINITY } else { 0.0 };
+            }
+            (self.cuts.doubts, self.cuts.doubtful) = (doubts, true);
+        }
+        (self.cuts.total, self.cuts.unsure) = sum(&self.cuts.counts[self.rows.all()]);
+    }
+}
+
+impl<'a, R, H> Cut<'_, R, H>
+where
+    R: Iterator<Item = (&'a Region, &'a Fit)> + Clone,
+    H: Iterator<Item = (&'a Region, &'a Fit)> + Clone,
+{
+    #[inline(always)]
+    fn cut(&mut self, doubts: &mut impl Doubts) {
+        let Self { rows, begun, regions, holes: with_holes, cuts } = self;
+        let Cuts { common, holes, counts, narrowed: [now, next], .. } = &mut **cuts;
+        let (mut now, mut next, mut tie) = (now, next, begun.tie);
+        now.clone_from(&begun.left);
         for (region, fit) in regions.clone() {
-            let knife = Knife::new(&region.whole, fit, &rows.at, all.clone());
-            knife.narrow(now, next, doubts);
+            let knife = Knife { set: &region.whole, precision: &fit.precision };
+            knife.narrow(rows, now, next, doubts);
             (now, next) = (next, now);
             tie = larger(tie, fit.tie);
         }
+        let near = |end: f64| (end - end.round_ties_even()).abs() <= tie;
+        round(rows, now, common, counts, near, doubts);
         let mut number = 0;
-        for (region, fit) in regions {
+        for (region, fit) in with_holes.clone() {
             let Some(set) = &region.hole else { continue };
             let met = rows.between(fit.hole_rows);
             if met.is_empty() {
@@ -207,124 +317,156 @@ impl<'a, R: Iterator<Item = (&'a Region, &'a Fit)> + Clone> WithSimd for Cut<'_,
             if number == holes.len() {
                 holes.push(Hole { rows: 0..0, missing: Intervals::NONE, met: false });
             }
-            let hole = &mut holes[number];
-            hole.rows = met.clone();
-            // Cut to what is left of the row, since what is beyond is no tie either.
-            let knife = Knife::new(set, fit, &rows.at, met.clone());
-            knife.narrow(now, next, doubts);
-            round(met, next, &mut hole.missing, tie, doubts);
+            let knife = Knife { set, precision: &fit.precision };
+            holes[number].rows = met;
+            knife.hollow(rows, now, &mut holes[number], counts, near, doubts);
             number += 1;
         }
         holes.truncate(number);
-        round(all.clone(), now, common, tie, doubts);
-        for i in all.clone() {
-            counts[i] = larger(common.last[i] - common.first[i] + 1.0, 0.0);
-        }
-        count_holes(holes, counts);
-        for i in all.clone() {
-            counts[i] -= if doubts[i] != 0 { f64::INFINITY } else { 0.0 };
-        }
-        (cuts.total, cuts.unsure) = sum(&counts[all]);
+        count_twice(holes, counts);
     }
 }
 
-/// A convex set that some rows cut.
+/// A convex set that rows cut.
 struct Knife<'a> {
     set: &'a Convex,
     precision: &'a Precision,
-    at: &'a [f64; ROWS],
-    rows: Range<usize>,
 }
 
-impl<'a> Knife<'a> {
-    #[inline(always)]
-    fn new(set: &'a Convex, fit: &'a Fit, at: &'a [f64; ROWS], rows: Range<usize>) -> Self {
-        Self { set, precision: &fit.precision, at, rows }
-    }
-
+impl Knife<'_> {
     /// Leaves of each row what is in the set.
     #[inline(always)]
-    fn narrow(self, from: &Intervals, to: &mut Intervals, doubts: &mut [u64; ROWS]) {
-        let Self { set, precision, at, rows } = self;
+    fn narrow(self, rows: &Rows, from: &Intervals, to: &mut Intervals, doubts: &mut impl Doubts) {
+        let Self { set, precision } = self;
         match set {
             Convex::Bands(bands) => {
-                cut(at, rows, from, to, doubts, |y| region::common(bands, y, precision));
+                narrow(rows, from, to, doubts, |y| region::common(bands, y, precision));
             }
+            Convex::Disc(disc) => narrow(rows, from, to, doubts, |y| disc.section(y, precision)),
+            Convex::Stadium(stadium) => {
+                narrow(rows, from, to, doubts, |y| stadium.section(y, precision));
+            }
+        }
+    }
+
+    /// Takes of each row what is in the set.
+    #[inline(always)]
+    fn hollow(
+        self,
+        rows: &Rows,
+        from: &Intervals,
+        to: &mut Hole,
+        counts: &mut [f64; ROWS],
+        near: impl Fn(f64) -> bool,
+        doubts: &mut impl Doubts,
+    ) {
+        let Self { set, precision } = self;
+        match set {
+            Convex::Bands(bands) => hollow(rows, from, to, counts, near, doubts, |y| {
+                region::common(bands, y, precision)
+            }),
             Convex::Disc(disc) => {
-                cut(at, rows, from, to, doubts, |y| disc.section(y, precision));
+                hollow(rows, from, to, counts, near, doubts, |y| disc.section(y, precision));
             }
             Convex::Stadium(stadium) => {
-                cut(at, rows, from, to, doubts, |y| stadium.section(y, precision));
+                hollow(rows, from, to, counts, near, doubts, |y| stadium.section(y, precision));
             }
         }
     }
 }
 
 #[inline(always)]
-fn cut(
-    at: &[f64; ROWS],
-    rows: Range<usize>,
+fn narrow(
+    rows: &Rows,
     from: &Intervals,
     to: &mut Intervals,
-    doubts: &mut [u64; ROWS],
+    doubts: &mut impl Doubts,
     section: impl Fn(f64) -> Section,
 ) {
-    for i in rows {
-        let cut = section(at[i]);
+    for i in rows.all() {
+        let cut = section(rows.at[i]);
         to.first[i] = larger(from.first[i], cut.from);
         to.last[i] = smaller(from.last[i], cut.to);
-        doubts[i] |= u64::from(!cut.sure);
+        doubts.add(i, !cut.sure);
     }
 }
 
-/// The first and last whole numbers in intervals.
+/// Cut to what is left of the row, since what is beyond is no tie either.
+#[inline(always)]
+fn hollow(
+    rows: &Rows,
+    from: &Intervals,
+    to: &mut Hole,
+    counts: &mut [f64; ROWS],
+    near: impl Fn(f64) -> bool,
+    doubts: &mut impl Doubts,
+    section: impl Fn(f64) -> Section,
+) {
+    let Hole { rows: met, missing, met: any } = to;
+    let mut some = 0;
+    for i in within(met) {
+        let cut = section(rows.at[i]);
+        let (first, last) = (larger(from.first[i], cut.from), smaller(from.last[i], cut.to));
+        doubts.add(i, !cut.sure | near(first) | near(last));
+        let (first, last) = (first.ceil(), last.floor());
+        (missing.first[i], missing.last[i]) = (first, last);
+        let number = larger(last - first + 1.0, 0.0);
+        counts[i] -= number;
+        some |= number.to_bits();
+    }
+    *any = some != 0;
+}
+
+/// The first and last whole numbers in intervals, and how many there are.
 #[inline(always)]
 fn round(
-    rows: Range<usize>,
+    rows: &Rows,
     from: &Intervals,
     to: &mut Intervals,
-    tie: f64,
-    doubts: &mut [u64; ROWS],
+    counts: &mut [f64; ROWS],
+    near: impl Fn(f64) -> bool,
+    doubts: &mut impl Doubts,
 ) {
-    let near = |end: f64| (end - end.round_ties_even()).abs() <= tie;
-    for i in rows {
+    for i in rows.all() {
         let (first, last) = (from.first[i], from.last[i]);
-        doubts[i] |= u64::from(near(first)) | u64::from(near(last));
-        to.first[i] = first.ceil();
-        to.last[i] = last.floor();
+        doubts.add(i, near(first) | near(last));
+        let (first, last) = (first.ceil(), last.floor());
+        (to.first[i], to.last[i]) = (first, last);
+        counts[i] = larger(last - first + 1.0, 0.0);
     }
 }
 
-/// Takes from the poses of each row what holes leave out of it: what two of them both leave out was taken
-/// twice, and with more than two in a row the number becomes negative.
+/// The same rows, in a way that tells the compiler how many there are at most.
 #[inline(always)]
-fn count_holes(holes: &mut [Hole], counts: &mut [f64; ROWS]) {
-    let mut number = 0;
-    for Hole { rows, missing: Intervals { first, last }, met } in holes.iter_mut() {
-        let mut any = 0;
-        for i in rows.clone() {
-            let missing = larger(last[i] - first[i] + 1.0, 0.0);
-            counts[i] -= missing;
-            any |= missing.to_bits();
-        }
-        *met = any != 0;
-        number += usize::from(*met);
-    }
+fn within(rows: &Range<usize>) -> Range<usize> {
+    rows.start.min(ROWS)..rows.end.min(ROWS)
+}
+
+/// Counts once what two holes both leave out, which was taken twice. A number becomes negative where
+/// more than two holes take of a row, if any two of all leave out the same.
+#[inline(always)]
+fn count_twice(holes: &[Hole], counts: &mut [f64; ROWS]) {
     let met = || holes.iter().filter(|hole| hole.met);
+    let mut twice = 0;
     for (number, a) in met().enumerate() {
         for b in met().take(number) {
             let rows = a.rows.start.max(b.rows.start)..a.rows.end.min(b.rows.end);
+            if rows.is_empty() {
+                continue;
+            }
             let (a, b) = (&a.missing, &b.missing);
-            for i in rows {
+            for i in within(&rows) {
                 let (first, last) = (larger(a.first[i], b.first[i]), smaller(a.last[i], b.last[i]));
-                counts[i] += larger(last - first + 1.0, 0.0);
+                let both = larger(last - first + 1.0, 0.0);
+                counts[i] += both;
+                twice |= both.to_bits();
             }
         }
     }
-    if number > 2 {
+    if twice != 0 && met().count() > 2 {
         let mut in_row = [0.0; ROWS];
         for Hole { rows, missing, .. } in met() {
-            for i in rows.clone() {
+            for i in within(rows) {
                 in_row[i] += if missing.first[i] <= missing.last[i] { 1.0 } else { 0.0 };
             }
         }
@@ -338,7 +480,6 @@ fn count_holes(holes: &mut [Hole], counts: &mut [f64; ROWS]) {
 /// depend on the order, which the compiler cannot know.
 #[inline(always)]
 fn sum(counts: &[f64]) -> (u64, bool) {
-    const LANES: usize = 8;
     let (mut sums, mut least) = ([0.0; LANES], [0.0; LANES]);
     let mut add = |lane: usize, count: f64| {
         sums[lane] += larger(count, 0.0);

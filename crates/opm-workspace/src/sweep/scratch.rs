@@ -1,6 +1,6 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
-use super::cuts::{Cut, Cuts, Fit, ROWS, Rows};
+use super::cuts::{Begin, Common, Cut, Cuts, Fit, Rows};
 use super::pieces::Changes;
 use super::runs::{self, Run};
 use super::spans::Spans;
@@ -51,15 +51,19 @@ pub struct Scratch<'a> {
     spans: Spans,
     /// Every leg has one way, and that a region.
     plain: bool,
+    /// Number of the sheet, of any slice, that regions which are the same in every slice were taken in.
+    shaped: Option<u64>,
     /// A row's step, and the largest number of the grid, in steps.
     step: f64,
     extent: f64,
     /// From a row to the next, in steps.
     row_step: f64,
-    /// How far the rows that are being decided are from the first, in steps.
+    /// The rows that are being decided, how far they are from the sheet's first, in steps.
     rows: Rows,
-    /// Number of the first of them.
-    first_row: Option<u64>,
+    /// What the legs have in common there which follow alike in every slice, where all are `plain`.
+    begun: Common,
+    /// Which rows these are: of what sheet, what window of them, and whether all legs are `plain`.
+    begun_at: Option<(u64, Range<u64>, Run, bool)>,
     /// Of all legs together where they are `plain`, else of each way of every leg, in their order.
     cuts: Vec<Cuts>,
     /// All coordinates but the first.
@@ -107,11 +111,13 @@ impl<'a> Scratch<'a> {
             found: Vec::new(),
             spans: Spans::new(manipulator.legs()),
             plain: false,
+            shaped: None,
             step,
             extent: plane / step,
             row_step: row_step / step,
-            rows: Rows { at: [0.0; ROWS], count: 0 },
-            first_row: None,
+            rows: Rows::new(0.0, 0.0, 0, Run { from: 0, to: 0 }),
+            begun: Common::new(),
+            begun_at: None,
             cuts: Vec::new(),
             // A row of the upper section alone has no first coordinate that could differ.
             others: vec![0.0; axes.len() - usize::from(sweep.grid.lower() > 0)],
@@ -155,13 +161,17 @@ impl<'a> Scratch<'a> {
         }
         let v = sweep.manipulator.task().lower(&first[..axes.len()]);
         let (scale, last) = (self.step.recip(), (axes[0].count - 1) as f64);
+        let shaped = self.shaped == Some(sheet);
+        self.shaped = Some(sheet);
         self.plain = true;
         for ways in &mut self.legs {
             for way in ways.iter_mut() {
-                way.region = sweep.manipulator.region(&way.follow, &v, scale);
-                // Steps may be too small to count in.
-                let region = way.region.as_ref().filter(|_| scale.is_finite());
-                way.fit = region.and_then(|region| Fit::new(region, last, self.extent));
+                if !(shaped && way.follow.is_alike()) {
+                    way.region = sweep.manipulator.region(&way.follow, &v, scale);
+                    // Steps may be too small to count in.
+                    let region = way.region.as_ref().filter(|_| scale.is_finite());
+                    way.fit = region.and_then(|region| Fit::new(region, last, self.extent));
+                }
                 self.plain &= way.fit.is_some();
             }
             self.plain &= ways.len() == 1;
@@ -181,6 +191,9 @@ impl<'a> Scratch<'a> {
         };
         self.alive = true;
         for (leg, ways) in self.legs.iter_mut().enumerate() {
+            if ways.first().is_some_and(|way| way.follow.is_alike()) {
+                continue;
+            }
             self.found.clear();
             match &b {
                 Some(b) => manipulator.follow(leg, b, mode, &mut self.found),
@@ -286,22 +299,28 @@ impl<'a> Scratch<'a> {
 
     /// Cuts a window of some rows from what are regions of the plane.
     fn cut(&mut self, rows: &Range<u64>, window: Run) {
-        if self.first_row != Some(rows.start) {
-            self.first_row = Some(rows.start);
+        let here = Some((self.sheet, rows.clone(), window, self.plain));
+        if self.begun_at != here {
+            self.begun_at = here;
             // To within the rounding that the cuts allow for.
-            self.rows.at = std::array::from_fn(|i| self.row_step * (rows.start + i as u64) as f64);
+            let (first, count) = (self.row_step * rows.start as f64, rows.end - rows.start);
+            self.rows = Rows::new(first, self.row_step, count as usize, window);
+            let alike = self.legs.iter().flatten().filter(|way| self.plain && way.follow.is_alike());
+            let (regions, rows, common) = (alike.filter_map(Way::cut), &self.rows, &mut self.begun);
+            self.arch.dispatch(Begin { regions, rows, common });
         }
-        self.rows.count = (rows.end - rows.start) as usize;
         let ways = self.legs.iter().map(Vec::len).sum();
         self.cuts.resize_with(ways, Cuts::new);
         self.followed.resize_with(ways, Vec::new);
-        let (all, rows) = (self.legs.iter().flatten(), &self.rows);
+        let (all, rows, begun) = (self.legs.iter().flatten(), &self.rows, &self.begun);
         if self.plain {
-            let (regions, cuts) = (all.filter_map(Way::cut), &mut self.cuts[0]);
-            self.arch.dispatch(Cut { regions, rows, window, cuts });
+            let regions = all.clone().filter(|way| !way.follow.is_alike()).filter_map(Way::cut);
+            let (holes, cuts) = (all.filter_map(Way::cut), &mut self.cuts[0]);
+            self.arch.dispatch(Cut { rows, begun, regions, holes, cuts });
         } else {
             for (cuts, way) in self.cuts.iter_mut().zip(all) {
-                self.arch.dispatch(Cut { regions: way.cut().into_iter(), rows, window, cuts });
+                let cut = way.cut().into_iter();
+                self.arch.dispatch(Cut { rows, begun, regions: cut.clone(), holes: cut, cuts });
             }
         }
     }
