@@ -2,6 +2,7 @@
 //! limits of its sliders or of all its joints, on many long rows, and limits that lie exactly on poses.
 
 use fastrand::Rng;
+use opm_core::decomposition::Decomposition;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{Follow, Manipulator};
 use opm_core::mechanism::family::ParameterValue;
@@ -54,6 +55,19 @@ fn without_limits_on_angles(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
+/// Nothing above drives or limits a leg: one that is cut below follows alike in every slice, if its upper
+/// joints always close.
+fn with_free_upper_sections(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
+    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        for freedom in &split.upper {
+            let joint = &mut leg.joints[freedom.joint];
+            joint.actuated = false;
+            joint.coordinates[freedom.index].limits = None;
+        }
+    }
+    mechanism
+}
+
 #[test]
 fn intervals_hold_the_poses_that_the_chains_reach() {
     let mut rng = Rng::with_seed(20);
@@ -64,6 +78,7 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let mechanism = match rng.u8(..3) {
             0 => without_limits_on_angles(mechanism),
+            1 => with_free_upper_sections(mechanism, &decomposition),
             _ => mechanism,
         };
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
@@ -200,6 +215,46 @@ fn holes_overlap() {
     println!("{reachable} poses");
 }
 
+/// Legs that follow alike in every slice, in either of two ways.
+#[test]
+fn ways_of_legs_that_follow_alike_are_joined() {
+    let mut rng = Rng::with_seed(25);
+    let (mut judged, mut reachable) = (0, 0);
+    while judged < 60 {
+        let pair = [PAIRS[0], PAIRS[3]][judged % 2];
+        let options = Options { limited: 0.7, balls: true };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism =
+            without_limits_on_angles(with_free_upper_sections(mechanism, &decomposition));
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let home = manipulator.task().home();
+        let lower = manipulator.task().lower_count;
+        let [v, b] =
+            [manipulator.task().lower(&home[..lower]), manipulator.task().upper(&home[lower..])];
+        let differ = (0..manipulator.legs()).any(|leg| {
+            let mut ways = Vec::new();
+            manipulator.follow(leg, &b, None, &mut ways);
+            let regions: Vec<_> =
+                ways.iter().filter_map(|way| manipulator.region(way, &v, 1.0)).collect();
+            ways[0].is_alike() && regions.iter().any(|region| region != &regions[0])
+        });
+        if !differ {
+            continue;
+        }
+        let axes = manipulator.task_coordinates().iter().zip([101, 51, 2, 2, 2]);
+        let axes = axes.map(|(c, count)| Axis::new(c.name, c.home - 1.5, c.home + 1.5, count));
+        let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+        let count =
+            Sweep::new(&manipulator, &grid, Modes::Any).count(&Progress::default()).unwrap();
+        let expected = by_predicate(&manipulator, &grid, Modes::Any);
+        assert_eq!(count.reachable, expected, "{judged}: {pair:?}");
+        judged += 1;
+        reachable += expected;
+    }
+    println!("{reachable} poses");
+    assert!(reachable > 0);
+}
+
 /// Grids so fine that rounding decides on poses at the boundary: rows that are in doubt are asked for.
 #[test]
 fn fine_grids_are_no_exception() {
@@ -258,11 +313,12 @@ fn rows_that_touch_a_rim_are_no_exception() {
     /// Rows on either side of the rim.
     const ROWS: f64 = 40.0;
     let mut rng = Rng::with_seed(24);
-    let (mut judged, mut parted) = (0, 0);
+    let (mut judged, mut parted, mut alike) = (0, 0, 0);
     for round in 0..3000 {
         let pair = [PAIRS[0], PAIRS[3]][round % 2];
-        let options = Options { limited: 0.0, balls: false };
+        let options = Options { limited: 0.0, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = with_free_upper_sections(mechanism, &decomposition);
         let rings: Vec<usize> = (0..mechanism.legs.len())
             .filter(|&leg| {
                 let split = &decomposition.legs[leg];
@@ -302,11 +358,13 @@ fn rows_that_touch_a_rim_are_no_exception() {
             let expected = by_predicate(&manipulator, &grid, modes);
             assert_eq!(count.reachable, expected, "round {round}: {pair:?}, leg {leg}");
             judged += 1;
-            parted += u32::from(0 < expected && expected < grid.poses());
+            let part = 0 < expected && expected < grid.poses();
+            parted += u32::from(part);
+            alike += u32::from(part && way.is_alike());
         }
     }
-    println!("{judged} grids, {parted} of them in part");
-    assert!(parted > 400, "{parted} of {judged}");
+    println!("{judged} grids, {parted} of them in part, {alike} of legs that follow alike");
+    assert!(parted > 400 && alike > 70, "{parted} and {alike} of {judged}");
 }
 
 /// How near the highest point of a disc is found, before it is searched for.

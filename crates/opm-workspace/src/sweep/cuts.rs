@@ -78,7 +78,11 @@ impl Rows {
         let row = |at: f64| (at - self.at[0]) / self.step;
         let (first, last) = (row(from).ceil() as usize, row(to));
         let end = if last < self.count as f64 { (last + 1.0) as usize } else { self.count };
-        if first < end { first / LANES * LANES..end.next_multiple_of(LANES).min(ROWS) } else { 0..0 }
+        if first < end {
+            first / LANES * LANES..end.next_multiple_of(LANES).min(ROWS)
+        } else {
+            0..0
+        }
     }
 }
 

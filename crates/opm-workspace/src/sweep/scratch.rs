@@ -305,7 +305,8 @@ impl<'a> Scratch<'a> {
             // To within the rounding that the cuts allow for.
             let (first, count) = (self.row_step * rows.start as f64, rows.end - rows.start);
             self.rows = Rows::new(first, self.row_step, count as usize, window);
-            let alike = self.legs.iter().flatten().filter(|way| self.plain && way.follow.is_alike());
+            let alike =
+                self.legs.iter().flatten().filter(|way| self.plain && way.follow.is_alike());
             let (regions, rows, common) = (alike.filter_map(Way::cut), &self.rows, &mut self.begun);
             self.arch.dispatch(Begin { regions, rows, common });
         }
