@@ -1,6 +1,7 @@
 //! The values that joints take in a workspace, against each other.
 
 use super::source::{Rate, Source};
+use crate::kind::Kind;
 use crate::text::count;
 use opm_mcap::Cloud as Points;
 use opm_plot::color::Map;
@@ -11,6 +12,8 @@ const MOST: usize = 4;
 
 /// Joint values in the making.
 pub struct JointCloud {
+    /// What its points are points of.
+    kind: Kind,
     joints: Vec<Joint>,
     /// Joints that there is no room for.
     left_out: usize,
@@ -27,7 +30,7 @@ struct Joint {
 
 impl JointCloud {
     /// None without joints that are stored.
-    pub fn new(source: &Source<'_>, names: &[String]) -> Option<Self> {
+    pub fn new(kind: Kind, source: &Source<'_>, names: &[String]) -> Option<Self> {
         let mut joints = vec![];
         let mut ranges = vec![];
         for name in names.iter().take(MOST) {
@@ -45,7 +48,7 @@ impl JointCloud {
                 .map(|(a, b)| (a, b, Content::Cloud(Cloud::new(ranges[a], ranges[b]))))
                 .collect(),
         };
-        Some(Self { left_out: names.len() - joints.len(), joints, content, points: 0 })
+        Some(Self { kind, left_out: names.len() - joints.len(), joints, content, points: 0 })
     }
 
     /// Adds the points of a message.
@@ -72,8 +75,10 @@ impl JointCloud {
         let dots = |content: &Content| matches!(content, Content::Cloud(cloud) if cloud.has_dots());
         if self.content.iter().any(|(_, _, content)| dots(content)) {
             notes.push(format!(
-                "Joint values: a dot for all of the {} poses that it covers.",
-                count(self.points)
+                "{}: a dot for all of the {} {} that it covers.",
+                self.values(),
+                count(self.points),
+                self.kind.points()
             ));
         }
         if self.left_out > 0 {
@@ -83,14 +88,24 @@ impl JointCloud {
         notes
     }
 
+    /// What the values are called: a set of places has its share of the orientations, no joints.
+    fn values(&self) -> &'static str {
+        match self.kind {
+            Kind::Reachable | Kind::Dexterous => "Values",
+            _ => "Joint values",
+        }
+    }
+
     /// The finished tiles.
     pub fn section(self) -> Section {
+        let points = self.kind.points();
         let measure = |number: usize| self.joints[number].measure.clone();
         let names: Vec<&str> = self.joints.iter().map(|joint| &*joint.field).collect();
-        let title = format!("Joint values in reachable poses: {}", names.join(", "));
+        let (values, reached, names) = (self.values(), self.kind.reached(), names.join(", "));
+        let title = format!("{values} in {reached} {points}: {names}");
         let tile = |(a, b, content): (usize, usize, Content)| {
             let y = match content {
-                Content::Histogram(_) => Measure::count("poses"),
+                Content::Histogram(_) => Measure::count(points),
                 _ => measure(b),
             };
             Tile { title: String::new(), x: measure(a), y, content, mark: None }
@@ -103,7 +118,7 @@ impl JointCloud {
         let mut section = Section { title, columns, shared: false, tiles, bar: None };
         let densest = section.densest();
         section.bar = (densest > 1).then(|| Bar {
-            measure: Measure::count("poses in one place"),
+            measure: Measure::count(&format!("{points} in one place")),
             range: [1.0, densest as f64],
             map: Map::Cividis,
             scale: Scale::Logarithmic,

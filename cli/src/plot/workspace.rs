@@ -22,14 +22,13 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
             return Err(Failure::flag("--panels", problem));
         }
     }
+    let layout = Layout::new(source);
     let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
     if points.unwrap_or(0) == 0 {
-        let label = &source.label;
-        return Err(Failure::Work(format!(
-            "{label}: nothing to draw: no pose of the grid is reachable"
-        )));
+        let limited = source.metadata("run").contains_key("max_condition");
+        let (label, nothing) = (&source.label, layout.kind.nothing(limited));
+        return Err(Failure::Work(format!("{label}: nothing to draw: {nothing}")));
     }
-    let layout = Layout::new(source);
     let (view, joints) = chosen(&layout, source, args)?;
     // What has no axis on a grid has no slices, unless somebody wants to see them.
     let default = args.panels.is_empty() && layout.kind != Kind::Imaginary;
@@ -37,7 +36,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
         true => Some(Slices::new(&layout, source, args, view)?),
         false => None,
     };
-    let mut cloud = JointCloud::new(source, &joints);
+    let mut cloud = JointCloud::new(layout.kind, source, &joints);
     let meant = args.panels.is_empty() && layout.kind.is_of_poses();
     if cloud.is_none() && (meant || asked(PanelName::Imaginary)) {
         let hint = missing(source);

@@ -165,6 +165,48 @@ fn sections_alone_are_counted_recorded_and_drawn() {
     }
 }
 
+/// What is counted is called by its name: only three kinds have poses.
+#[test]
+fn pictures_say_what_they_count() {
+    let folder = Folder::new();
+    let [cloud, picture] = ["set.mcap", "set.svg"].map(|name| folder.arg(name));
+    let places = ["--grid=x=-0.3:0.3:31", "--grid=y=-0.3:0.3:31", "--grid=xi=0:1:3"];
+    let tilts = ["--grid=xi=0:1:21", "--grid=psi=-1:1:21"];
+    let joints = ["--scalars", "theta11,theta12"];
+    let title = "Joint values in";
+    for (kind, flags, expected) in [
+        (
+            "imaginary",
+            &[][..],
+            [&*format!("{title} reachable orientations: theta11"), "orientations in one place"],
+        ),
+        (
+            "upper",
+            &[&tilts[..], &joints].concat(),
+            [&*format!("{title} closing orientations: theta11"), " orientations that it covers"],
+        ),
+        ("reachable", &places, ["Values in reachable places: share", "places over share"]),
+        ("dexterous", &places, ["Values in dexterous places: share", "places over share"]),
+        (
+            "grid",
+            &[&places[..], &joints].concat(),
+            [&*format!("{title} reachable poses: theta11"), " poses that it covers"],
+        ),
+    ] {
+        opm(&[&["workspace", PLANO, "-q", "--kind", kind, "-o", &cloud], flags].concat()).text();
+        let values = if places == flags { &["--values", "share"][..] } else { &[] };
+        opm(&[&["plot", &cloud, "-o", &picture, "-q"], values].concat()).text();
+        let svg = std::fs::read_to_string(&picture).unwrap();
+        for word in expected {
+            assert!(svg.contains(word), "{kind}: {word}");
+        }
+        assert_eq!(svg.contains("poses"), kind == "grid", "{kind}");
+    }
+    let far = ["workspace", PLANO, "-q", "--kind", "dexterous", "-o", &cloud, "--grid=x=1:2:3"];
+    opm(&far).text();
+    opm(&["plot", &cloud, "-o", &picture]).fails_with_one_line(1, &["nothing to draw: no place"]);
+}
+
 #[test]
 fn what_a_kind_cannot_do_is_refused() {
     let cases: [(&[&str], &[&str]); 10] = [

@@ -352,7 +352,7 @@ fn what_is_no_recording_is_refused_and_leaves_nothing() {
     let grid = ["--grid", "x=5:6:3", "--grid", "y=0:1:3"];
     opm(&[&["workspace", PLANO, "-o", &nowhere, "-q"], &grid[..]].concat()).text();
     opm(&["plot", &nowhere, "-o", &output])
-        .fails_with_one_line(1, &["far.mcap", "no pose of the grid is reachable"]);
+        .fails_with_one_line(1, &["far.mcap", "no pose of the grid is in reach"]);
     assert_eq!(folder.names(), ["far.mcap", "text.mcap"]);
 }
 
