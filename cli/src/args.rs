@@ -351,7 +351,9 @@ pub struct TrajectoryArgs {
 /// is nothing to do. `opm merge` joins the parts, and takes --axes, --color, --scalars and --shape.
 ///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
-/// more than one value. `seconds` is the time of the count.
+/// more than one value: an estimate, too small by up to half a step at every edge that the workspace
+/// stays away from. Angles count as they are. `opm measure` gives bounds, and counts orientations as
+/// evenly as rotations are spread. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -52,7 +52,7 @@ impl Fit {
 }
 
 /// Rows of a sheet, evenly apart, and the window of each that is looked at.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Rows {
     /// Second coordinates.
     at: [f64; ROWS],

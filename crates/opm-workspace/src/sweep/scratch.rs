@@ -382,8 +382,11 @@ impl<'a> Scratch<'a> {
         let Way { follow, breaks, .. } = &self.legs[leg][way];
         let others = &self.others[..lower - 1];
         self.changes.clear();
-        match breaks.get_or_init(|| manipulator.breaks(follow)) {
-            Some(breaks) if window.to - window.from > 1 => {
+        // One pose is asked for.
+        let several = window.to - window.from > 1;
+        let breaks = several.then(|| breaks.get_or_init(|| manipulator.breaks(follow)).as_ref());
+        match breaks.flatten() {
+            Some(breaks) => {
                 let step = self.step;
                 let (from, to) = (axis.value(window.from) - step, axis.value(window.to - 1) + step);
                 let span = Span { from, to, step };
@@ -391,7 +394,7 @@ impl<'a> Scratch<'a> {
                     self.changes.add(ends.map(|end| (end - axis.min) / step), self.extent);
                 });
             }
-            _ => self.changes.add_all(window),
+            None => self.changes.add_all(window),
         }
         let mut pose = [0.0; 3];
         pose[1..lower].copy_from_slice(others);
