@@ -79,7 +79,10 @@ fn domain(
         .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting ranges".into()))?;
     if over.len() > given.len() {
         // As flags in SI, so that the same run can be asked for again.
-        let flags = over.iter().map(|Over { name, min, max }| format!("--over {name}={min}:{max}"));
+        let flags = over.iter().map(|Over { name, min, max }| match min == max {
+            true => format!("--over {name}={min}"),
+            false => format!("--over {name}={min}:{max}"),
+        });
         output.note(format_args!("measured over {}", flags.collect::<Vec<_>>().join(" ")));
     }
     for name in beyond {

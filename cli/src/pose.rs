@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use opm_core::joint::Quantity;
 use opm_core::mechanism::file::{AngleUnit, LengthUnit};
+use opm_core::number::readable;
 use opm_core::task::TaskCoordinate;
 use opm_workspace::measure::Over;
 use opm_workspace::{Axis, Coordinate, Sections};
@@ -55,7 +56,8 @@ pub struct GridAxis {
 pub struct OverAxis {
     name: String,
     min: Number,
-    max: Number,
+    /// `None` of one value.
+    max: Option<Number>,
 }
 
 /// A value of one task coordinate.
@@ -257,9 +259,12 @@ impl FromStr for OverAxis {
     fn from_str(text: &str) -> Result<Self, Misread> {
         const FORM: &str = "AXIS=MIN:MAX or AXIS=VALUE, for example x=-100mm:100mm";
         let (name, values) = assignment(text, FORM)?;
-        let [min, max] = match *values.split(':').collect::<Vec<_>>() {
-            [value] => [value.parse()?; 2],
-            [min, max] => ends(min, max)?,
+        let (min, max) = match *values.split(':').collect::<Vec<_>>() {
+            [value] => (value.parse()?, None),
+            [min, max] => {
+                let [min, max] = ends(min, max)?;
+                (min, Some(max))
+            }
             _ => return Err(Misread(format!("{text:?}, expected {FORM}"))),
         };
         Ok(Self { name: name.to_owned(), min, max })
@@ -275,7 +280,18 @@ impl OverAxis {
             Some(c) => number.value_of(&c.name, c.quantity),
             None => Ok(number.value),
         };
-        Ok(Over::new(&*self.name, end(self.min)?, end(self.max)?))
+        let (name, min) = (&*self.name, end(self.min)?);
+        let Some(max) = self.max.map(end).transpose()? else {
+            return Ok(Over::new(name, min, min));
+        };
+        // What has no width has no measure, which is never meant.
+        if min == max {
+            let end = readable(min);
+            return Err(Misread(format!(
+                "{name}: {end} to {end}, expected MIN below MAX, or {name}=VALUE to hold it"
+            )));
+        }
+        Ok(Over::new(name, min, max))
     }
 }
 

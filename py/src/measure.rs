@@ -82,7 +82,7 @@ enum Range {
 /// Raises
 /// ------
 /// OpmError
-///     A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+///     A coordinate that is none, ends that are not numbers in order, an unknown section or mode; parts that were lost again
 ///     and again.
 #[pyfunction]
 #[pyo3(signature = (
@@ -108,6 +108,11 @@ pub fn measure(
     };
     let given = given.into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(Over::new(name, value, value)),
+        // What has no width has no measure, which is never meant.
+        Ok(Range::Between((min, max))) if min == max => {
+            let found = range.repr()?;
+            Err(wrong(format!("{name} is {found}, expected min below max, or one value to hold it")))
+        }
         Ok(Range::Between((min, max))) => Ok(Over::new(name, min, max)),
         Err(_) => {
             let found = range.repr()?;
@@ -326,12 +331,15 @@ impl Measure {
         word.map_or("", |(_, word)| word)
     }
 
-    /// Lowest and highest value of every coordinate.
+    /// Of every coordinate lowest and highest value, or the one that it is held at, as :func:`measure` takes them.
     #[getter]
     fn over<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for (name, min, max) in &self.over {
-            dict.set_item(name, (min, max))?;
+            match min == max {
+                true => dict.set_item(name, min)?,
+                false => dict.set_item(name, (min, max))?,
+            }
         }
         Ok(dict)
     }

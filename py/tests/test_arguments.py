@@ -138,6 +138,16 @@ def test_ranges_are_those_of_the_program(manipulator):
         opm.trajectory(manipulator, np.zeros((3, 5)), times=[[0, 1, 2]])
 
 
+def test_a_range_has_a_width(manipulator):
+    told = re.escape("x is (1.0, 1.0), expected min below max, or one value to hold it")
+    with pytest.raises(opm.OpmError, match=f"^{told}"):
+        opm.measure(manipulator, over={"x": (1.0, 1.0)})
+    # What a measure was taken over can be asked for again.
+    measured = opm.measure(manipulator, over={"x": (-0.1, 0.1), "y": 0.01})
+    assert measured.over["y"] == 0.01 and measured.over["x"] == (-0.1, 0.1)
+    assert opm.measure(manipulator, over=measured.over) == measured
+
+
 def test_a_mapping_of_any_kind(manipulator):
     from types import MappingProxyType
 

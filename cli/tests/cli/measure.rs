@@ -168,6 +168,8 @@ fn wrong_flags_are_named() {
     for (flags, parts) in [
         (&["--over", "x=0:1:3"][..], &["--over", "AXIS=MIN:MAX"][..]),
         (&["--over", "x=1:0"], &["--over", "x: 1 to 0", "smaller one first"]),
+        (&["--over", "x=1:1"], &["--over", "x: 1 to 1, expected MIN below MAX, or x=VALUE"]),
+        (&["--over", "x=10mm:1cm"], &["--over", "x: 0.01 to 0.01, expected MIN below MAX"]),
         (&["--over", "x=0:1", "--over", "x=0"], &["--over", "x is given twice"]),
         (&["--over", "yaw=0:1"], &["--over", "no task coordinate yaw", "zeta, xi, psi"]),
         (&["--over", "x=0:1deg"], &["--over", "x is a length"]),

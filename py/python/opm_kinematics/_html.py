@@ -38,7 +38,8 @@ def manipulator(found: Manipulator) -> str:
 def measure(found: Measure) -> str:
     amounts = {"value": found.value, "lower": found.lower, "upper": found.upper, "whole": found.whole}
     bounds = ([name, _number(amount), found.units, f"{amount / found.whole:.4%}"] for name, amount in amounts.items())
-    ranges = ([name, *map(_number, ends)] for name, ends in found.over.items())
+    over = ((name, ends if isinstance(ends, tuple) else (ends, ends)) for name, ends in found.over.items())
+    ranges = ([name, *map(_number, ends)] for name, ends in over)
     return (
         _paragraph(f"{_summary(found)}; {found.boxes} boxes, until {found.stop}")
         + _table(["", "measure", "unit", "share"], bounds)

@@ -840,8 +840,8 @@ class Measure:
         """Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
         the bounds no closer."""
     @property
-    def over(self) -> dict[str, tuple[float, float]]:
-        """Lowest and highest value of every coordinate."""
+    def over(self) -> dict[str, float | tuple[float, float]]:
+        """Of every coordinate lowest and highest value, or the one that it is held at, as :func:`measure` takes them."""
 
 @final
 class Outline:
@@ -1234,7 +1234,7 @@ def measure(
     Raises
     ------
     OpmError
-        A coordinate that is none, ends that are not numbers or reversed, an unknown section or mode; parts that were lost again
+        A coordinate that is none, ends that are not numbers in order, an unknown section or mode; parts that were lost again
         and again.
     """
 
