@@ -11,6 +11,7 @@ use clap::ValueEnum;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::number::readable;
 use opm_workspace::{
     Axis, Components, ConditionLimit, ConditioningIndex, Extent, Grid, GridSet, Modes, Outline,
     Poses, Progress, Sections, Visits, boundary,
@@ -163,6 +164,34 @@ impl Kind {
             upper.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
         let (kind, names) = (self.name(), names.join(", "));
         Some(format!("--kind {kind} has one orientation alone; for more give {names}"))
+    }
+
+    /// How to ask for fewer orientations where no place is in reach at all of them.
+    pub fn fewer(self, grid: &Grid) -> Option<String> {
+        /// Values of a coordinate, and how far it goes from home if it is an angle.
+        const VALUES: u64 = 5;
+        const HALF: f64 = 20.0;
+        let axes = || grid.axes().iter().zip(grid.coordinates()).skip(grid.lower());
+        let orientations: u64 = axes().map(|(axis, _)| axis.count).product();
+        if self != Self::Dexterous || orientations == 1 {
+            return None;
+        }
+        // A part of the range, about home where that is in it.
+        let flags = axes().filter(|(axis, _)| axis.count > 1).map(|(axis, c)| {
+            let (unit, scale, most) = match c.quantity {
+                Quantity::Angle => ("deg", 1_f64.to_degrees(), HALF),
+                Quantity::Length => ("mm", 1e3, f64::INFINITY),
+            };
+            let [min, max] = [axis.min, axis.max].map(|end| end * scale);
+            let middle = (c.home * scale).clamp(min, max);
+            let half = (0.25 * (max - min)).min(most);
+            let end = |value: f64| readable((1e2 * value.clamp(min, max)).round() / 1e2 + 0.0);
+            let [from, to] = [end(middle - half), end(middle + half)];
+            format!("--grid {}={from}{unit}:{to}{unit}:{VALUES}", axis.name)
+        });
+        let flags: Vec<String> = flags.collect();
+        let (number, flags) = (count(orientations), flags.join(" "));
+        Some(format!("these are {number} orientations; ask for fewer, for example {flags}"))
     }
 
     /// What is wrong with a flag.

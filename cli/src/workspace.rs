@@ -178,7 +178,10 @@ impl Work<'_> {
     /// Says so where there is nothing in reach.
     pub fn warn_of_nothing(&self, run: &Run<'_>, found: &Count) {
         if found.reachable == 0 {
-            self.output.warn(run.kind.nothing(run.limit.is_some()));
+            let nothing = run.kind.nothing(run.limit.is_some());
+            let hint =
+                run.kind.fewer(run.grid).map_or_else(String::new, |hint| format!("; {hint}"));
+            self.output.warn(format_args!("{nothing}{hint}"));
         }
     }
 

@@ -111,7 +111,9 @@ pub fn measure(
         // What has no width has no measure, which is never meant.
         Ok(Range::Between((min, max))) if min == max => {
             let found = range.repr()?;
-            Err(wrong(format!("{name} is {found}, expected min below max, or one value to hold it")))
+            Err(wrong(format!(
+                "{name} is {found}, expected min below max, or one value to hold it"
+            )))
         }
         Ok(Range::Between((min, max))) => Ok(Over::new(name, min, max)),
         Err(_) => {

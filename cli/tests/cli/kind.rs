@@ -310,6 +310,28 @@ fn a_set_of_one_coordinate_is_a_bar() {
     }
 }
 
+/// Over large ranges of angles no place is dexterous: the flags of the hint ask for what is.
+#[test]
+fn an_empty_dexterous_workspace_says_how_to_ask_for_fewer_orientations() {
+    let places = ["--grid=x=-0.1:0.1:11", "--grid=y=-0.1:0.1:11"];
+    let tilts = ["--grid=zeta=-3:3:9", "--grid=xi=0:3:7"];
+    let dexterous = ["workspace", PLANO, "--kind", "dexterous"];
+    let run = opm(&[&dexterous[..], &places, &tilts].concat());
+    run.text();
+    let hint = "these are 63 orientations; ask for fewer, for example \
+                --grid zeta=-20deg:20deg:5 --grid xi=0deg:20deg:5\n";
+    assert!(run.stderr.contains(hint), "{}", run.stderr);
+    let tilts: Vec<&str> = hint.split_whitespace().filter(|word| word.contains('=')).collect();
+    let tilts: Vec<String> = tilts.iter().map(|flag| format!("--grid={flag}")).collect();
+    let tilts: Vec<&str> = tilts.iter().map(|flag| &**flag).collect();
+    let found = workspace(&[&dexterous[1..], &places, &tilts].concat());
+    assert!(found["reachable"].as_u64() > Some(0) && found["orientations"] == 25, "{found}");
+
+    let one = opm(&[&dexterous[..], &["--grid=x=1:2:3"]].concat());
+    one.text();
+    assert!(one.stderr.contains("no place") && !one.stderr.contains("fewer"), "{}", one.stderr);
+}
+
 /// The values of imaginary joints are on no grid that they could be a share of.
 #[test]
 fn imaginary_joints_have_no_measure() {
