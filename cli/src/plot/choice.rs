@@ -46,8 +46,7 @@ pub fn home(coordinate: &Coordinate) -> u64 {
 }
 
 /// Whether a value of the grid is as near to home as any could be.
-pub fn is_home(coordinate: &Coordinate, value: u64) -> bool {
-    let (Some(axis), Some(home)) = (&coordinate.axis, coordinate.home) else { return false };
+pub fn is_home(axis: &Axis, home: f64, value: u64) -> bool {
     let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
     let slack = ROUNDING * axis.max.abs().max(axis.min.abs()).max(1.0);
     (axis.value(value) - home).abs() <= 0.5 * step + slack

@@ -1,5 +1,6 @@
 //! What is known of the points of a recorded workspace.
 
+use super::choice::{is_home, nearest};
 use super::source::Source;
 use crate::kind::{FLAT, Kind};
 use crate::record::together;
@@ -19,6 +20,8 @@ pub struct Layout {
     pub coordinates: Vec<Coordinate>,
     /// The whole grid, in the order of the task coordinates.
     pub grid: Vec<(Quantity, Axis)>,
+    /// Home is on that grid, as near as any pose.
+    pub has_home: bool,
     /// Names of task coordinates of which a point's value is not stored.
     pub lost: Vec<String>,
     /// What x, y and z of the cloud are, by their numbers among the coordinates.
@@ -76,6 +79,7 @@ impl Layout {
             bounded: source.recording.topic(BOUNDARY_TOPIC).is_some(),
             coordinates: vec![],
             grid: vec![],
+            has_home: true,
             lost: vec![],
             axes: vec![],
             scalars: scalars.clone(),
@@ -96,7 +100,7 @@ impl Layout {
             let mut product = 1;
             for (i, (c, axis)) in manipulator.task_coordinates().iter().zip(grid.axes()).enumerate()
             {
-                layout.grid.push((c.quantity, axis.clone()));
+                layout.add_axis(c.quantity, axis, c.home);
                 // The slices of the first axes of the upper section may have been recorded as one.
                 let place = if i < grid.lower() {
                     field(c.name).map(Place::Field)
@@ -153,8 +157,11 @@ impl Layout {
         field: impl Fn(&str) -> Option<String>,
     ) {
         let known = self.kind.sections().coordinates(manipulator);
-        let axes = |c: &opm_workspace::Coordinate| Some((c.quantity, axis(&c.name)?));
-        self.grid = known.iter().filter_map(axes).collect();
+        for c in &known {
+            if let Some(axis) = axis(&c.name) {
+                self.add_axis(c.quantity, &axis, c.home);
+            }
+        }
         for name in names {
             let (Some(c), Some(axis)) = (known.iter().find(|c| c.name == name), axis(name)) else {
                 continue;
@@ -171,6 +178,11 @@ impl Layout {
                 None => {}
             }
         }
+    }
+
+    fn add_axis(&mut self, quantity: Quantity, axis: &Axis, home: f64) {
+        self.has_home &= is_home(axis, home, nearest(axis, home));
+        self.grid.push((quantity, axis.clone()));
     }
 
     pub fn find(&self, name: &str) -> Option<usize> {

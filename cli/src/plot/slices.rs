@@ -1,7 +1,7 @@
 //! Slices of a workspace: what is reachable while all but two coordinates are held.
 
 use super::choice::{asked, columns, fast, home, is_home, nearest, several, varied};
-use super::layout::{Layout, Place};
+use super::layout::{Coordinate, Layout, Place};
 use super::source::{Rate, Source, Stop};
 use super::workspace::value_label;
 use crate::args::PlotArgs;
@@ -359,7 +359,12 @@ impl<'a> Slices<'a> {
         let seen = |number: usize| self.view.iter().any(|seen| seen.number == number);
         let others = (0..self.layout.coordinates.len()).filter(|number| !seen(*number));
         let mut others = others.map(|number| (&self.layout.coordinates[number], value_of(number)));
-        self.home.filter(|_| others.all(|(coordinate, value)| is_home(coordinate, value)))
+        let is_home = |c: &Coordinate, value: u64| match (&c.axis, c.home) {
+            (Some(axis), Some(home)) => is_home(axis, home, value),
+            _ => false,
+        };
+        let here = self.layout.has_home && others.all(|(c, value)| is_home(c, value));
+        self.home.filter(|_| here)
     }
 
     /// What has to be said of the picture.

@@ -310,6 +310,29 @@ fn a_set_of_one_coordinate_is_a_bar() {
     }
 }
 
+/// A cross is home: of a slice at other values, of a joint that has no axis in the picture either, it is not.
+#[test]
+fn only_a_slice_at_home_has_a_cross() {
+    let folder = Folder::new();
+    let [cloud, picture] = ["c.mcap", "c.svg"].map(|name| folder.arg(name));
+    let places = ["--grid=x=-0.2:0.2:21", "--grid=y=-0.2:0.2:21"];
+    for (kind, more, expected) in [
+        ("lower", &[][..], true),
+        ("lower", &["--grid=theta11=0.15:0.16:3"], true),
+        ("lower", &["--grid=theta12=2.9"], false),
+        ("lower", &["--grid=theta13=2.9", "--grid=theta11=0.15:0.16:3"], false),
+        ("lower", &["--grid=theta11=0.5:1:3"], false),
+        ("grid", &["--grid=xi=0.3"], false),
+        ("grid", &["--grid=xi=0:0.3:4"], true),
+    ] {
+        let args = ["workspace", PLANO, "-q", "--kind", kind, "-o", &cloud];
+        opm(&[&args[..], &places, more].concat()).text();
+        opm(&["plot", &cloud, "-o", &picture, "-q"]).text();
+        let svg = std::fs::read_to_string(&picture).unwrap();
+        assert_eq!(svg.contains("The cross is home"), expected, "{kind} {more:?}");
+    }
+}
+
 /// Over large ranges of angles no place is dexterous: the flags of the hint ask for what is.
 #[test]
 fn an_empty_dexterous_workspace_says_how_to_ask_for_fewer_orientations() {
