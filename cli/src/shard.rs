@@ -5,7 +5,7 @@ use crate::kind::Study;
 use crate::record::{create, describe, partial, range_key, ranges};
 use crate::source::runs_of;
 use crate::text::count;
-use crate::workspace::{Effort, Outcome, Run, Work};
+use crate::workspace::{Effort, Outcome, Run, Work, plural};
 use opm_mcap::{Metadata, RecordError, Recording, ShardRecorder, shard::RUNS_TOPIC};
 use opm_workspace::{ConditioningIndex, Count, Progress, Shard, Sweep};
 use std::path::Path;
@@ -21,6 +21,13 @@ pub fn run(
     let outcome = |Part { found, conditioning }: &Part, effort| {
         let study = &Study { conditioning: *conditioning, ..Study::nothing(run.kind) };
         let outcome = Outcome { run, found, study, effort, shard: Some(shard) };
+        if found.poses == 0 {
+            let pieces = plural(run.sweep().pieces(), "piece");
+            let of = count(shard.count());
+            work.output.note(format_args!(
+                "shard {shard} has no poses: the sweep comes in {pieces}, fewer than {of} shards"
+            ));
+        }
         work.output.print(&outcome.json(), outcome.text())
     };
     if path.is_file() && !force {

@@ -476,6 +476,7 @@ impl Outcome<'_> {
     }
 }
 
-fn plural(number: u64, what: &str) -> String {
+/// A number of things, told.
+pub fn plural(number: u64, what: &str) -> String {
     format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })
 }

@@ -140,6 +140,24 @@ fn merged_shards_are_the_one_run_of_every_kind() {
     }
 }
 
+/// A sweep comes in so many pieces, and no shard is smaller than one.
+#[test]
+fn a_shard_without_poses_says_why() {
+    let folder = Folder::new();
+    let (mut empty, mut filled) = (0, 0);
+    for number in 1..=4 {
+        let (shard, part) = (format!("{number}/4"), folder.arg(&format!("part-{number}.mcap")));
+        let args = ["workspace", PLANO, "--shard", &shard, "-o", &part, "--format", "json"];
+        let run = opm(&[&args[..], &SMALL].concat());
+        let told = format!("shard {shard} has no poses: the sweep comes in ");
+        let none = run.json()["poses"] == 0;
+        assert_eq!(run.stderr.contains(&told), none, "{}", run.stderr);
+        assert_eq!(run.stderr.contains("fewer than 4 shards"), none, "{}", run.stderr);
+        *(if none { &mut empty } else { &mut filled }) += 1;
+    }
+    assert!(empty > 0 && filled > 0, "{empty} {filled}");
+}
+
 /// As a queue does it: processes side by side, of which one is killed and run again.
 #[cfg(unix)]
 #[test]
