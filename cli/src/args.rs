@@ -343,9 +343,12 @@ pub struct TrajectoryArgs {
 ///
 /// With -o points.npy the points are a structured NumPy array, float64, of the coordinates or joints
 /// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
-/// Without --scalars both have every task coordinate, PLY those whose names are not x, y or z. They are
-/// of poses: the kinds reachable, dexterous, imaginary, upper and lower are written as MCAP alone, and
-/// so are shards.
+/// Without --scalars both have every task coordinate, PLY those whose names are not x, y or z. The columns
+/// follow each other as the flags name them: --axes (if it is not given, coordinates that vary come first),
+/// then --scalars, then --color, each once; without --scalars the other task coordinates come last. Take
+/// them by name rather than by number: `points["x"]`; `points.dtype.names` tells their order. The points are
+/// of poses: the kinds reachable, dexterous, imaginary, upper and lower are written as MCAP alone, and so
+/// are shards.
 ///
 /// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
 /// is nothing to do. `opm merge` joins the parts, and takes --axes, --color, --scalars and --shape.
@@ -414,7 +417,8 @@ pub struct WorkspaceArgs {
 /// How points are recorded.
 #[derive(Debug, clap::Args)]
 pub struct CloudArgs {
-    /// Record the points in this file: MCAP, an array for NumPy, or a cloud for mesh tools
+    /// Record the points in this file: MCAP, an array for NumPy (its columns are --axes, then
+    /// --scalars, then --color), or a cloud for mesh tools
     #[arg(short, long, value_name = "OUT.mcap|.npy|.ply", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// What x, y and z of the cloud are: three coordinates (of `imaginary`, imaginary joints), or `tip`,

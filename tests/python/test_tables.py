@@ -62,6 +62,8 @@ def test_tables_without_flags_or_points(record, cloud, ending):
     table = np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data
     assert len(table) == len(cloud)
     assert {"zeta", "psi"} <= set(table.dtype.names)
+    if ending == "npy":  # What varies, then what does not.
+        assert table.dtype.names == ("x", "y", "xi", "zeta", "psi")
     path = record(ending, "--grid", "zeta=0", "--mode", "home", "--max-condition", "1")
     count = len(np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data)
     assert count == 0

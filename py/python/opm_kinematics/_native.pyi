@@ -1087,7 +1087,9 @@ class Sweep:
     ) -> None:
         """Record the points as ``opm workspace -o`` does, byte for byte.
 
-        With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only.
+        With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only. The fields of an NPY file
+        are those of ``axes``, then of ``scalars``, then of ``color``, each once; without ``scalars`` the other task coordinates
+        come last.
 
         Parameters
         ----------
