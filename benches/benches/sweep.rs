@@ -153,12 +153,12 @@ fn table(
     );
 }
 
-/// What a second thread gives where a sweep takes longer than threads take to wake up, beside what it gives to
-/// work that needs nothing but the processor.
+/// What a second thread gives where a sweep takes some tenths of a second, longer than threads take to wake up
+/// and than a shared machine takes a processor away; beside what it gives to work that needs nothing but the processor.
 fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
     println!("| two threads for one | poses | times as fast |");
     println!("|---|---:|---:|");
-    for size in [[64, 25], [256, 21]] {
+    for size in [[64, 61], [256, 41]] {
         let grid = &sweep_grid(manipulator, size);
         let expected = by_rows(manipulator, grid, one);
         let timings = compare(
