@@ -14,18 +14,21 @@
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 
+pub(crate) mod condition;
 pub mod cylindrical;
 pub mod equation;
+pub mod limits;
 pub mod planar;
 pub mod region;
 pub mod shape;
 pub mod spherical;
 pub mod surface;
+pub(crate) mod track;
 pub mod translational;
 
-use crate::angle;
-use crate::joint::Quantity;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
+use crate::numeric::Quantity;
+use crate::numeric::angle;
 use crate::task::{Displacement, Subspace, SubspaceKind};
 use cylindrical::{CoaxialJoint, CylindricalChain};
 use nalgebra::{Complex, Point3, Unit, Vector3};

@@ -20,9 +20,9 @@ mod share;
 mod target;
 
 use crate::chain::Branch;
-use crate::leg::Section;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
+use crate::mechanism::leg::Section;
 use affine::{Affine, Plane};
 use share::Share;
 use std::f64::consts::{PI, TAU};

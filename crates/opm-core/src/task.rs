@@ -24,7 +24,7 @@
 //!
 //! * The axis `d` of `I`, where it is a rotation or along a cylinder, is the third direction of both
 //!   frames. It *points up*: positive z, of nearly level directions positive y, of those nearly along
-//!   x positive x ([`UP`](crate::subspace::UP) is what decides).
+//!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
 //! * `x` is the base's x laid into the plane, or its y where x is within 6 degrees of the normal; in
 //!   a sphere likewise, into the plane square to `d`. `y` is a quarter turn ahead of it about the third
 //!   direction.
@@ -48,15 +48,15 @@ mod subspace;
 pub use displacement::{Cut, Displacement};
 pub use subspace::{Subspace, SubspaceKind};
 
-use crate::angle::sin_cos;
 use crate::chain::cylindrical::CylindricalDisplacement;
 use crate::chain::surface::Path;
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
-use crate::joint::Quantity;
-use crate::leg::{Leg, Section};
+use crate::group::screw::Screw;
+use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
+use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
-use crate::screw::Screw;
-use crate::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
+use crate::numeric::Quantity;
+use crate::numeric::angle::sin_cos;
 use displacement::{cylindrical, planar};
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::fmt;
@@ -155,7 +155,7 @@ impl OddJoint {
         decomposition: &Decomposition,
         section: Section,
     ) -> Option<Self> {
-        let frame = crate::mobility::frame(mechanism);
+        let frame = crate::decomposition::mobility::frame(mechanism);
         let part = |split: &LegSplit| match section {
             Section::Lower => split.lower.clone(),
             Section::Upper => split.upper.clone(),

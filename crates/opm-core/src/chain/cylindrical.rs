@@ -3,7 +3,7 @@
 
 use super::surface::Surface;
 use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap};
-use crate::angle::{MOST_REDUCED, sin_cos_reduced};
+use crate::numeric::angle::{MOST_REDUCED, sin_cos_reduced};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 

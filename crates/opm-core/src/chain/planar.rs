@@ -22,7 +22,7 @@ pub use rrr::Rrr;
 
 use super::shape::Shape;
 use super::{Amount, Branch, ChainError, ClosedForm, Gap};
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use nalgebra::Complex;
 
 /// A displacement of the plane: `z ↦ rotation · z + translation`.

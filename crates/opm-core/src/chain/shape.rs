@@ -8,7 +8,7 @@
 use super::Amount;
 use super::planar::{PlanarJoint, Prp};
 use super::region::Region;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use nalgebra::Complex;
 
 /// The region in which a chain closes, before the target's rotation is known.

@@ -2,7 +2,7 @@
 
 use super::surface::Surface;
 use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap, RIM};
-use crate::angle::atan2;
+use crate::numeric::angle::atan2;
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 
 /// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. `+` where the triple product

@@ -5,7 +5,7 @@ use super::region::parallelogram;
 use super::shape::Shape;
 use super::surface::Surface;
 use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use nalgebra::Complex;
 
 /// Two sliders, each a unit direction of the plane: one solution.

@@ -1,14 +1,14 @@
 //! What the search finds, put to the test: inverse kinematics give the actuated joints back, and the legs
 //! close.
 
-use super::condition::length;
 use super::search::Search;
 use super::{Assemblies, Assembly, RESIDUAL, Unmet};
+use crate::chain::condition::length;
 use crate::chain::{Amount, Branch};
-use crate::joint::Quantity;
 use crate::manipulator::{
     CompiledSection, LegSolution, Manipulator, Mode, Section, Slot, Solution, Unreachable,
 };
+use crate::numeric::Quantity;
 use crate::task::Displacement;
 use nalgebra::{Complex, Isometry3};
 use std::f64::consts::TAU;

@@ -1,8 +1,7 @@
 //! Where a displacement that moves along the intersection motion meets a condition: a link that swings
 //! about a point until its end is on a circle or a line, an axis that turns until it lies on a cone.
 
-use super::VERGE;
-use super::condition::{Condition, dot, flat, length};
+use crate::chain::condition::{Condition, VERGE, dot, flat, length};
 use crate::chain::{Amount, Gap};
 use crate::task::{Cut, Displacement};
 use nalgebra::Complex;
@@ -83,20 +82,11 @@ pub fn along(condition: &Condition, v: &Displacement, cut: &Cut, size: f64) -> M
         }
         (Condition::Heading { .. }, Displacement::Planar(_), Cut::Slide(_)) => Meeting::Anywhere,
         (Condition::Flat { normal, value }, v, _) => {
-            let ([a, b], [p, q]) = (flat(v), direction(cut));
+            let ([a, b], [p, q]) = (flat(v), cut.flat());
             let scale = normal[0].hypot(normal[1]) * size.max(1.0);
             sliding(normal[0] * p + normal[1] * q, normal[0] * a + normal[1] * b - value, scale)
         }
         _ => unreachable!("a condition and a displacement of two kinds of subspace"),
-    }
-}
-
-/// What a unit of the intersection motion adds to a displacement that adds up.
-pub fn direction(cut: &Cut) -> [f64; 2] {
-    match cut {
-        Cut::Turn => [1.0, 0.0],
-        Cut::Advance => [0.0, 1.0],
-        Cut::Slide(d) => [d.re, d.im],
     }
 }
 

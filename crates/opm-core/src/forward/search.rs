@@ -1,13 +1,13 @@
 //! The search for assemblies: every combination of what the sections allow, one section after the other.
 
 use super::along::{Meeting, along};
-use super::condition::{self, Condition};
-use super::plan::{self, Anchor, Plan};
 use super::three::{self, Solutions};
-use super::track::Track;
-use super::{Assemblies, Unmet, VERGE};
+use super::{Assemblies, Unmet};
+use crate::chain::condition::{self, Condition, VERGE};
 use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
+use crate::chain::track::Track;
 use crate::chain::{Amount, Branch, Chain, Gap, planar, unit};
+use crate::manipulator::plan::{self, Anchor, Plan};
 use crate::manipulator::{Manipulator, Section, Solution};
 use crate::task::{Displacement, SubspaceKind};
 use nalgebra::Complex;

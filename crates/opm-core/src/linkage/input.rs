@@ -2,7 +2,7 @@
 
 use super::{Linkage, Loop};
 use crate::chain::{Amount, Branch, unit};
-use crate::joint::JointCoordinate;
+use crate::mechanism::joint::JointCoordinate;
 use nalgebra::Complex;
 use std::fmt;
 

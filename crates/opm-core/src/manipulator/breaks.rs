@@ -9,10 +9,10 @@
 use super::leg::CompiledSection;
 use super::{Follow, Manipulator};
 use crate::chain::equation::Span;
+use crate::chain::limits::Limits;
 use crate::chain::surface::Surface;
 use crate::chain::{Amount, unit};
-use crate::joint::Quantity;
-use crate::limits::Limits;
+use crate::numeric::Quantity;
 use crate::task::Displacement;
 use std::f64::consts::PI;
 

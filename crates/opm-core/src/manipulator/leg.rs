@@ -1,12 +1,12 @@
 //! One leg, cut in two closed-form chains.
 
+use crate::chain::limits::Limits;
 use crate::chain::shape::Shape;
 use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
 use crate::decomposition::{Freedom, LegSplit};
-use crate::joint::JointKind;
-use crate::leg::Leg;
-pub use crate::leg::Section;
-use crate::limits::Limits;
+use crate::mechanism::joint::JointKind;
+use crate::mechanism::leg::Leg;
+pub use crate::mechanism::leg::Section;
 use crate::task::{Displacement, Subspace, SubspaceKind, Task};
 use crate::velocity::determinant_scale;
 use nalgebra::{Unit, Vector3};
@@ -319,6 +319,7 @@ fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
 
 /// Number of a freedom among the leg's coordinates.
 fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
-    let before: usize = leg.joints[..freedom.joint].iter().map(crate::joint::Joint::freedoms).sum();
+    let before: usize =
+        leg.joints[..freedom.joint].iter().map(crate::mechanism::joint::Joint::freedoms).sum();
     before + freedom.index
 }

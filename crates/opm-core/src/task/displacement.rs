@@ -95,6 +95,15 @@ impl Cut {
         }
     }
 
+    /// What a unit of it adds to a displacement that adds up.
+    pub(crate) fn flat(&self) -> [f64; 2] {
+        match self {
+            Self::Turn => [1.0, 0.0],
+            Self::Advance => [0.0, 1.0],
+            Self::Slide(d) => [d.re, d.im],
+        }
+    }
+
     /// `exp(I τ) · b` for every τ.
     pub(crate) fn path(&self, b: &Displacement) -> Path {
         match (self, *b) {

@@ -1,10 +1,10 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
 use super::{Cut, Displacement, SubspaceKind, Task};
-use crate::angle::sin_cos;
 use crate::chain::Amount;
 use crate::chain::planar::PlanarDisplacement;
-use crate::joint::Quantity;
+use crate::numeric::Quantity;
+use crate::numeric::angle::sin_cos;
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 

@@ -3,9 +3,9 @@
 use super::displacement::{Cut, Displacement};
 use super::{FrameProblem, TaskError};
 use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::leg::Section;
+use crate::group::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
+use crate::mechanism::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
-use crate::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
 use nalgebra::{
     Complex, Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3,
 };

@@ -25,7 +25,7 @@ use super::closure::{cut_unit, inputs, row_unit, section_rows, twist_unit, volum
 use super::jacobian::{beside, whole};
 use super::local::Local;
 use crate::manipulator::{Manipulator, Section};
-use crate::svd::Svd;
+use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
 
 /// The share of the largest component that a leg needs to count as a cause of a parallel singularity.

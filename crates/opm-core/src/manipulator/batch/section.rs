@@ -2,13 +2,13 @@
 //! it is is decided outside of the loop, and what it does is what it does for one pose.
 
 use super::lanes::{Amounts, Column, Displacements, LANES, Lane, Mask};
-use crate::angle::sin_cos_reduced;
 use crate::chain::cylindrical::{CylindricalDisplacement, WithRevolute};
+use crate::chain::limits::Limits;
 use crate::chain::planar::{PlanarChain, PlanarDisplacement};
 use crate::chain::{Amount, Attempt, Branch, Chain, ClosedForm};
-use crate::leg::Section;
-use crate::limits::Limits;
 use crate::manipulator::ImaginaryJoint;
+use crate::mechanism::leg::Section;
+use crate::numeric::angle::sin_cos_reduced;
 use crate::task::{
     Cut, Displacement, Form, SubspaceKind, Task, lower_displacement, upper_displacement,
 };

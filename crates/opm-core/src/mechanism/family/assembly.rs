@@ -1,9 +1,10 @@
 //! What every family needs to place its joints at home, and what can go wrong with that.
 
 use crate::chain::{Amount, ChainError, Gap};
-use crate::joint::{Joint, Quantity};
-use crate::leg::Leg;
 use crate::mechanism::file::FileUnits;
+use crate::mechanism::joint::Joint;
+use crate::mechanism::leg::Leg;
+use crate::numeric::Quantity;
 use nalgebra::Isometry3;
 use std::f64::consts::PI;
 use std::fmt;

@@ -11,7 +11,7 @@
 use super::assembly::{Problems, out_of_reach};
 use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
 use crate::chain::{Amount, Branch, unit};
-use crate::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

@@ -24,8 +24,8 @@ use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried
 use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
 use crate::chain::translational::TranslationalChain;
 use crate::chain::{Amount, unit};
-use crate::joint::{Joint, JointKind};
-use crate::leg::{ImaginaryLabel, Leg};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -2,11 +2,10 @@
 //! linear in the pose, and are solved once for all actuated joints. For the 2-PPR + PPH manipulator this
 //! is the 3×3 system of its three sliders (Eqs. 27-28 of the paper).
 
-use super::along::direction;
-use super::condition::{Condition, flat_joints};
-use super::plan::HeldLeg;
+use super::super::{CompiledLeg, Section};
+use super::HeldLeg;
 use crate::chain::Amount;
-use crate::manipulator::{CompiledLeg, Section};
+use crate::chain::condition::{Condition, flat_joints};
 use crate::task::{Displacement, SubspaceKind, Task};
 use nalgebra::{DMatrix, DVector};
 
@@ -34,7 +33,7 @@ impl Flat {
             // b has no share of the intersection motion: v takes it all.
             left: {
                 let mut left = vec![0.0; 4 + legs.len()];
-                left[2..4].copy_from_slice(&direction(&task.upper_cut));
+                left[2..4].copy_from_slice(&task.upper_cut.flat());
                 left
             },
             right: vec![0.0; drives],
@@ -57,7 +56,7 @@ impl Flat {
                     let mut row = Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; drives] };
                     row.left[first] = a;
                     row.left[first + 1] = b;
-                    let [p, q] = direction(cut);
+                    let [p, q] = cut.flat();
                     // v + I τ, or b − I τ, is what the real joints make; in a chain with the cut, the
                     // row of its other joint is square to I.
                     row.left[4 + number] = sign * (a * p + b * q);

@@ -1,14 +1,15 @@
 //! In which order the sections of a mechanism are solved forwards: found once, from which joints are
 //! actuated and what the two subspaces are.
 
-use super::along::direction;
-use super::condition::{Condition, flat_joints};
-use super::flat::Flat;
-use super::track::Track;
+mod flat;
+
+use super::{CompiledLeg, CompiledSection, Section};
+use crate::chain::condition::{Condition, flat_joints};
 use crate::chain::cylindrical::CoaxialJoint;
+use crate::chain::track::Track;
 use crate::chain::{Amount, Chain};
-use crate::manipulator::{CompiledLeg, CompiledSection, Section};
 use crate::task::{SubspaceKind, Task};
+use flat::Flat;
 
 /// Why a mechanism's forward kinematics have no closed form here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -141,7 +142,7 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
     };
     found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
     if adds_up(task.lower.kind) {
-        let cut = direction(&task.lower_cut);
+        let cut = task.lower_cut.flat();
         found.extend((0..legs.len()).find_map(|leg| {
             let level = |slot: &&usize| {
                 let c = Condition::new(&legs[leg].lower.chain, **slot, Amount::Value(0.0));
@@ -192,7 +193,7 @@ fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> 
 
 /// The functional of `b` that the cuts of most legs follow.
 fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
-    let cut = direction(&task.upper_cut);
+    let cut = task.upper_cut.flat();
     // With its one upper joint passive, a leg's cut is what b has beside that joint's motion.
     let functional = |leg: &CompiledLeg, held: &HeldLeg| {
         if leg.cut == Section::Lower || !held.upper.is_empty() {

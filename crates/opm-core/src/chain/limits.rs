@@ -1,7 +1,6 @@
 //! Limits of a joint coordinate, tested without trigonometry.
 
 use crate::chain::{Amount, unit};
-use crate::joint::{JointCoordinate, Quantity};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -37,15 +36,11 @@ pub struct Arc {
 }
 
 impl Limits {
-    /// From a coordinate's limits and its value at home; `size` is the mechanism's, in metres, which
-    /// the rounding of a length is in proportion to however short the length.
-    pub fn new(coordinate: &JointCoordinate, size: f64) -> Self {
-        let Some([low, high]) = coordinate.limits else { return Self::Free };
-        let home = coordinate.home;
-        let size = match coordinate.quantity {
-            Quantity::Angle => 1.0,
-            Quantity::Length => size,
-        };
+    /// From the lowest and the highest value of a coordinate and its value at home. The ends get a slack
+    /// for rounding, in proportion to the largest of these numbers and of `size`: the mechanism's in
+    /// metres, one for an angle.
+    pub fn new(limits: Option<[f64; 2]>, home: f64, size: f64) -> Self {
+        let Some([low, high]) = limits else { return Self::Free };
         let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(size);
         let (low, high) = (low - home - slack, high - home + slack);
         let arc = (high - low < TAU).then(|| Arc {
@@ -151,13 +146,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn limits(quantity: Quantity, limits: [f64; 2], home: f64, size: f64) -> Limits {
-        let name = "q".to_owned();
-        Limits::new(&JointCoordinate { name, quantity, home, limits: Some(limits) }, size)
-    }
-
     fn of_angle(low: f64, high: f64, home: f64) -> Limits {
-        limits(Quantity::Angle, [low, high], home, 1.0)
+        Limits::new(Some([low, high]), home, 1.0)
     }
 
     proptest! {
@@ -198,7 +188,7 @@ mod tests {
     #[test]
     fn a_limit_at_zero_is_inside() {
         for size in [1e-6, 1.0, 1e6] {
-            let locked = limits(Quantity::Length, [0.0, 0.0], 0.0, size);
+            let locked = Limits::new(Some([0.0, 0.0]), 0.0, size);
             for rounding in [0.0, f64::EPSILON, -f64::EPSILON] {
                 assert!(locked.admits(Amount::Value(rounding * size)));
             }

@@ -1,8 +1,7 @@
 //! Where legs that hold all but one of their lower joints let the axis of the intersection motion go,
 //! and where two such tracks meet: two circles or lines in the plane, two cones about a centre.
 
-use super::VERGE;
-use super::condition::{Condition, QUARTER, dot, rotation};
+use super::condition::{Condition, QUARTER, VERGE, dot, rotation};
 use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
 use crate::chain::{Amount, Chain};
 use crate::task::Displacement;

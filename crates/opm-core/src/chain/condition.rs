@@ -9,6 +9,10 @@ use crate::chain::{Amount, Chain};
 use crate::task::Displacement;
 use nalgebra::{Complex, Matrix3, Vector3};
 
+/// Conditions that miss each other by less than this, as a share of the size, meet: rounding at the
+/// boundary of reach must not decide.
+pub const VERGE: f64 = 1e-13;
+
 /// A quarter turn.
 pub const QUARTER: Complex<f64> = Complex::new(0.0, 1.0);
 
