@@ -48,11 +48,12 @@ use crate::chain::ChainError;
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, Freedom, LegSplit, decompose};
+use crate::group::SubspaceKind;
 use crate::manipulator::{ImaginaryJoint, Section};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::{Joint, JointCoordinate, JointKind};
 use crate::mechanism::leg::Leg;
-use crate::task::{SubspaceKind, Task, TaskError};
+use crate::task::{Task, TaskError};
 use four_bar::FourBar;
 use nalgebra::{Unit, Vector3};
 

@@ -30,15 +30,16 @@ pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
 pub use reach::Follow;
 
+use crate::chain::Chain;
 use crate::chain::limits::Limits;
-use crate::chain::{Amount, Chain};
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
+use crate::group::JointDisplacement;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
-use crate::task::{Task, TaskCoordinate, TaskError};
+use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 use leg::Surroundings;
 pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, Slot};
@@ -154,15 +155,28 @@ impl Manipulator {
 
     /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
     pub fn counts_turns(&self, name: &str) -> bool {
-        let counts = |chain: &Chain| match chain {
-            Chain::Cylindrical(chain) => chain.counts_turns(),
-            _ => false,
+        let section = match CoordinateKind::from_name(name) {
+            Some(CoordinateKind::Theta) => Section::Lower,
+            Some(CoordinateKind::Phi) => Section::Upper,
+            Some(
+                CoordinateKind::X
+                | CoordinateKind::Y
+                | CoordinateKind::Z
+                | CoordinateKind::W
+                | CoordinateKind::Zeta
+                | CoordinateKind::Xi
+                | CoordinateKind::Psi
+                | CoordinateKind::Mu
+                | CoordinateKind::Nu,
+            )
+            | None => return false,
         };
-        match name {
-            "theta" => self.legs.iter().any(|leg| counts(&leg.lower.chain)),
-            "phi" => self.legs.iter().any(|leg| counts(&leg.upper.chain)),
-            _ => false,
-        }
+        self.legs.iter().any(|leg| match &leg.section(section).chain {
+            Chain::Cylindrical(chain) => chain.counts_turns(),
+            Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
+                false
+            }
+        })
     }
 
     /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
@@ -343,7 +357,7 @@ impl ImaginaryJoint {
     /// The value to report for a displacement along the intersection motion; of a turn, the one
     /// nearest to `reference`.
     #[inline]
-    pub(crate) fn value(&self, tau: Amount, reference: f64) -> f64 {
+    pub(crate) fn value(&self, tau: JointDisplacement, reference: f64) -> f64 {
         self.home + self.sign * tau.nearest(self.sign * (reference - self.home))
     }
 }

@@ -10,8 +10,8 @@
 
 use super::trigonometric::{Roots, Trigonometric};
 use crate::chain::condition::{Condition, QUARTER, dot, length};
-use crate::chain::planar::PlanarDisplacement;
-use crate::chain::unit;
+use crate::group::PlanarDisplacement;
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
 /// What three conditions leave.
