@@ -7,39 +7,48 @@
 //!
 //! What holds for all of them:
 //! * `inverse` followed by `forward` returns the target.
-//! * On the rim of reach, within [`RIM`], the two branches meet and both are given.
+//! * On the boundary of reach, within [`REACH_TOLERANCE`], the two branches meet and both are given.
 //! * An angle that the target leaves free is given as zero, its home value.
 //! * The general case is straight arithmetic, which a loop over many targets is vectorised with; what is
 //!   rare, and what is out of reach, is told apart after it (`ClosedForm`).
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 
+pub(crate) mod condition;
 pub mod cylindrical;
 pub mod equation;
+mod joint;
+pub mod limits;
 pub mod planar;
 pub mod region;
+pub(crate) mod screws;
 pub mod shape;
 pub mod spherical;
 pub mod surface;
+pub(crate) mod track;
 pub mod translational;
 
-use crate::angle;
-use crate::joint::Quantity;
-use crate::limits::Limits;
-use crate::task::{Displacement, Subspace, SubspaceKind};
-use cylindrical::{CoaxialJoint, CylindricalChain};
-use nalgebra::{Complex, Point3, Unit, Vector3};
-use planar::{PlanarChain, PlanarJoint};
+pub use joint::ChainJoint;
+
+// The name that it had before.
+pub use crate::group::JointDisplacement as Amount;
+
+use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
+use crate::numeric::Quantity;
+use cylindrical::CylindricalChain;
+use joint::{coaxial_joints, planar_joints, slides, spherical_axes};
+use limits::Limits;
+use nalgebra::Complex;
+use planar::PlanarChain;
 use shape::Shape;
 use spherical::{Ball, SphericalChain};
-use std::f64::consts::TAU;
 use surface::Surface;
 use translational::TranslationalChain;
 
 /// How far beyond its reach a chain still answers, as a share of its size: rounding in a target
-/// that lies on the rim is of the order of 1e-15 and must not decide, and a pose on the rim counts
-/// as inside.
-pub const RIM: f64 = 1e-12;
+/// that lies on the boundary of reach is of the order of 1e-15 and must not decide, and a pose on that
+/// boundary counts as inside.
+pub const REACH_TOLERANCE: f64 = 1e-12;
 
 /// Shorter than this, as a share of the chain's size, a link or an angle between axes is zero.
 const DEGENERATE: f64 = 1e-9;
@@ -68,84 +77,16 @@ impl Branch {
     }
 }
 
-/// A joint's displacement from home, as a chain finds it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Amount {
-    /// A rotation by the argument of this vector, of any length: an angle modulo a turn. Zero stands
-    /// for an angle that is free, and its value is zero.
-    Turn(Complex<f64>),
-    /// A length, or an angle that counts whole turns.
-    Value(f64),
-}
-
-impl Amount {
-    /// The amount as a number; of a turn, the one in `(-π, π]`.
-    #[inline(always)]
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Turn(e) => angle::atan2(e.im, e.re),
-            Self::Value(value) => value,
-        }
-    }
-
-    /// The amount as a number; of a turn, the one nearest to `reference`.
-    #[inline]
-    pub fn nearest(self, reference: f64) -> f64 {
-        match self {
-            Self::Turn(_) => {
-                let value = self.value();
-                let turns = (reference - value) / TAU;
-                if turns.abs() <= 0.5 { value } else { value + TAU * turns.round() }
-            }
-            Self::Value(value) => value,
-        }
-    }
-
-    /// One after the other.
-    #[inline]
-    #[must_use]
-    pub(crate) fn plus(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Value(a), Self::Value(b)) => Self::Value(a + b),
-            _ => Self::Turn(self.turn() * other.turn()),
-        }
-    }
-
-    /// The opposite displacement.
-    #[inline(always)]
-    #[must_use]
-    pub fn inverse(self) -> Self {
-        match self {
-            Self::Turn(e) => Self::Turn(e.conj()),
-            Self::Value(value) => Self::Value(-value),
-        }
-    }
-
-    /// The rotation as a unit vector, whichever way it is held.
-    #[inline(always)]
-    pub fn turn(self) -> Complex<f64> {
-        match self {
-            Self::Turn(e) => {
-                let square = e.norm_sqr();
-                let length = if square > 0.0 { square.sqrt() } else { 1.0 };
-                let [re, im] = if square > 0.0 { [e.re, e.im] } else { [1.0, 0.0] };
-                Complex::new(re / length, im / length)
-            }
-            Self::Value(value) => unit(value),
-        }
-    }
-}
-
 /// How far a target is out of a chain's reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
+pub struct ReachDeficit {
     /// By how much, radians or metres; positive, not NaN, infinite where no number tells.
     pub excess: f64,
     /// What `excess` measures.
     pub quantity: Quantity,
 }
 
-impl Gap {
+impl ReachDeficit {
     pub(crate) fn length(excess: f64) -> Self {
         Self::new(excess, Quantity::Length)
     }
@@ -179,18 +120,11 @@ pub enum ChainError {
     Foreign(&'static str),
 }
 
-/// `e(angle)`, the unit vector at an angle.
-#[inline]
-pub(crate) fn unit(angle: f64) -> Complex<f64> {
-    let (sin, cos) = angle::sin_cos(angle);
-    Complex::new(cos, sin)
-}
-
 /// `z` as a direction: one where it is zero against `size`, which leaves the angle free.
 #[inline(always)]
 fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
-    // `z` is a product of two lengths: each may be as short as RIM.
-    let shortest = RIM * RIM * size;
+    // `z` is a product of two lengths: each may be as short as REACH_TOLERANCE.
+    let shortest = REACH_TOLERANCE * REACH_TOLERANCE * size;
     let long = z.norm_sqr() > shortest * shortest;
     Complex::new(if long { z.re } else { 1.0 }, if long { z.im } else { 0.0 })
 }
@@ -199,7 +133,7 @@ fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
     /// The joints' displacements, base first; not to be read unless `holds`.
-    pub amounts: [Amount; 3],
+    pub amounts: [JointDisplacement; 3],
     /// The target is in reach, and not one of those that [`ClosedForm::exception`] is for.
     pub holds: bool,
     /// The target is out of reach. Where it neither holds nor is beyond, the exception tells.
@@ -209,7 +143,7 @@ pub(crate) struct Attempt {
 impl Attempt {
     /// Of a closed form to which every target in reach is alike.
     #[inline(always)]
-    fn decided(amounts: [Amount; 3], holds: bool) -> Self {
+    fn decided(amounts: [JointDisplacement; 3], holds: bool) -> Self {
         Self { amounts, holds, beyond: !holds }
     }
 
@@ -233,13 +167,21 @@ pub(crate) trait ClosedForm {
 
     /// What an attempt that does not hold leaves open: by how much the target is out of reach, and the
     /// targets that are unlike the rest. Not asked for where all attempts hold.
-    fn exception(&self, target: &Self::Target, branch: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &Self::Target,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         Ok(self.attempt(target, branch).amounts)
     }
 
     /// The joints' displacements that move the outer link by `target`.
     #[inline(always)]
-    fn solve(&self, target: &Self::Target, branch: Branch) -> Result<[Amount; 3], Gap> {
+    fn solve(
+        &self,
+        target: &Self::Target,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let Attempt { amounts, holds, .. } = self.attempt(target, branch);
         if holds { Ok(amounts) } else { self.exception(target, branch) }
     }
@@ -327,17 +269,18 @@ impl Chain {
     /// # Panics
     /// If `target` is a displacement of another kind of subspace.
     #[inline(always)]
-    pub fn inverse(&self, target: &Displacement, branch: Branch) -> Result<[Amount; 3], Gap> {
-        let pad = |[a, b]: [Amount; 2]| [a, b, Amount::Value(0.0)];
-        match (self, target) {
-            (Self::Planar(chain), Displacement::Planar(g)) => chain.inverse(g, branch),
-            (Self::Spherical(chain), Displacement::Spherical(r)) => chain.inverse(r, branch),
-            (Self::Ball(ball), Displacement::Spherical(r)) => Ok(ball.inverse(r)),
-            (Self::Cylindrical(chain), Displacement::Cylindrical(g)) => Ok(pad(chain.inverse(g))),
-            (Self::Translational(chain), Displacement::Translational(t)) => {
-                Ok(pad(chain.inverse(*t)))
-            }
-            _ => unreachable!("a chain and a target of two kinds of subspace"),
+    pub fn inverse(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        let pad = |[a, b]: [JointDisplacement; 2]| [a, b, JointDisplacement::Value(0.0)];
+        match self {
+            Self::Planar(chain) => chain.inverse(target.planar(), branch),
+            Self::Spherical(chain) => chain.inverse(target.spherical(), branch),
+            Self::Ball(ball) => Ok(ball.inverse(target.spherical())),
+            Self::Cylindrical(chain) => Ok(pad(chain.inverse(target.cylindrical()))),
+            Self::Translational(chain) => Ok(pad(chain.inverse(*target.translational()))),
         }
     }
 
@@ -346,12 +289,18 @@ impl Chain {
     /// # Errors
     /// Out of reach: by how much.
     #[inline(always)]
-    pub fn first(&self, target: &Displacement, branch: Branch) -> Result<Amount, Gap> {
-        match (self, target) {
-            (Self::Spherical(chain), Displacement::Spherical(r)) => {
-                chain.first(&chain.third_axis(r), branch).map(Amount::Turn)
+    pub fn first(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+    ) -> Result<JointDisplacement, ReachDeficit> {
+        match self {
+            Self::Spherical(chain) => chain
+                .first(&chain.third_axis(target.spherical()), branch)
+                .map(JointDisplacement::Direction),
+            Self::Planar(_) | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+                self.inverse(target, branch).map(|amounts| amounts[0])
             }
-            _ => self.inverse(target, branch).map(|amounts| amounts[0]),
         }
     }
 }
@@ -360,7 +309,7 @@ impl Chain {
 impl Chain {
     /// The targets on which the chain closes with joint number `joint` at `amount`; `None` of a ball,
     /// whose rotation vector has no closed form along a path.
-    pub(crate) fn held(&self, joint: usize, amount: Amount) -> Option<Surface> {
+    pub(crate) fn held(&self, joint: usize, amount: JointDisplacement) -> Option<Surface> {
         match self {
             Self::Planar(chain) => Some(chain.held(joint, amount)),
             Self::Spherical(chain) => Some(chain.held(joint, amount)),
@@ -381,7 +330,7 @@ impl Chain {
     }
 
     /// The limits of a joint as amounts that it can be held at.
-    pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[Amount; 2]> {
+    pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[JointDisplacement; 2]> {
         let turns = match self {
             Self::Planar(chain) => chain.turns(joint),
             Self::Spherical(_) => true,
@@ -399,146 +348,4 @@ impl Chain {
             Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => 0.0,
         }
     }
-}
-
-/// A joint to build a chain from, at home in base coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ChainJoint {
-    /// Rotation about the line through `point` along `axis`, with `pitch` metres of advance a radian.
-    Screw {
-        /// Direction.
-        axis: Unit<Vector3<f64>>,
-        /// A point of the line.
-        point: Point3<f64>,
-        /// Zero for a revolute joint.
-        pitch: f64,
-    },
-    /// Translation.
-    Slide {
-        /// Direction.
-        axis: Unit<Vector3<f64>>,
-    },
-    /// A spherical joint.
-    Ball,
-}
-
-/// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
-/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Those of
-/// two numbers get a zero, and two joints a third one that takes what nothing moves along: then three
-/// screws are always a square matrix of the right determinant.
-///
-/// # Errors
-/// A joint that the subspace does not hold.
-pub(crate) fn screws(
-    subspace: &Subspace,
-    joints: &[ChainJoint],
-) -> Result<[Vector3<f64>; 3], ChainError> {
-    let needs = |needed| ChainError::Count { needed, given: joints.len() };
-    Ok(match subspace.kind {
-        SubspaceKind::Planar => {
-            let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
-            planar_joints(subspace, joints)?.map(|joint| match joint {
-                PlanarJoint::Revolute { at, reversed: false } => Vector3::new(1.0, at.im, -at.re),
-                PlanarJoint::Revolute { at, reversed: true } => Vector3::new(-1.0, -at.im, at.re),
-                PlanarJoint::Prismatic { along } => Vector3::new(0.0, along.re, along.im),
-            })
-        }
-        SubspaceKind::Spherical => match joints {
-            // About the base's directions, as a rotation vector is measured.
-            [ChainJoint::Ball] => [0, 1, 2].map(|i| subspace.axes.row(i).transpose()),
-            _ => {
-                let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
-                spherical_axes(subspace, joints)?.map(Unit::into_inner)
-            }
-        },
-        SubspaceKind::Cylindrical => {
-            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-            let [p, q] = coaxial_joints(subspace, joints)?;
-            [
-                Vector3::new(p.turn, p.advance, 0.0),
-                Vector3::new(q.turn, q.advance, 0.0),
-                Vector3::z(),
-            ]
-        }
-        SubspaceKind::TranslationalPlane => {
-            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-            let [u, v] = slides(subspace, joints)?;
-            [Vector3::new(u.re, u.im, 0.0), Vector3::new(v.re, v.im, 0.0), Vector3::z()]
-        }
-    })
-}
-
-fn planar_joints(
-    subspace: &Subspace,
-    joints: &[ChainJoint; 3],
-) -> Result<[PlanarJoint; 3], ChainError> {
-    let mut planar = [PlanarJoint::Prismatic { along: Complex::new(1.0, 0.0) }; 3];
-    for (planar, joint) in planar.iter_mut().zip(joints) {
-        *planar = match joint {
-            ChainJoint::Screw { axis, point, pitch: 0.0 } => {
-                let at = subspace.point(point);
-                let reversed = subspace.direction(axis).z < 0.0;
-                PlanarJoint::Revolute { at: Complex::new(at.x, at.y), reversed }
-            }
-            ChainJoint::Slide { axis } => {
-                PlanarJoint::Prismatic { along: in_plane(subspace, axis)? }
-            }
-            _ => return Err(ChainError::Foreign("planar")),
-        };
-    }
-    Ok(planar)
-}
-
-fn spherical_axes(
-    subspace: &Subspace,
-    joints: &[ChainJoint; 3],
-) -> Result<[Unit<Vector3<f64>>; 3], ChainError> {
-    let mut axes = [Vector3::z_axis(); 3];
-    for (local, joint) in axes.iter_mut().zip(joints) {
-        match joint {
-            ChainJoint::Screw { axis, pitch: 0.0, .. } => {
-                *local = Unit::new_normalize(subspace.direction(axis));
-            }
-            _ => return Err(ChainError::Foreign("spherical")),
-        }
-    }
-    Ok(axes)
-}
-
-fn coaxial_joints(
-    subspace: &Subspace,
-    joints: &[ChainJoint; 2],
-) -> Result<[CoaxialJoint; 2], ChainError> {
-    let mut coaxial = [CoaxialJoint { turn: 0.0, advance: 0.0 }; 2];
-    for (coaxial, joint) in coaxial.iter_mut().zip(joints) {
-        let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
-        *coaxial = match joint {
-            ChainJoint::Screw { axis, pitch, .. } => {
-                CoaxialJoint { turn: sign(axis), advance: sign(axis) * pitch }
-            }
-            ChainJoint::Slide { axis } => CoaxialJoint { turn: 0.0, advance: sign(axis) },
-            ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
-        };
-    }
-    Ok(coaxial)
-}
-
-fn slides(subspace: &Subspace, joints: &[ChainJoint; 2]) -> Result<[Complex<f64>; 2], ChainError> {
-    match joints {
-        [ChainJoint::Slide { axis: a }, ChainJoint::Slide { axis: b }] => {
-            Ok([in_plane(subspace, a)?, in_plane(subspace, b)?])
-        }
-        _ => Err(ChainError::Foreign("translational")),
-    }
-}
-
-/// A direction of the base, laid into the plane.
-fn in_plane(subspace: &Subspace, axis: &Vector3<f64>) -> Result<Complex<f64>, ChainError> {
-    let d = subspace.direction(axis);
-    let along = Complex::new(d.x, d.y);
-    let length = along.norm();
-    if length <= DEGENERATE {
-        return Err(ChainError::Dependent("a slider square to the plane that it moves in"));
-    }
-    Ok(along / length)
 }

@@ -11,15 +11,16 @@
 //! part displaces by elements of `A` and its upper part by elements of `B`, whatever the angles.
 
 mod imaginary;
+pub mod mobility;
 mod search;
 
 #[cfg(test)]
 pub(crate) mod samples;
 
-use crate::leg::Leg;
+use crate::decomposition::mobility::{HomeSingularity, MobilityError, frame, mobility};
+use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use crate::mechanism::Mechanism;
-use crate::mobility::{HomeSingularity, MobilityError, frame, mobility};
-use crate::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
+use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
 use search::Cut;
 use std::cmp::Reverse;
@@ -30,7 +31,7 @@ use thiserror::Error;
 pub struct Freedom {
     /// Index of the joint in its leg, base first.
     pub joint: usize,
-    /// Index of the freedom in its joint, as in [`Joint::screws`](crate::joint::Joint::screws).
+    /// Index of the freedom in its joint, as in [`Joint::screws`](crate::mechanism::joint::Joint::screws).
     pub index: usize,
 }
 

@@ -20,9 +20,9 @@ mod share;
 mod target;
 
 use crate::chain::Branch;
-use crate::leg::Section;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
+use crate::mechanism::leg::Section;
 use affine::{Affine, Plane};
 use share::Share;
 use std::f64::consts::{PI, TAU};
@@ -288,7 +288,7 @@ impl Query<'_> {
                 }
                 let cut = amounts[compiled.lower.chain.freedoms() - 1];
                 self.unwound(compiled, cut, |cut| {
-                    let target = target::before(self.manipulator.task().upper_cut, b, cut);
+                    let target = target::before(self.manipulator.task().upper_intersection, b, cut);
                     self.section(leg, Section::Upper, &target, |_| Share::ALL)
                 })
             }),
@@ -297,7 +297,7 @@ impl Query<'_> {
 
     /// The share for which the lower section follows to `v · exp(I τ)`.
     fn follows<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
-        let target = target::after(self.manipulator.task().lower_cut, v, tau);
+        let target = target::after(self.manipulator.task().lower_intersection, v, tau);
         self.section(leg, Section::Lower, &target, |_| Share::ALL)
     }
 

@@ -4,38 +4,28 @@
 //! intersection motion `I`,
 //!
 //! 1. some legs fix `v` up to `I`: one whose lower joints are all actuated, two that keep the axis of `I`
-//!    on a track each, or legs whose imaginary joints move as one (`forward/plan.rs`);
+//!    on a track each, or legs whose imaginary joints move as one (`manipulator/plan.rs`);
 //! 2. with `v` known, an actuated joint in a leg's lower section is one equation in the leg's τ
 //!    (`forward/along.rs`): a link that swings onto a circle or a line, an axis that turns onto a cone;
-//! 3. with τ known, each leg is one condition on `b` (`forward/condition.rs`), and as many as the upper
+//! 3. with τ known, each leg is one condition on `b` (`chain/condition.rs`), and as many as the upper
 //!    section has freedoms fix it (`forward/three.rs`: at most eight solutions in a sphere, six in a plane).
 //!
 //! Each is a small problem with all of its solutions, so that their combinations are all assemblies. Where
-//! both sections add up, everything is one linear system (`forward/flat.rs`). A mechanism without such an
+//! both sections add up, everything is one linear system (`manipulator/plan/flat.rs`). A mechanism without such an
 //! order is solved by [`Manipulator::forward_near`] from a pose.
 
 mod accept;
 mod along;
-mod closure;
-mod condition;
-mod flat;
 mod near;
-mod plan;
 mod search;
 mod three;
-mod track;
 mod trigonometric;
 
+pub use crate::manipulator::NoClosedForm;
 pub use near::{NearError, NotFound, Stop};
-pub use plan::NoClosedForm;
-pub(crate) use {closure::Closure, plan::Plan};
 
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
 use search::Search;
-
-/// Conditions that miss each other by less than this, as a share of the size, meet: rounding on the verge
-/// of reach must not decide.
-const VERGE: f64 = 1e-13;
 
 /// The largest residual of an assembly, in radians and sizes. What is off by more does not close.
 pub const RESIDUAL: f64 = 1e-12;

@@ -40,24 +40,25 @@
 //! * Out of reach is an answer, not an error; an error means that it cannot be computed. On the rim
 //!   of reach, and on a limit, counts as inside.
 
-mod angle;
+// The layers, each of which uses only those above it (tests/layers.rs).
 pub mod chain;
 pub mod decomposition;
 pub mod enclosure;
 pub mod forward;
-pub mod joint;
-pub mod leg;
-pub mod limits;
+pub mod group;
 pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
-pub mod mobility;
 pub mod motion;
-pub mod number;
-pub mod screw;
+pub mod numeric;
 pub mod skeleton;
-pub mod subspace;
-mod svd;
 pub mod task;
 pub mod trajectory;
 pub mod velocity;
+
+// Paths as they were before the modules were layered.
+pub use chain::limits;
+pub use decomposition::mobility;
+pub use group::{screw, subspace};
+pub use mechanism::{joint, leg};
+pub use numeric::number;

@@ -45,14 +45,15 @@ pub use input::{Input, LinkageBranch, Position};
 pub use range::InputRange;
 
 use crate::chain::ChainError;
+use crate::chain::limits::Limits;
+use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, Freedom, LegSplit, decompose};
-use crate::joint::{Joint, JointCoordinate, JointKind};
-use crate::leg::Leg;
-use crate::limits::Limits;
+use crate::group::SubspaceKind;
 use crate::manipulator::{ImaginaryJoint, Section};
 use crate::mechanism::Mechanism;
-use crate::mobility::frame;
-use crate::task::{SubspaceKind, Task, TaskError};
+use crate::mechanism::joint::{Joint, JointCoordinate, JointKind};
+use crate::mechanism::leg::Leg;
+use crate::task::{Task, TaskError};
 use four_bar::FourBar;
 use nalgebra::{Unit, Vector3};
 
@@ -191,7 +192,7 @@ impl Linkage {
         Ok(Self {
             imaginary: ImaginaryJoint::new(&mechanism.legs[owner], owner, &task),
             reversed: owner == 1,
-            limits: coordinates.iter().map(|c| Limits::new(c, size)).collect(),
+            limits: coordinates.iter().map(|c| c.displacement_limits(size)).collect(),
             coordinates,
             sections,
             mechanism,

@@ -13,10 +13,12 @@
 
 mod batch;
 mod breaks;
+mod closure;
 mod inverse;
 mod leg;
 mod locate;
 mod mode;
+pub(crate) mod plan;
 mod reach;
 
 pub use batch::{Answers, Batch, RowError};
@@ -25,20 +27,24 @@ pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
+pub use plan::NoClosedForm;
 pub use reach::Follow;
 
-use crate::chain::{Amount, Chain};
+use crate::chain::Chain;
+use crate::chain::limits::Limits;
+use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
-use crate::forward::{Closure, NoClosedForm, Plan};
-use crate::joint::{JointCoordinate, Quantity};
-use crate::leg::Leg;
-use crate::limits::Limits;
+use crate::group::JointDisplacement;
 use crate::mechanism::Mechanism;
-use crate::mobility::frame;
-use crate::task::{Task, TaskCoordinate, TaskError};
+use crate::mechanism::joint::JointCoordinate;
+use crate::mechanism::leg::Leg;
+use crate::numeric::Quantity;
+use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
+use closure::Closure;
 use leg::Surroundings;
 pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, Slot};
 use mode::ModeLayout;
+use plan::Plan;
 
 /// Choices that a [`Mode`] has room for.
 const MOST_CHOICES: u32 = 63;
@@ -149,15 +155,28 @@ impl Manipulator {
 
     /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
     pub fn counts_turns(&self, name: &str) -> bool {
-        let counts = |chain: &Chain| match chain {
-            Chain::Cylindrical(chain) => chain.counts_turns(),
-            _ => false,
+        let section = match CoordinateKind::from_name(name) {
+            Some(CoordinateKind::Theta) => Section::Lower,
+            Some(CoordinateKind::Phi) => Section::Upper,
+            Some(
+                CoordinateKind::X
+                | CoordinateKind::Y
+                | CoordinateKind::Z
+                | CoordinateKind::W
+                | CoordinateKind::Zeta
+                | CoordinateKind::Xi
+                | CoordinateKind::Psi
+                | CoordinateKind::Mu
+                | CoordinateKind::Nu,
+            )
+            | None => return false,
         };
-        match name {
-            "theta" => self.legs.iter().any(|leg| counts(&leg.lower.chain)),
-            "phi" => self.legs.iter().any(|leg| counts(&leg.upper.chain)),
-            _ => false,
-        }
+        self.legs.iter().any(|leg| match &leg.section(section).chain {
+            Chain::Cylindrical(chain) => chain.counts_turns(),
+            Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
+                false
+            }
+        })
     }
 
     /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
@@ -180,7 +199,7 @@ impl Manipulator {
         &self.imaginary
     }
 
-    /// Characteristic length, metres: [`Frame::length`](crate::subspace::Frame), the root mean square
+    /// Characteristic length, metres: [`Frame::length`](crate::group::subspace::Frame), the root mean square
     /// of the distances of the joint axes at home from the point nearest to all of them, and of their
     /// pitches. The same wherever the mechanism stands; of a mechanism twice the size, twice as long.
     pub fn characteristic_length(&self) -> f64 {
@@ -263,7 +282,7 @@ impl Compiled {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
         let length = frame(mechanism).length;
-        let limits: Vec<_> = coordinates.iter().map(|c| Limits::new(c, length)).collect();
+        let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
         let mut actuated = Vec::new();
         let mut drives = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
@@ -338,7 +357,7 @@ impl ImaginaryJoint {
     /// The value to report for a displacement along the intersection motion; of a turn, the one
     /// nearest to `reference`.
     #[inline]
-    pub(crate) fn value(&self, tau: Amount, reference: f64) -> f64 {
+    pub(crate) fn value(&self, tau: JointDisplacement, reference: f64) -> f64 {
         self.home + self.sign * tau.nearest(self.sign * (reference - self.home))
     }
 }

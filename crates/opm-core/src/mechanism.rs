@@ -4,13 +4,15 @@ pub mod examples;
 pub mod family;
 pub mod file;
 mod hints;
+pub mod joint;
+pub mod leg;
 mod screws;
 
 pub use hints::{FrameHints, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
 
-use crate::joint::{Joint, JointCoordinate};
-use crate::leg::Leg;
+use crate::mechanism::joint::{Joint, JointCoordinate};
+use crate::mechanism::leg::Leg;
 use nalgebra::Point3;
 
 /// A parallel mechanism at an assembled home pose, in base coordinates: metres and radians.

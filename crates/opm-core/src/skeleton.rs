@@ -23,11 +23,11 @@ mod solid;
 pub use solid::{Material, Part, Solid};
 
 use crate::decomposition::{Decomposition, Freedom};
-use crate::joint::{Joint, JointKind};
+use crate::group::screw::Screw;
+use crate::group::subspace::SubspaceClass;
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::Mechanism;
-use crate::screw::Screw;
-use crate::subspace::SubspaceClass;
+use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use solid::Sizes;
 
@@ -381,7 +381,7 @@ impl Builder<'_> {
             let lower = cuts.decomposition.legs[joint.leg].lower.len();
             imaginary.push(ImaginaryBody { joint: joint.clone(), screw, lower });
         }
-        let margin = if first.quantity == crate::joint::Quantity::Angle {
+        let margin = if first.quantity == crate::mechanism::joint::Quantity::Angle {
             2.0 * step
         } else {
             self.sizes.travel

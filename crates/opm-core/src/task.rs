@@ -24,7 +24,7 @@
 //!
 //! * The axis `d` of `I`, where it is a rotation or along a cylinder, is the third direction of both
 //!   frames. It *points up*: positive z, of nearly level directions positive y, of those nearly along
-//!   x positive x ([`UP`](crate::subspace::UP) is what decides).
+//!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
 //! * `x` is the base's x laid into the plane, or its y where x is within 6 degrees of the normal; in
 //!   a sphere likewise, into the plane square to `d`. `y` is a quarter turn ahead of it about the third
 //!   direction.
@@ -41,37 +41,28 @@
 //! of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; home's
 //! values follow. A plane's normal is not free where `I` turns about it: `axis` decides it.
 
+mod coordinate;
 mod displacement;
+mod frame;
 mod pose;
-mod subspace;
 
-pub use displacement::{Cut, Displacement};
-pub use subspace::{Subspace, SubspaceKind};
+pub use coordinate::{CoordinateKind, TaskCoordinate};
+pub use displacement::euler;
+pub(crate) use displacement::{Form, lower_displacement, upper_displacement};
 
-use crate::angle::sin_cos;
-use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::surface::Path;
+// The names that the groups had here before.
+pub use crate::group::{Displacement, Subspace, SubspaceKind};
+
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
-use crate::joint::Quantity;
-use crate::leg::{Leg, Section};
+use crate::group::screw::Screw;
+use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
+use crate::group::{CylindricalDisplacement, IntersectionMotion, Path, PlanarPath};
+use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
-use crate::screw::Screw;
-use crate::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
-use displacement::{cylindrical, planar};
+use crate::numeric::angle::sin_cos;
+use frame::Meeting;
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::fmt;
-use subspace::Meeting;
-
-/// One coordinate of the pose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TaskCoordinate {
-    /// Name, unique among the mechanism's task coordinates.
-    pub name: &'static str,
-    /// Angle or length.
-    pub quantity: Quantity,
-    /// The value at home, radians or metres.
-    pub home: f64,
-}
 
 /// Why a decomposition has no task coordinates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -155,7 +146,7 @@ impl OddJoint {
         decomposition: &Decomposition,
         section: Section,
     ) -> Option<Self> {
-        let frame = crate::mobility::frame(mechanism);
+        let frame = crate::decomposition::mobility::frame(mechanism);
         let part = |split: &LegSplit| match section {
             Section::Lower => split.lower.clone(),
             Section::Upper => split.upper.clone(),
@@ -245,9 +236,9 @@ pub struct Task {
     /// `B`, which their upper parts move in.
     pub upper: Subspace,
     /// The intersection motion in `A`'s frame.
-    pub lower_cut: Cut,
+    pub lower_intersection: IntersectionMotion,
     /// The intersection motion in `B`'s frame.
-    pub upper_cut: Cut,
+    pub upper_intersection: IntersectionMotion,
     /// Unit direction of the intersection motion, base coordinates.
     pub direction: Unit<Vector3<f64>>,
     /// A point of the intersection motion's axis at home, where it is a rotation.
@@ -281,22 +272,22 @@ impl Task {
         }
         let meeting = Meeting { axis, point, platform: mechanism.platform };
         let frame = |class: &SubspaceClass, section: Section| {
-            Subspace::new(class, section, &meeting, mechanism.task.frame(section)).map_err(
-                |error| match error {
+            frame::lay(class, section, &meeting, mechanism.task.frame(section)).map_err(|error| {
+                match error {
                     TaskError::Subspace { section, name, .. } => {
                         let odd = OddJoint::find(mechanism, decomposition, section);
                         TaskError::Subspace { section, name, odd }
                     }
                     other => other,
-                },
-            )
+                }
+            })
         };
         let lower = frame(&decomposition.lower, Section::Lower)?;
         let upper = frame(&decomposition.upper, Section::Upper)?;
         let rotation = point.is_some();
-        let mut coordinates = lower_coordinates(lower.kind, rotation, &lower);
+        let mut coordinates = coordinate::of_lower(&lower, rotation);
         let lower_count = coordinates.len();
-        coordinates.extend(upper_coordinates(upper.kind, rotation, &upper));
+        coordinates.extend(coordinate::of_upper(&upper, rotation));
         for (name, value) in &mechanism.task.home {
             match coordinates.iter_mut().find(|c| c.name == name) {
                 Some(coordinate) => coordinate.home = *value,
@@ -314,13 +305,16 @@ impl Task {
         } else {
             None
         };
-        let lower_cut = lower.cut(&axis, rotation);
-        let upper_cut = upper.cut(&axis, rotation);
+        let motion = |frame: &Subspace| {
+            IntersectionMotion::new(frame.kind, &frame.direction(&axis), rotation)
+        };
+        let lower_intersection = motion(&lower);
+        let upper_intersection = motion(&upper);
         Ok(Self {
             lower,
             upper,
-            lower_cut,
-            upper_cut,
+            lower_intersection,
+            upper_intersection,
             direction: axis,
             cut_point: point,
             coordinates,
@@ -336,18 +330,19 @@ impl Task {
         lower_displacement(self.form(Section::Lower), at, home, sin_cos)
     }
 
-    /// How `v`, or `v` with a cut after it, moves as the first coordinate grows from home, where it is
-    /// `start`.
+    /// How `v`, or `v` with a step along the intersection motion after it, moves as the first coordinate
+    /// grows from home, where it is `start`.
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
-        match (*start, self.lower_cut) {
-            (Displacement::Planar(start), _) => Path::Slide { start, rate },
-            (Displacement::Spherical(start), _) => Path::Tilt { start, axis: Vector3::x() },
-            (Displacement::Cylindrical(start), cut) => {
-                let [angle, advance] = if cut == Cut::Turn { [0.0, 1.0] } else { [1.0, 0.0] };
-                Path::Coaxial { start, rate: CylindricalDisplacement { angle, advance } }
+        match *start {
+            Displacement::Planar(start) => Path::Planar(PlanarPath::Slide { start, rate }),
+            Displacement::Spherical(start) => Path::Spherical { start, axis: Vector3::x() },
+            Displacement::Cylindrical(start) => {
+                let rotation = self.lower_intersection.is_rotation();
+                let [angle, advance] = if rotation { [0.0, 1.0] } else { [1.0, 0.0] };
+                Path::Cylindrical { start, rate: CylindricalDisplacement { angle, advance } }
             }
-            (Displacement::Translational(start), _) => Path::Translation { start, rate },
+            Displacement::Translational(start) => Path::Translational { start, rate },
         }
     }
 
@@ -414,129 +409,5 @@ impl Task {
     /// The pose at home.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
-    }
-}
-
-/// Which coordinates a section has: its subspace, and whether the intersection motion is a rotation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Form {
-    pub kind: SubspaceKind,
-    pub turn: bool,
-}
-
-/// `v` for its coordinates and their values at home: straight arithmetic where `form` is a constant.
-#[inline(always)]
-pub(crate) fn lower_displacement(
-    form: Form,
-    at: [f64; 3],
-    home: [f64; 3],
-    sin_cos: impl Fn(f64) -> (f64, f64),
-) -> Displacement {
-    let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
-        (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
-        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
-        (SubspaceKind::Spherical, _) => {
-            Displacement::Spherical(tilt([sin_cos(q(0)), sin_cos(q(1))]))
-        }
-        (SubspaceKind::Cylindrical, true) => cylindrical(0.0, q(0)),
-        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), q(1)),
-        (SubspaceKind::TranslationalPlane, _) => {
-            Displacement::Translational(Complex::new(q(0), q(1)))
-        }
-    }
-}
-
-/// As [`lower_displacement`], `b`; of a sphere, of which the coordinates are absolute, the orientation.
-#[inline(always)]
-pub(crate) fn upper_displacement(
-    form: Form,
-    at: [f64; 3],
-    home: [f64; 3],
-    sin_cos: impl Fn(f64) -> (f64, f64),
-) -> Displacement {
-    let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
-        (SubspaceKind::Spherical, _) => {
-            // Three calls, where a map would not be inlined.
-            let [zeta, xi, psi] = at;
-            Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
-        }
-        (SubspaceKind::Planar, true) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
-        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(1))), 0.0, q(0)),
-        (SubspaceKind::Cylindrical, true) => cylindrical(q(0), q(1)),
-        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), 0.0),
-        (SubspaceKind::TranslationalPlane, _) => {
-            Displacement::Translational(Complex::new(0.0, q(0)))
-        }
-    }
-}
-
-#[inline(always)]
-fn unit_of((sin, cos): (f64, f64)) -> Complex<f64> {
-    Complex::new(cos, sin)
-}
-
-/// `Rx(mu) Ry(nu)`, of the angles' sines and cosines.
-#[inline(always)]
-fn tilt([(sm, cm), (sn, cn)]: [(f64, f64); 2]) -> Matrix3<f64> {
-    Matrix3::new(cn, 0.0, sn, sm * sn, cm, -sm * cn, -cm * sn, sm, cm * cn)
-}
-
-/// `Rz(zeta) Ry(xi) Rz(psi)`.
-#[inline]
-pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
-    euler_of([zeta, xi, psi].map(sin_cos))
-}
-
-/// The same, of the angles' sines and cosines.
-#[inline(always)]
-fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
-    Matrix3::new(
-        cz * cx * cp - sz * sp,
-        -cz * cx * sp - sz * cp,
-        cz * sx,
-        sz * cx * cp + cz * sp,
-        -sz * cx * sp + cz * cp,
-        sz * sx,
-        -sx * cp,
-        sx * sp,
-        cx,
-    )
-}
-
-const fn length(name: &'static str, home: f64) -> TaskCoordinate {
-    TaskCoordinate { name, quantity: Quantity::Length, home }
-}
-
-const fn angle(name: &'static str) -> TaskCoordinate {
-    TaskCoordinate { name, quantity: Quantity::Angle, home: 0.0 }
-}
-
-/// Home values of lengths are those of the reference point.
-fn lower_coordinates(kind: SubspaceKind, rotation: bool, frame: &Subspace) -> Vec<TaskCoordinate> {
-    let at = frame.home();
-    match (kind, rotation) {
-        (SubspaceKind::Planar, true) | (SubspaceKind::TranslationalPlane, _) => {
-            vec![length("x", at.x), length("y", at.y)]
-        }
-        (SubspaceKind::Planar, false) => {
-            vec![length("x", at.x), length("y", at.y), angle("theta")]
-        }
-        (SubspaceKind::Spherical, _) => vec![angle("mu"), angle("nu")],
-        (SubspaceKind::Cylindrical, true) => vec![length("z", at.z)],
-        (SubspaceKind::Cylindrical, false) => vec![angle("theta"), length("z", at.z)],
-    }
-}
-
-fn upper_coordinates(kind: SubspaceKind, rotation: bool, frame: &Subspace) -> Vec<TaskCoordinate> {
-    let at = frame.home();
-    match (kind, rotation) {
-        (SubspaceKind::Spherical, _) => vec![angle("zeta"), angle("xi"), angle("psi")],
-        (SubspaceKind::Planar, true) => vec![length("x", at.x), length("y", at.y), angle("phi")],
-        (SubspaceKind::Planar, false) => vec![length("w", at.y), angle("phi")],
-        (SubspaceKind::Cylindrical, true) => vec![angle("phi"), length("z", at.z)],
-        (SubspaceKind::Cylindrical, false) => vec![angle("phi")],
-        (SubspaceKind::TranslationalPlane, _) => vec![length("w", at.y)],
     }
 }

@@ -30,10 +30,10 @@ pub use gauge::{Bound, Gauge, Part, Violation};
 pub use told::Told;
 pub use watch::Change;
 
-use crate::joint::Quantity;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
 use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
 use crate::motion::{Instant, Motion};
+use crate::numeric::Quantity;
 use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
 
 /// Times are found to this share of the step between two samples.

@@ -52,7 +52,6 @@
 mod closure;
 mod condition;
 mod jacobian;
-mod local;
 mod pose;
 mod rotation_vector;
 mod screws;
@@ -62,12 +61,10 @@ mod singularity;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
-pub(crate) use section::determinant_scale;
 pub use singularity::{Cause, Measures, Singularities};
 
-use crate::chain::Amount;
+use crate::group::{JointDisplacement, LocalTwist};
 use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
-pub(crate) use local::Local;
 use nalgebra::Vector3;
 use section::Differential;
 
@@ -148,14 +145,14 @@ pub struct Motion {
 /// What the task coordinates do: the twists of `v` and of `b`, and their derivatives.
 #[derive(Clone, Copy)]
 struct Drive {
-    v: [Local; 2],
-    b: [Local; 2],
+    v: [LocalTwist; 2],
+    b: [LocalTwist; 2],
 }
 
 /// What a leg does: rates and accelerations of its sections' chains and along the cut.
 struct LegMotion {
-    lower: [Local; 2],
-    upper: [Local; 2],
+    lower: [LocalTwist; 2],
+    upper: [LocalTwist; 2],
     tau: [f64; 2],
 }
 
@@ -247,7 +244,7 @@ impl Manipulator {
         let task = self.task();
         let count = task.lower_count;
         let of = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
-            let vector = |all| Local::from_fn(|i, _| *part(all, count).get(i).unwrap_or(&0.0));
+            let vector = |all| LocalTwist::from_fn(|i, _| *part(all, count).get(i).unwrap_or(&0.0));
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]
         };
@@ -320,7 +317,7 @@ impl Manipulator {
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
-        let solve = |section: &Differential, [twist, derivative]: [Local; 2]| {
+        let solve = |section: &Differential, [twist, derivative]: [LocalTwist; 2]| {
             let rates = section.rates(&twist);
             [rates, section.accelerations(&twist, &derivative, &rates)]
         };
@@ -328,7 +325,7 @@ impl Manipulator {
             Section::Upper => {
                 let upper = solve(upper, drive.b);
                 let tau = upper.map(|u| u.x);
-                let along = at.place.v.carried(&task.lower_cut.twist(task.lower.kind));
+                let along = at.place.v.adjoint(&task.lower_intersection.unit_twist());
                 let [twist, derivative] = drive.v;
                 let turned = task.lower.kind.bracket(&twist, &along);
                 let target =
@@ -340,10 +337,10 @@ impl Manipulator {
                 let last = leg.lower.chain.freedoms() - 1;
                 let cut = lower.map(|l| l[last]);
                 let kind = task.upper.kind;
-                let along = task.upper_cut.twist(kind);
-                let amount: Amount = solved.tau.inverse();
+                let along = task.upper_intersection.unit_twist();
+                let amount: JointDisplacement = solved.tau.inverse();
                 let [twist, derivative] =
-                    drive.b.map(|twist| task.upper_cut.carried(kind, amount, &twist));
+                    drive.b.map(|twist| task.upper_intersection.adjoint(amount, &twist));
                 let turned = kind.bracket(&along, &twist);
                 let target =
                     [along * cut[0] + twist, along * cut[1] + derivative + turned * cut[0]];
@@ -374,7 +371,7 @@ impl Manipulator {
 
 impl LegMotion {
     const NONE: Self = {
-        let zero = [Local::new(0.0, 0.0, 0.0); 2];
+        let zero = [LocalTwist::new(0.0, 0.0, 0.0); 2];
         Self { lower: zero, upper: zero, tau: [0.0; 2] }
     };
 

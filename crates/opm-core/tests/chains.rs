@@ -3,11 +3,12 @@
 //! `forward` knows nothing of the closed forms: it multiplies the joints' displacements.
 
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
-use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
-use opm_core::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint, forward};
+use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain};
+use opm_core::chain::planar::{PlanarChain, PlanarJoint, forward};
 use opm_core::chain::spherical::{Ball, SphericalChain};
 use opm_core::chain::translational::TranslationalChain;
-use opm_core::chain::{Amount, Branch, ChainError};
+use opm_core::chain::{Branch, ChainError};
+use opm_core::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacement};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -51,8 +52,8 @@ fn check_planar(
         return Err(TestCaseError::reject("degenerate"));
     };
     let made = std::array::from_fn(|i| match joints[i] {
-        PlanarJoint::Revolute { .. } => Amount::Turn(e(amounts[i])),
-        PlanarJoint::Prismatic { .. } => Amount::Value(amounts[i]),
+        PlanarJoint::Revolute { .. } => JointDisplacement::Direction(e(amounts[i])),
+        PlanarJoint::Prismatic { .. } => JointDisplacement::Value(amounts[i]),
     });
     let reached = forward(&joints, &made);
     let mut found = false;
@@ -65,8 +66,10 @@ fn check_planar(
         let off = distance(&forward(&joints, &solution), &reached);
         prop_assert!(off <= TOLERANCE * size, "{joints:?} {made:?} {branch:?} off by {off}");
         found |= solution.iter().zip(&made).all(|(a, b)| match a {
-            Amount::Turn(_) => (a.turn() - b.turn()).norm() < 1e-5 * size,
-            Amount::Value(value) => (value - b.value()).abs() < 1e-5 * size,
+            JointDisplacement::Direction(_) => {
+                (a.unit_direction() - b.unit_direction()).norm() < 1e-5 * size
+            }
+            JointDisplacement::Value(value) => (value - b.value()).abs() < 1e-5 * size,
         });
     }
     prop_assert!(found, "the amounts that made the target are on no branch: {joints:?} {made:?}");
@@ -219,7 +222,7 @@ proptest! {
         let Ok(chain) = SphericalChain::new(axes) else {
             return Err(TestCaseError::reject("degenerate"));
         };
-        let made = amounts.map(|a| Amount::Turn(e(a)));
+        let made = amounts.map(|a| JointDisplacement::Direction(e(a)));
         let reached = chain.forward(&made);
         let mut found = false;
         for branch in Branch::BOTH {
@@ -228,7 +231,7 @@ proptest! {
             let solution = solution.unwrap();
             let off = (chain.forward(&solution) - reached).norm();
             prop_assert!(off < TOLERANCE, "{axes:?} {amounts:?} {branch:?}: off by {off}");
-            found |= solution.iter().zip(&made).all(|(a, b)| (a.turn() - b.turn()).norm() < 1e-4);
+            found |= solution.iter().zip(&made).all(|(a, b)| (a.unit_direction() - b.unit_direction()).norm() < 1e-4);
             // The branch is the sign of the triple product of the axes as they have moved.
             let turn = |i: usize| Rotation3::from_axis_angle(&axes[i], solution[i].value());
             let second = turn(0) * axes[1].into_inner();
@@ -311,8 +314,8 @@ fn sliders_next_to_parallel_close() {
         let angle = 0.003_1 * f64::from(i);
         let apart = 1e-8 * (1.0 + f64::from(i));
         let (u, v) = (angle, angle + apart);
-        let made = [0.9, -1.4].map(Amount::Value);
-        let turn = Amount::Turn(e(0.7));
+        let made = [0.9, -1.4].map(JointDisplacement::Value);
+        let turn = JointDisplacement::Direction(e(0.7));
         for (joints, amounts) in [
             ([slide(u), slide(v), revolute], [made[0], made[1], turn]),
             ([revolute, slide(u), slide(v)], [turn, made[0], made[1]]),

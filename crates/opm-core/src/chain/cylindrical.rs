@@ -2,19 +2,11 @@
 //! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
 
 use super::surface::Surface;
-use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap};
-use crate::angle::{MOST_REDUCED, sin_cos_reduced};
+use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, ReachDeficit};
+use crate::group::{CylindricalDisplacement, JointDisplacement};
+use crate::numeric::angle::{MOST_REDUCED, sin_cos_reduced};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
-
-/// A displacement about and along one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylindricalDisplacement {
-    /// Radians, whole turns counted.
-    pub angle: f64,
-    /// Metres.
-    pub advance: f64,
-}
 
 /// A joint on the axis: what one unit of its coordinate turns and advances.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +67,7 @@ impl CylindricalChain {
     }
 
     /// The targets with joint number `joint` at `amount`: those of [`CylindricalChain::inverse`].
-    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
         let [p, q] = self.joints;
         let (turn, advance) = if joint == 0 { (q.advance, -q.turn) } else { (-p.advance, p.turn) };
         let period = self.turns(joint).then_some(TAU * self.determinant);
@@ -84,10 +76,10 @@ impl CylindricalChain {
 
     /// The joints' amounts that displace the outer link by `target`.
     #[inline]
-    pub fn inverse(&self, target: &CylindricalDisplacement) -> [Amount; 2] {
-        let mut amounts = self.coordinates(target).map(Amount::Value);
+    pub fn inverse(&self, target: &CylindricalDisplacement) -> [JointDisplacement; 2] {
+        let mut amounts = self.coordinates(target).map(JointDisplacement::Value);
         if let Some(revolute) = self.revolute() {
-            amounts[revolute] = Amount::Turn(amounts[revolute].turn());
+            amounts[revolute] = JointDisplacement::Direction(amounts[revolute].unit_direction());
         }
         amounts
     }
@@ -102,9 +94,9 @@ impl CylindricalChain {
     }
 
     /// The displacement of the outer link; its whole turns are those that the amounts hold.
-    pub fn forward(&self, amounts: &[Amount; 2]) -> CylindricalDisplacement {
+    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> CylindricalDisplacement {
         let [p, q] = self.joints;
-        let [a, b] = amounts.map(Amount::value);
+        let [a, b] = amounts.map(JointDisplacement::value);
         CylindricalDisplacement {
             angle: p.turn * a + q.turn * b,
             advance: p.advance * a + q.advance * b,
@@ -122,20 +114,24 @@ impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
     #[inline(always)]
     fn attempt(&self, target: &CylindricalDisplacement, _: Branch) -> Attempt {
         let [first, second] = self.0.coordinates(target);
-        let mut amounts = [first, second, 0.0].map(Amount::Value);
+        let mut amounts = [first, second, 0.0].map(JointDisplacement::Value);
         let mut reduced = true;
         if NUMBER < 2 {
             let angle = if NUMBER == 0 { first } else { second };
             let (sin, cos) = sin_cos_reduced(angle);
-            amounts[NUMBER] = Amount::Turn(Complex::new(cos, sin));
+            amounts[NUMBER] = JointDisplacement::Direction(Complex::new(cos, sin));
             reduced = angle.abs() <= MOST_REDUCED;
         }
         Attempt { amounts, holds: reduced, beyond: false }
     }
 
     #[cold]
-    fn exception(&self, target: &CylindricalDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &CylindricalDisplacement,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let [first, second] = self.0.inverse(target);
-        Ok([first, second, Amount::Value(0.0)])
+        Ok([first, second, JointDisplacement::Value(0.0)])
     }
 }

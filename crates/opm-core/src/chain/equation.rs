@@ -26,7 +26,7 @@ pub struct Span {
 
 impl Span {
     /// The largest absolute value.
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.from.abs().max(self.to.abs())
     }
 

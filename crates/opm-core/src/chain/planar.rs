@@ -21,48 +21,10 @@ pub use rrp::Rrp;
 pub use rrr::Rrr;
 
 use super::shape::Shape;
-use super::{Amount, Branch, ChainError, ClosedForm, Gap};
-use crate::limits::Limits;
+use super::{Branch, ChainError, ClosedForm, ReachDeficit};
+use crate::chain::limits::Limits;
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
-
-/// A displacement of the plane: `z ↦ rotation · z + translation`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarDisplacement {
-    /// Unit.
-    pub rotation: Complex<f64>,
-    /// Metres.
-    pub translation: Complex<f64>,
-}
-
-impl PlanarDisplacement {
-    /// The identity.
-    pub const IDENTITY: Self =
-        Self { rotation: Complex::new(1.0, 0.0), translation: Complex::new(0.0, 0.0) };
-
-    /// Where the point `z` goes.
-    #[inline]
-    pub fn apply(&self, z: Complex<f64>) -> Complex<f64> {
-        self.rotation * z + self.translation
-    }
-
-    /// First `other`, then `self`.
-    #[inline]
-    #[must_use]
-    pub fn after(&self, other: &Self) -> Self {
-        Self {
-            rotation: self.rotation * other.rotation,
-            translation: self.apply(other.translation),
-        }
-    }
-
-    /// The displacement back.
-    #[inline]
-    #[must_use]
-    pub fn inverse(&self) -> Self {
-        let rotation = self.rotation.conj();
-        Self { rotation, translation: -(rotation * self.translation) }
-    }
-}
 
 /// A joint of a planar chain at home.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,17 +45,13 @@ pub enum PlanarJoint {
 
 impl PlanarJoint {
     /// The displacement of the outer link.
-    pub fn displacement(&self, amount: Amount) -> PlanarDisplacement {
+    pub fn displacement(&self, amount: JointDisplacement) -> PlanarDisplacement {
         match *self {
             Self::Revolute { at, reversed } => {
-                let turn = amount.turn();
-                let rotation = if reversed { turn.conj() } else { turn };
-                PlanarDisplacement { rotation, translation: at - rotation * at }
+                let turn = amount.unit_direction();
+                PlanarDisplacement::about(at, if reversed { turn.conj() } else { turn })
             }
-            Self::Prismatic { along } => PlanarDisplacement {
-                rotation: Complex::new(1.0, 0.0),
-                translation: along * amount.value(),
-            },
+            Self::Prismatic { along } => PlanarDisplacement::translation(along * amount.value()),
         }
     }
 }
@@ -112,8 +70,8 @@ impl Pivot {
 
     /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
     #[inline(always)]
-    fn amount(&self, r: Complex<f64>) -> Amount {
-        Amount::Turn(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
+    fn amount(&self, r: Complex<f64>) -> JointDisplacement {
+        JointDisplacement::Direction(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
     }
 }
 
@@ -203,7 +161,11 @@ impl PlanarChain {
     /// # Errors
     /// Out of reach: by how much.
     #[inline]
-    pub fn inverse(&self, target: &PlanarDisplacement, branch: Branch) -> Result<[Amount; 3], Gap> {
+    pub fn inverse(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         match self {
             Self::Rrr(chain) => chain.solve(target, branch),
             Self::Prr(chain) => chain.solve(target, branch),
@@ -236,7 +198,7 @@ impl PlanarChain {
 }
 
 /// The displacement of the outer link: the product of the joints' displacements, base first.
-pub fn forward(joints: &[PlanarJoint; 3], amounts: &[Amount; 3]) -> PlanarDisplacement {
+pub fn forward(joints: &[PlanarJoint; 3], amounts: &[JointDisplacement; 3]) -> PlanarDisplacement {
     joints.iter().zip(amounts).fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| {
         g.after(&joint.displacement(amount))
     })

@@ -5,10 +5,10 @@
 //! pivot's new place `r p + t` in a fixed region `R`, so for the translations `t` of `R - r p`. A chain
 //! that begins in a pivot, seen from its end, does so for `p + r R`.
 
-use super::Amount;
 use super::planar::{PlanarJoint, Prp};
 use super::region::Region;
-use crate::limits::Limits;
+use crate::chain::limits::Limits;
+use crate::group::JointDisplacement;
 use nalgebra::Complex;
 
 /// The region in which a chain closes, before the target's rotation is known.
@@ -72,7 +72,7 @@ impl Shape {
     pub fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
         if let Some(Turn { reversed, limits }) = &self.turn {
             let turn = if *reversed { rotation.conj() } else { rotation };
-            if !limits.admits(Amount::Turn(turn)) {
+            if !limits.admits(JointDisplacement::Direction(turn)) {
                 return Some(Region::NOTHING);
             }
         }

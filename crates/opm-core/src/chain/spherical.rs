@@ -1,8 +1,8 @@
 //! Chains inside a sphere: three revolutes through its centre, with any axes, and the ball.
 
 use super::surface::Surface;
-use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Gap, RIM};
-use crate::angle::atan2;
+use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, REACH_TOLERANCE, ReachDeficit};
+use crate::group::{JointDisplacement, rotation_vector};
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 
 /// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. `+` where the triple product
@@ -51,7 +51,7 @@ impl SphericalChain {
     /// # Errors
     /// Out of reach: by which angle `w` is too near to the first axis or too far from it.
     #[inline]
-    pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, Gap> {
+    pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_rim(w) }
     }
@@ -67,14 +67,14 @@ impl SphericalChain {
     /// On the rim, or out of reach. Where `w` lies on the first axis, in reach only because the
     /// links' arcs are equal or supplementary, the angle is free.
     #[cold]
-    fn first_at_rim(&self, w: &Vector3<f64>) -> Result<Complex<f64>, Gap> {
+    fn first_at_rim(&self, w: &Vector3<f64>) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.d.is_nan() || equation.has_none() {
             return Err(self.gap(w));
         }
         let Equation { a, b, d, square } = equation;
         let length = square.sqrt();
-        let on_axis = length <= RIM;
+        let on_axis = length <= REACH_TOLERANCE;
         Ok(if on_axis {
             Complex::new(1.0, 0.0)
         } else {
@@ -84,13 +84,17 @@ impl SphericalChain {
 
     /// The joints' rotations with the first one's given.
     #[inline(always)]
-    fn with_first(&self, target: &Matrix3<f64>, q1: Complex<f64>) -> [Amount; 3] {
+    fn with_first(&self, target: &Matrix3<f64>, q1: Complex<f64>) -> [JointDisplacement; 3] {
         let w1 = rotate_back(&self.axes[0], q1, &apply(target, &self.axes[2]));
         let q2 = angle(&self.third_on_second, &w1);
         let beside1 = rotate_back(&self.axes[0], q1, &apply(target, &self.beside_third[0]));
         let beside2 = rotate_back(&self.axes[1], q2, &beside1);
         let q3 = angle(&self.beside_third, &beside2);
-        [Amount::Turn(q1), Amount::Turn(q2), Amount::Turn(q3)]
+        [
+            JointDisplacement::Direction(q1),
+            JointDisplacement::Direction(q2),
+            JointDisplacement::Direction(q3),
+        ]
     }
 
     /// The joints' rotations that turn the outer link by `target`.
@@ -98,7 +102,11 @@ impl SphericalChain {
     /// # Errors
     /// Out of reach: by which angle.
     #[inline]
-    pub fn inverse(&self, target: &Matrix3<f64>, branch: Branch) -> Result<[Amount; 3], Gap> {
+    pub fn inverse(
+        &self,
+        target: &Matrix3<f64>,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         self.solve(target, branch)
     }
 
@@ -109,11 +117,11 @@ impl SphericalChain {
     }
 
     /// The targets on which the chain closes with joint number `joint` at `amount`: two axes are left.
-    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
         let [a1, a2, a3] = self.axes;
         let turned =
             |v: &Vector3<f64>, q: Complex<f64>| rotate_back(&self.axes[joint], q.conj(), v);
-        let turn = amount.turn();
+        let turn = amount.unit_direction();
         let (fixed, carried, cosine) = match joint {
             // E₂E₃ = E₁⁻¹ R
             0 => (turned(&a2, turn), a3, a2.dot(&a3)),
@@ -126,9 +134,9 @@ impl SphericalChain {
     }
 
     /// The second joint's rotations at which the two branches meet, the three axes in one plane.
-    pub(super) fn folds(&self) -> [Amount; 2] {
+    pub(super) fn folds(&self) -> [JointDisplacement; 2] {
         let turn = angle(&self.third_on_second, &self.axes[0]);
-        [Amount::Turn(turn), Amount::Turn(-turn)]
+        [JointDisplacement::Direction(turn), JointDisplacement::Direction(-turn)]
     }
 
     /// The joints' axes at home, base first.
@@ -137,20 +145,20 @@ impl SphericalChain {
     }
 
     /// The rotation of the outer link: the product of the joints' rotations, base first.
-    pub fn forward(&self, amounts: &[Amount; 3]) -> Matrix3<f64> {
+    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
         self.axes.iter().zip(amounts).fold(Matrix3::identity(), |r, (axis, amount)| {
             r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), amount.value()).into_inner()
         })
     }
 
     #[cold]
-    fn gap(&self, w: &Vector3<f64>) -> Gap {
+    fn gap(&self, w: &Vector3<f64>) -> ReachDeficit {
         let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
         let [a12, a23] = self.cosines.map(arc);
         let to_first = arc(self.axes[0].dot(w));
         let nearest = (a12 - a23).abs();
         let farthest = (a12 + a23).min(std::f64::consts::TAU - a12 - a23);
-        Gap::angle((nearest - to_first).max(to_first - farthest))
+        ReachDeficit::angle((nearest - to_first).max(to_first - farthest))
     }
 }
 
@@ -165,7 +173,11 @@ impl ClosedForm for SphericalChain {
     }
 
     #[cold]
-    fn exception(&self, target: &Matrix3<f64>, _: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &Matrix3<f64>,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let q1 = self.first_at_rim(&self.third_axis(target))?;
         Ok(self.with_first(target, q1))
     }
@@ -182,13 +194,13 @@ struct Equation {
 impl Equation {
     #[inline(always)]
     fn has_two(&self) -> bool {
-        (self.square > self.d * self.d) & (self.square > RIM * RIM)
+        (self.square > self.d * self.d) & (self.square > REACH_TOLERANCE * REACH_TOLERANCE)
     }
 
     /// For certain: not even on the rim.
     #[inline(always)]
     fn has_none(&self) -> bool {
-        self.d.abs() > self.square.sqrt() + RIM
+        self.d.abs() > self.square.sqrt() + REACH_TOLERANCE
     }
 
     /// One of the two.
@@ -210,12 +222,12 @@ pub struct Ball {
 impl Ball {
     /// The three components of the rotation vector of `target`, at most half a turn.
     #[inline]
-    pub fn inverse(&self, target: &Matrix3<f64>) -> [Amount; 3] {
+    pub fn inverse(&self, target: &Matrix3<f64>) -> [JointDisplacement; 3] {
         self.attempt(target, Branch::Plus).amounts
     }
 
     /// The rotation with this rotation vector.
-    pub fn forward(&self, amounts: &[Amount; 3]) -> Matrix3<f64> {
+    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
         let vector = Vector3::from_fn(|i, _| amounts[i].value());
         Rotation3::new(self.axes.tr_mul(&vector)).into_inner()
     }
@@ -227,35 +239,13 @@ impl ClosedForm for Ball {
     #[inline(always)]
     fn attempt(&self, target: &Matrix3<f64>, _: Branch) -> Attempt {
         let vector = apply(&self.axes, &rotation_vector(target));
-        let amounts = [Amount::Value(vector.x), Amount::Value(vector.y), Amount::Value(vector.z)];
+        let amounts = [
+            JointDisplacement::Value(vector.x),
+            JointDisplacement::Value(vector.y),
+            JointDisplacement::Value(vector.z),
+        ];
         Attempt::decided(amounts, true)
     }
-}
-
-/// The rotation vector of `r`, at most half a turn, by its quaternion: of the four multiples of it that
-/// the entries of `r` give, the longest one.
-#[inline(always)]
-fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
-    let [xx, yy, zz] = [r[(0, 0)], r[(1, 1)], r[(2, 2)]];
-    // Four times the products of two components, w being the scalar one, and their squares.
-    let (wx, wy, wz) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
-    let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
-    let (ww, xx, yy, zz) =
-        (1.0 + (xx + yy + zz), 1.0 + (xx - yy - zz), 1.0 + (yy - xx - zz), 1.0 + (zz - xx - yy));
-    let (mut square, mut w, mut vector) = (ww, ww, [wx, wy, wz]);
-    for (other, scalar, axis) in
-        [(xx, wx, [xx, xy, xz]), (yy, wy, [xy, yy, yz]), (zz, wz, [xz, yz, zz])]
-    {
-        let longer = other > square;
-        square = if longer { other } else { square };
-        w = if longer { scalar } else { w };
-        vector = [0, 1, 2].map(|i| if longer { axis[i] } else { vector[i] });
-    }
-    let [x, y, z] = vector;
-    let length = (x * x + y * y + z * z).sqrt();
-    let angle = 2.0 * atan2(length, w.abs());
-    let scale = angle / if length > 0.0 { length } else { 1.0 };
-    Vector3::new(x, y, z) * if w < 0.0 { -scale } else { scale }
 }
 
 /// `r v`.

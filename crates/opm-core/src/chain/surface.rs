@@ -11,52 +11,13 @@
 //! rounding of zero, however the chain is bent: neither near a singularity nor where a path only just
 //! touches a surface has the function to be divided by anything.
 
-use super::cylindrical::CylindricalDisplacement;
 use super::equation::{Equation, Span};
-use super::planar::PlanarDisplacement;
-use nalgebra::{Complex, Matrix3, Vector3};
+use crate::group::{CylindricalDisplacement, Path, PlanarPath};
+use nalgebra::{Complex, Vector3};
 
 /// How near to zero a function is that may be zero, as a share of the largest number that it can be
-/// computed from: a hundred times what rounding and [`RIM`](super::RIM) make of it.
+/// computed from: a hundred times what rounding and [`REACH_TOLERANCE`](super::REACH_TOLERANCE) make of it.
 const SHARE: f64 = 1e-10;
-
-/// A motion of a target by one number `t`: `exp(t · rate) · start`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Path {
-    /// Of the plane, by a translation.
-    Slide {
-        /// At `t = 0`.
-        start: PlanarDisplacement,
-        /// Translation a unit of `t`.
-        rate: Complex<f64>,
-    },
-    /// Of the plane, by a rotation about the origin.
-    Turn {
-        /// At `t = 0`.
-        start: PlanarDisplacement,
-    },
-    /// About the centre of a sphere.
-    Tilt {
-        /// At `t = 0`.
-        start: Matrix3<f64>,
-        /// Unit.
-        axis: Vector3<f64>,
-    },
-    /// About and along the axis of a cylinder.
-    Coaxial {
-        /// At `t = 0`.
-        start: CylindricalDisplacement,
-        /// Displacement a unit of `t`.
-        rate: CylindricalDisplacement,
-    },
-    /// In a plane, without rotation.
-    Translation {
-        /// At `t = 0`.
-        start: Complex<f64>,
-        /// Translation a unit of `t`.
-        rate: Complex<f64>,
-    },
-}
 
 /// The targets `g` on which a chain closes with one joint held.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,76 +110,71 @@ impl Surface {
 
     /// The function whose zeros are the targets, along a path.
     fn along(&self, path: &Path) -> Equation {
-        match (*self, *path) {
-            (Self::Circle { point, centre, square }, Path::Slide { start, rate }) => {
-                let from = start.apply(point) - centre;
-                let c0 = from.norm_sqr() - square;
-                Equation::Polynomial([c0, 2.0 * dot(from, rate), rate.norm_sqr()])
-            }
-            (Self::Circle { point, centre, square }, Path::Turn { start }) => {
-                let from = start.apply(point);
-                let k = 2.0 * centre.conj() * from;
-                let c0 = from.norm_sqr() + centre.norm_sqr() - square;
-                Equation::Harmonic([c0, -k.re, k.im])
-            }
-            (Self::Line { point, across, at }, Path::Slide { start, rate }) => {
-                let c0 = dot(across, start.apply(point)) - at;
-                Equation::Polynomial([c0, dot(across, rate), 0.0])
-            }
-            (Self::Line { point, across, at }, Path::Turn { start }) => {
-                let k = across.conj() * start.apply(point);
-                Equation::Harmonic([-at, k.re, -k.im])
-            }
-            (Self::Carried { point, across, at }, Path::Slide { start, rate }) => {
-                let across = start.rotation * across;
-                let c0 = dot(across, point - start.translation) - at;
-                Equation::Polynomial([c0, -dot(across, rate), 0.0])
-            }
-            (Self::Carried { point, across, at }, Path::Turn { start }) => {
-                let across = start.rotation * across;
-                let k = across.conj() * point;
-                Equation::Harmonic([-dot(across, start.translation) - at, k.re, k.im])
-            }
-            (Self::Rotation { rotation }, Path::Slide { start, .. }) => {
-                Equation::Polynomial([(rotation.conj() * start.rotation).im, 0.0, 0.0])
-            }
-            (Self::Rotation { rotation }, Path::Turn { start }) => {
-                let k = rotation.conj() * start.rotation;
-                Equation::Harmonic([0.0, k.im, k.re])
-            }
-            (Self::Cone { fixed, carried, cosine }, Path::Tilt { start, axis }) => {
+        match *self {
+            Self::Circle { point, centre, square } => match *path.planar() {
+                PlanarPath::Slide { start, rate } => {
+                    let from = start.apply(point) - centre;
+                    let c0 = from.norm_sqr() - square;
+                    Equation::Polynomial([c0, 2.0 * dot(from, rate), rate.norm_sqr()])
+                }
+                PlanarPath::Turn { start } => {
+                    let from = start.apply(point);
+                    let k = 2.0 * centre.conj() * from;
+                    let c0 = from.norm_sqr() + centre.norm_sqr() - square;
+                    Equation::Harmonic([c0, -k.re, k.im])
+                }
+            },
+            Self::Line { point, across, at } => match *path.planar() {
+                PlanarPath::Slide { start, rate } => {
+                    let c0 = dot(across, start.apply(point)) - at;
+                    Equation::Polynomial([c0, dot(across, rate), 0.0])
+                }
+                PlanarPath::Turn { start } => {
+                    let k = across.conj() * start.apply(point);
+                    Equation::Harmonic([-at, k.re, -k.im])
+                }
+            },
+            Self::Carried { point, across, at } => match *path.planar() {
+                PlanarPath::Slide { start, rate } => {
+                    let across = start.rotation * across;
+                    let c0 = dot(across, point - start.translation) - at;
+                    Equation::Polynomial([c0, -dot(across, rate), 0.0])
+                }
+                PlanarPath::Turn { start } => {
+                    let across = start.rotation * across;
+                    let k = across.conj() * point;
+                    Equation::Harmonic([-dot(across, start.translation) - at, k.re, k.im])
+                }
+            },
+            Self::Rotation { rotation } => match *path.planar() {
+                PlanarPath::Slide { start, .. } => {
+                    Equation::Polynomial([(rotation.conj() * start.rotation).im, 0.0, 0.0])
+                }
+                PlanarPath::Turn { start } => {
+                    let k = rotation.conj() * start.rotation;
+                    Equation::Harmonic([0.0, k.im, k.re])
+                }
+            },
+            Self::Cone { fixed, carried, cosine } => {
+                let (start, axis) = path.spherical();
                 let carried = start * carried;
-                let kept = fixed.dot(&axis) * axis.dot(&carried);
+                let kept = fixed.dot(axis) * axis.dot(&carried);
                 let sine = fixed.dot(&axis.cross(&carried));
                 Equation::Harmonic([kept - cosine, fixed.dot(&carried) - kept, sine])
             }
-            (Self::Coaxial { turn, advance, at, period }, Path::Coaxial { start, rate }) => {
-                let of = |g: CylindricalDisplacement| turn * g.angle + advance * g.advance;
+            Self::Coaxial { turn, advance, at, period } => {
+                let [start, rate] = path.cylindrical();
+                let of = |g: &CylindricalDisplacement| turn * g.angle + advance * g.advance;
                 let [c0, c1] = [of(start) - at, of(rate)];
                 match period {
                     Some(period) => Equation::Periodic([c0, c1], period),
                     None => Equation::Polynomial([c0, c1, 0.0]),
                 }
             }
-            (Self::Band { across, at }, Path::Translation { start, rate }) => {
-                Equation::Polynomial([dot(across, start) - at, dot(across, rate), 0.0])
+            Self::Band { across, at } => {
+                let [start, rate] = path.translational();
+                Equation::Polynomial([dot(across, *start) - at, dot(across, *rate), 0.0])
             }
-            _ => unreachable!("a chain and a path of two kinds of subspace"),
-        }
-    }
-}
-
-impl Path {
-    /// The largest number of a target on it.
-    pub fn size(&self, span: &Span) -> f64 {
-        let far = |start: f64, rate: f64| start + rate * span.reach();
-        match self {
-            Self::Slide { start, rate } => far(start.translation.norm(), rate.norm()),
-            Self::Turn { start } => start.translation.norm(),
-            Self::Tilt { .. } => 0.0,
-            Self::Coaxial { start, rate } => far(start.angle.abs(), rate.angle.abs())
-                .max(far(start.advance.abs(), rate.advance.abs())),
-            Self::Translation { start, rate } => far(start.norm(), rate.norm()),
         }
     }
 }

@@ -4,8 +4,9 @@ use super::planar::{along, cross};
 use super::region::parallelogram;
 use super::shape::Shape;
 use super::surface::Surface;
-use super::{Amount, Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
-use crate::limits::Limits;
+use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
+use crate::chain::limits::Limits;
+use crate::group::JointDisplacement;
 use nalgebra::Complex;
 
 /// Two sliders, each a unit direction of the plane: one solution.
@@ -39,7 +40,7 @@ impl TranslationalChain {
     }
 
     /// The targets with slider number `joint` at `amount`: taken across the other one.
-    pub(super) fn held(&self, joint: usize, amount: Amount) -> Surface {
+    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
         let across = self.slides[1 - joint] * Complex::i();
         let slide = self.slides[joint];
         Surface::Band { across, at: amount.value() * (across.conj() * slide).re }
@@ -47,13 +48,13 @@ impl TranslationalChain {
 
     /// The sliders' amounts that translate the outer link by `target`.
     #[inline(always)]
-    pub fn inverse(&self, target: Complex<f64>) -> [Amount; 2] {
+    pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
         let (first, second) = along(self.slides[0], self.slides[1], target);
-        [Amount::Value(first), Amount::Value(second)]
+        [JointDisplacement::Value(first), JointDisplacement::Value(second)]
     }
 
     /// The translation of the outer link.
-    pub fn forward(&self, amounts: &[Amount; 2]) -> Complex<f64> {
+    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> Complex<f64> {
         self.slides[0] * amounts[0].value() + self.slides[1] * amounts[1].value()
     }
 }
@@ -64,6 +65,6 @@ impl ClosedForm for TranslationalChain {
     #[inline(always)]
     fn attempt(&self, target: &Complex<f64>, _: Branch) -> Attempt {
         let [first, second] = self.inverse(*target);
-        Attempt::decided([first, second, Amount::Value(0.0)], true)
+        Attempt::decided([first, second, JointDisplacement::Value(0.0)], true)
     }
 }

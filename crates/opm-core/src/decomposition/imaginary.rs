@@ -1,7 +1,7 @@
 //! Which legs get an imaginary joint: the upper section as a mechanism of its own.
 
-use crate::subspace::{Basis, TOLERANCE};
-use crate::svd::{self, Svd};
+use crate::group::subspace::{Basis, TOLERANCE};
+use crate::numeric::svd::{self, Svd};
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// The upper parts of all legs between the lower section and the platform, in normalised screws.
@@ -120,8 +120,8 @@ impl UpperSection<'_> {
 mod tests {
     use super::*;
     use crate::decomposition::samples::Numbers;
-    use crate::screw::Screw;
-    use crate::subspace::SubspaceClass;
+    use crate::group::screw::Screw;
+    use crate::group::subspace::SubspaceClass;
     use nalgebra::{Point3, Vector3};
     use proptest::prelude::*;
 

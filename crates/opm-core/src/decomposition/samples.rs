@@ -1,9 +1,9 @@
 //! Mechanisms to test with, placed joint by joint from their geometry. Lengths in metres.
 
-use crate::joint::{Joint, JointKind};
-use crate::leg::Leg;
+use crate::group::screw::Screw;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::Leg;
 use crate::mechanism::{Mechanism, TaskHints};
-use crate::screw::Screw;
 use nalgebra::{Isometry3, Point3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

@@ -2,9 +2,9 @@
 //! proper subgroups.
 
 use super::Freedom;
-use crate::joint::JointKind;
-use crate::leg::Leg;
-use crate::subspace::{Basis, Frame};
+use crate::group::subspace::{Basis, Frame};
+use crate::mechanism::joint::JointKind;
+use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
 
 /// While screws are gathered, a bracket or screw counts as a new direction only if it is this far

@@ -1,8 +1,8 @@
 use super::samples::*;
 use super::*;
-use crate::joint::{Joint, JointKind};
-use crate::screw::Screw;
-use crate::subspace::TOLERANCE;
+use crate::group::screw::Screw;
+use crate::group::subspace::TOLERANCE;
+use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{DMatrix, Isometry3, Point3, Unit, Vector3};
 use proptest::prelude::*;
 
@@ -255,7 +255,7 @@ fn six_legs_of_six_joints_visit_few_splits() {
         two_sections(spherical.map(Section::Spherical), &[[3, 3]; 6], 11, &mut Numbers::new(9));
     let gough = gough(&mut Numbers::new(1));
     for (mechanism, ways) in [(&redundant, 1), (&pairs, 1), (&gough, 0)] {
-        let report = crate::mobility::mobility(mechanism).unwrap();
+        let report = crate::decomposition::mobility::mobility(mechanism).unwrap();
         let (found, visited) = search(mechanism, report.lambda, report.mobility);
         assert_eq!(found.len(), ways);
         // A leg offers seven cuts; all but one are dropped at once.

@@ -7,21 +7,22 @@ use super::target::{Enclosed, PlanarTarget, Rotation, Target, dot};
 use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::planar::PlanarJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
-use crate::chain::{Branch, Chain, RIM};
+use crate::chain::{Branch, Chain, REACH_TOLERANCE};
 use nalgebra::{Complex, Vector3};
 
-/// How near to the rim, as a share, an angle at the base of a triangle bends too much for a bound.
-const NEAR_RIM: f64 = 1e-3;
+/// How near to the boundary of reach, as a share, an angle at the base of a triangle bends too much for a bound.
+const NEAR_BOUNDARY: f64 = 1e-3;
 
 /// No end.
 const INFINITE: f64 = f64::INFINITY;
 
 /// The share of a box of targets for which a chain closes, whatever its joints' limits.
 pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
-    match (chain, target) {
-        (Chain::Planar(chain), Target::Planar(g)) => planar_closes(&chain.joints(), g),
-        (Chain::Spherical(chain), Target::Spherical(r)) => Arcs::new(chain).closes(r),
-        _ => Share::ALL,
+    match chain {
+        Chain::Planar(chain) => planar_closes(&chain.joints(), target.planar()),
+        Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
+        // A spherical joint reaches every rotation, and what is linear has one solution everywhere.
+        Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => Share::ALL,
     }
 }
 
@@ -32,11 +33,12 @@ pub fn amounts<const N: usize>(
     branch: Branch,
 ) -> [Enclosed<N>; 3] {
     let none = Enclosed::Value(Affine::constant(0.0));
-    match (chain, target) {
-        (Chain::Planar(chain), Target::Planar(g)) => planar(&chain.joints(), g, branch),
-        (Chain::Spherical(chain), Target::Spherical(r)) => spherical(chain, r, branch),
-        (Chain::Ball(ball), Target::Spherical(r)) => self::ball(ball, r),
-        (Chain::Cylindrical(chain), &Target::Cylindrical(angle, advance)) => {
+    match chain {
+        Chain::Planar(chain) => planar(&chain.joints(), target.planar(), branch),
+        Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
+        Chain::Ball(ball) => self::ball(ball, target.spherical()),
+        Chain::Cylindrical(chain) => {
+            let [angle, advance] = target.cylindrical();
             let [p, q] = *chain.joints();
             let determinant = p.turn * q.advance - q.turn * p.advance;
             let amount = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
@@ -46,11 +48,10 @@ pub fn amounts<const N: usize>(
             };
             [amount(p, q.advance, -q.turn), amount(q, -p.advance, p.turn), none]
         }
-        (Chain::Translational(chain), &Target::Translational(t)) => {
-            let [m, n] = along(*chain.slides(), t);
+        Chain::Translational(chain) => {
+            let [m, n] = along(*chain.slides(), *target.translational());
             [Enclosed::Value(m), Enclosed::Value(n), none]
         }
-        _ => unreachable!("a chain and a target of two kinds of subspace"),
     }
 }
 
@@ -92,11 +93,16 @@ fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>)
             Share::within(&square, [aside * aside, INFINITE], 0.0)
         }
         [Prismatic { along: d1 }, Revolute { .. }, Prismatic { along: d3 }] => {
-            // All but a line where the slides come to be parallel.
+            // Everywhere except on a line, where the slides come to be parallel.
             let crossing = Plane::constant(d1).cross(g.rotation * d3);
-            Share::outside(&crossing, [-RIM, RIM])
+            Share::outside(&crossing, [-REACH_TOLERANCE, REACH_TOLERANCE])
         }
-        _ => Share::ALL,
+        // Two slides that are not parallel reach every place.
+        [Revolute { .. }, Prismatic { .. }, Prismatic { .. }]
+        | [Prismatic { .. }, Prismatic { .. }, Revolute { .. }] => Share::ALL,
+        [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
+            unreachable!("three sliders make no chain")
+        }
     }
 }
 
@@ -204,7 +210,7 @@ impl Arm {
 
     /// The links are as long: no target is too near.
     fn folds(&self) -> bool {
-        self.mean_square / self.product <= 1.0 + 0.5 * RIM
+        self.mean_square / self.product <= 1.0 + 0.5 * REACH_TOLERANCE
     }
 
     fn cosine<const N: usize>(&self, wrist: &Plane<N>) -> Affine<N> {
@@ -244,12 +250,12 @@ impl Arcs {
     fn closes<const N: usize>(&self, r: &Rotation<N>) -> Share<N> {
         let [c12, c23] = self.cosines;
         let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
-        let pole = 0.5 * RIM;
+        let pole = 0.5 * REACH_TOLERANCE;
         let far = if (c23 + c12).abs() <= pole { -INFINITE } else { middle - half };
         let near = if (c23 - c12).abs() <= pole { INFINITE } else { middle + half };
-        // The chain gives way by RIM in the cosine that it solves for, which is worth more here where
+        // The chain gives way by REACH_TOLERANCE in the cosine that it solves for, which is worth more here where
         // the second arc is short.
-        let slack = 4.0 * RIM / self.sines[1];
+        let slack = 4.0 * REACH_TOLERANCE / self.sines[1];
         let z = dot(&self.first, &r.apply(&self.third));
         Share::within(&z, [far, near], slack)
     }
@@ -263,7 +269,7 @@ impl Arcs {
 
     /// The angle at `a₁` between the planes of `a₂` and of `w`: `cos ψ = (cos a₂₃ - z cos a₁₂) / (sin a₁₂
     /// √(1 - z²))`. Of one number alone, so that its second derivative has bounds; `None` where these are
-    /// wide, near the rim and the poles.
+    /// wide, near the boundary of reach and the poles.
     fn opening<const N: usize>(&self, z: Affine<N>) -> Option<Affine<N>> {
         let [c12, c23] = self.cosines;
         let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
@@ -276,7 +282,7 @@ impl Arcs {
             [a.min(b), f(top.clamp(ends[0], ends[1]))]
         };
         let (squares, grams) = (range(&square, 0.0), range(&gram, middle));
-        if !(squares[0] > NEAR_RIM && grams[0] > NEAR_RIM * half * half) {
+        if !(squares[0] > NEAR_BOUNDARY && grams[0] > NEAR_BOUNDARY * half * half) {
             return None;
         }
         let times = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {

@@ -1,7 +1,10 @@
 //! Displacements over a box of poses, and steps along the intersection motion.
 
 use super::affine::{Affine, Plane};
-use crate::task::Cut;
+use crate::group::{
+    CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
+    TranslationalMotion, mismatch,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// A displacement of the plane over a box: `z ↦ rotation · z + translation`.
@@ -59,7 +62,58 @@ pub enum Target<const N: usize> {
     Translational(Plane<N>),
 }
 
-/// A joint's displacement from home over a box: an [`Amount`](crate::chain::Amount).
+impl<const N: usize> Target<N> {
+    fn kind(&self) -> SubspaceKind {
+        match self {
+            Self::Planar(_) => SubspaceKind::Planar,
+            Self::Spherical(_) => SubspaceKind::Spherical,
+            Self::Cylindrical(..) => SubspaceKind::Cylindrical,
+            Self::Translational(_) => SubspaceKind::TranslationalPlane,
+        }
+    }
+
+    /// The target, which is one in a plane.
+    pub fn planar(&self) -> &PlanarTarget<N> {
+        match self {
+            Self::Planar(g) => g,
+            Self::Spherical(_) | Self::Cylindrical(..) | Self::Translational(_) => {
+                mismatch(SubspaceKind::Planar, self.kind())
+            }
+        }
+    }
+
+    /// The target, which is one about a centre.
+    pub fn spherical(&self) -> &Rotation<N> {
+        match self {
+            Self::Spherical(r) => r,
+            Self::Planar(_) | Self::Cylindrical(..) | Self::Translational(_) => {
+                mismatch(SubspaceKind::Spherical, self.kind())
+            }
+        }
+    }
+
+    /// Angle and advance of the target, which is one about and along an axis.
+    pub fn cylindrical(&self) -> [Affine<N>; 2] {
+        match *self {
+            Self::Cylindrical(angle, advance) => [angle, advance],
+            Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
+                mismatch(SubspaceKind::Cylindrical, self.kind())
+            }
+        }
+    }
+
+    /// The target, which is a translation in a plane.
+    pub fn translational(&self) -> &Plane<N> {
+        match self {
+            Self::Translational(t) => t,
+            Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(..) => {
+                mismatch(SubspaceKind::TranslationalPlane, self.kind())
+            }
+        }
+    }
+}
+
+/// A joint's displacement from home over a box: a [`JointDisplacement`](crate::group::JointDisplacement).
 #[derive(Clone, Copy, Debug)]
 pub enum Enclosed<const N: usize> {
     /// A rotation to this unit vector.
@@ -101,39 +155,64 @@ impl<const N: usize> Enclosed<N> {
     }
 }
 
-/// `v · exp(I τ)`: see [`Cut::after`].
-pub fn after<const N: usize>(cut: Cut, v: &Target<N>, tau: Enclosed<N>) -> Target<N> {
-    match (cut, v) {
-        (Cut::Turn, Target::Planar(v)) => {
+/// `v · exp(I τ)`: see [`IntersectionMotion::after`].
+pub fn after<const N: usize>(
+    motion: IntersectionMotion,
+    v: &Target<N>,
+    tau: Enclosed<N>,
+) -> Target<N> {
+    match motion {
+        IntersectionMotion::Planar(PlanarMotion::Turn) => {
+            let v = v.planar();
             Target::Planar(PlanarTarget { rotation: v.rotation * tau.turn(), ..*v })
         }
-        (Cut::Turn, Target::Spherical(r)) => {
+        IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+            let v = v.planar();
+            let step = (v.rotation * along).scaled(tau.number());
+            Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
+        }
+        IntersectionMotion::Spherical(SphericalMotion::Turn) => {
             let e = tau.turn();
-            Target::Spherical(Rotation(r.0.map(|[x, y, z]| {
+            Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
                 let first = Affine::products([[x, e.re], [y, e.im]]);
                 [first, Affine::products([[y, e.re], [-x, e.im]]), z]
             })))
         }
-        (Cut::Slide(along), Target::Planar(v)) => {
-            let step = (v.rotation * along).scaled(tau.number());
-            Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
+        IntersectionMotion::Cylindrical(motion) => {
+            let [angle, advance] = v.cylindrical();
+            match motion {
+                CylindricalMotion::Turn => Target::Cylindrical(angle + tau.number(), advance),
+                CylindricalMotion::Advance => Target::Cylindrical(angle, advance + tau.number()),
+            }
         }
-        _ => commuting(cut, v, tau),
+        IntersectionMotion::Translational(TranslationalMotion::Slide(along)) => {
+            let step = Plane::constant(along).scaled(tau.number());
+            Target::Translational(*v.translational() + step)
+        }
     }
 }
 
-/// `exp(I τ) · b`: see [`Cut::before`].
-pub fn before<const N: usize>(cut: Cut, b: &Target<N>, tau: Enclosed<N>) -> Target<N> {
-    match (cut, b) {
-        (Cut::Turn, Target::Planar(b)) => {
-            let e = tau.turn();
+/// `exp(I τ) · b`: see [`IntersectionMotion::before`].
+pub fn before<const N: usize>(
+    motion: IntersectionMotion,
+    b: &Target<N>,
+    tau: Enclosed<N>,
+) -> Target<N> {
+    match motion {
+        IntersectionMotion::Planar(PlanarMotion::Turn) => {
+            let (b, e) = (b.planar(), tau.turn());
             Target::Planar(PlanarTarget {
                 rotation: e * b.rotation,
                 translation: e * b.translation,
             })
         }
-        (Cut::Turn, Target::Spherical(r)) => {
-            let (e, [x, y, z]) = (tau.turn(), r.0);
+        IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+            let b = b.planar();
+            let step = Plane::constant(along).scaled(tau.number());
+            Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
+        }
+        IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            let (e, [x, y, z]) = (tau.turn(), b.spherical().0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
                 row(&|i| Affine::products([[x[i], e.re], [-y[i], e.im]])),
@@ -141,27 +220,10 @@ pub fn before<const N: usize>(cut: Cut, b: &Target<N>, tau: Enclosed<N>) -> Targ
                 z,
             ]))
         }
-        (Cut::Slide(along), Target::Planar(b)) => {
-            let step = Plane::constant(along).scaled(tau.number());
-            Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
+        // Displacements commute.
+        IntersectionMotion::Cylindrical(_) | IntersectionMotion::Translational(_) => {
+            after(motion, b, tau)
         }
-        _ => commuting(cut, b, tau),
-    }
-}
-
-fn commuting<const N: usize>(cut: Cut, g: &Target<N>, tau: Enclosed<N>) -> Target<N> {
-    match (cut, g) {
-        (Cut::Turn, &Target::Cylindrical(angle, advance)) => {
-            Target::Cylindrical(angle + tau.number(), advance)
-        }
-        (Cut::Advance, &Target::Cylindrical(angle, advance)) => {
-            Target::Cylindrical(angle, advance + tau.number())
-        }
-        (Cut::Slide(along), &Target::Translational(t)) => {
-            Target::Translational(t + Plane::constant(along).scaled(tau.number()))
-        }
-        // A subspace that does not hold the motion: no task pairs them.
-        _ => *g,
     }
 }
 
@@ -195,30 +257,32 @@ impl<const N: usize> Coordinate<N> {
 /// What [`Task`](crate::task::Task) makes of coordinates, over a box of them.
 pub mod task {
     use super::{Affine, Coordinate, PlanarTarget, Plane, Rotation, Target};
-    use crate::task::{Cut, SubspaceKind, Task};
+    use crate::group::{CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion};
+    use crate::task::Task;
     use nalgebra::Complex;
 
     /// `v` for the first coordinates of a box: see [`Task::lower`].
     pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
         let home = |i: usize| task.coordinates[i].home;
         let q = |i: usize| pose[i].minus(home(i));
-        match (task.lower.kind, task.lower_cut) {
-            (SubspaceKind::Planar, Cut::Turn) => Target::Planar(PlanarTarget {
-                rotation: Plane::constant(Complex::new(1.0, 0.0)),
+        match task.lower_intersection {
+            IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
+                rotation: match motion {
+                    PlanarMotion::Turn => Plane::constant(Complex::new(1.0, 0.0)),
+                    PlanarMotion::Slide(_) => pose[2].turn(home(2)),
+                },
                 translation: Plane { re: q(0), im: q(1) },
             }),
-            (SubspaceKind::Planar, _) => Target::Planar(PlanarTarget {
-                rotation: pose[2].turn(home(2)),
-                translation: Plane { re: q(0), im: q(1) },
-            }),
-            (SubspaceKind::Spherical, _) => {
+            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
                 Target::Spherical(tilt(pose[0].turn(home(0)), pose[1].turn(home(1))))
             }
-            (SubspaceKind::Cylindrical, Cut::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
             }
-            (SubspaceKind::Cylindrical, _) => Target::Cylindrical(q(0), q(1)),
-            (SubspaceKind::TranslationalPlane, _) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+                Target::Cylindrical(q(0), q(1))
+            }
+            IntersectionMotion::Translational(_) => {
                 Target::Translational(Plane { re: q(0), im: q(1) })
             }
         }
@@ -232,19 +296,27 @@ pub mod task {
             Target::Planar(PlanarTarget { rotation, translation: Plane { re, im } })
         };
         let none = Affine::constant(0.0);
-        match (task.upper.kind, task.upper_cut) {
-            (SubspaceKind::Spherical, _) => {
+        match task.upper_intersection {
+            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
                 let absolute = euler(pose[0].turn(0.0), pose[1].turn(0.0), pose[2].turn(0.0));
                 Target::Spherical(match task.home_orientation_inverse() {
                     Some(inverse) => absolute.after(inverse),
                     None => absolute,
                 })
             }
-            (SubspaceKind::Planar, Cut::Turn) => planar(pose[2].turn(home(2)), q(0), q(1)),
-            (SubspaceKind::Planar, _) => planar(pose[1].turn(home(1)), none, q(0)),
-            (SubspaceKind::Cylindrical, Cut::Turn) => Target::Cylindrical(q(0), q(1)),
-            (SubspaceKind::Cylindrical, _) => Target::Cylindrical(q(0), none),
-            (SubspaceKind::TranslationalPlane, _) => {
+            IntersectionMotion::Planar(PlanarMotion::Turn) => {
+                planar(pose[2].turn(home(2)), q(0), q(1))
+            }
+            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
+                planar(pose[1].turn(home(1)), none, q(0))
+            }
+            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+                Target::Cylindrical(q(0), q(1))
+            }
+            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+                Target::Cylindrical(q(0), none)
+            }
+            IntersectionMotion::Translational(_) => {
                 Target::Translational(Plane { re: none, im: q(0) })
             }
         }

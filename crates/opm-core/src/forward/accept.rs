@@ -1,15 +1,15 @@
 //! What the search finds, put to the test: inverse kinematics give the actuated joints back, and the legs
 //! close.
 
-use super::condition::length;
 use super::search::Search;
 use super::{Assemblies, Assembly, RESIDUAL, Unmet};
-use crate::chain::{Amount, Branch};
-use crate::joint::Quantity;
+use crate::chain::Branch;
+use crate::chain::condition::length;
+use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::{
     CompiledSection, LegSolution, Manipulator, Mode, Section, Slot, Solution, Unreachable,
 };
-use crate::task::Displacement;
+use crate::numeric::Quantity;
 use nalgebra::{Complex, Isometry3};
 use std::f64::consts::TAU;
 
@@ -153,7 +153,7 @@ impl Search<'_> {
         lower.max(self.section_off(&leg.upper, &solution.upper))
     }
 
-    fn section_off(&self, section: &CompiledSection, amounts: &[Amount; 3]) -> f64 {
+    fn section_off(&self, section: &CompiledSection, amounts: &[JointDisplacement; 3]) -> f64 {
         let mut off = 0.0_f64;
         for (slot, &amount) in section.slots.iter().zip(amounts) {
             if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
@@ -174,19 +174,27 @@ impl Search<'_> {
         sections.iter().all(|(section, one, other)| {
             section.slots.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
                 let Some(slot) = slot else { return true };
-                self.apart(slot.coordinate, *one, other.value(), other.turn()) < APART
+                self.apart(slot.coordinate, *one, other.value(), other.unit_direction()) < APART
             })
         })
     }
 
     /// Distance of an amount from a value, and from its turn: radians or sizes.
-    fn apart(&self, coordinate: usize, amount: Amount, value: f64, turn: Complex<f64>) -> f64 {
+    fn apart(
+        &self,
+        coordinate: usize,
+        amount: JointDisplacement,
+        value: f64,
+        turn: Complex<f64>,
+    ) -> f64 {
         match amount {
-            Amount::Turn(_) => length(amount.turn() - turn),
-            Amount::Value(given) => match self.manipulator.coordinates()[coordinate].quantity {
-                Quantity::Angle => (given - value).abs(),
-                Quantity::Length => (given - value).abs() / self.manipulator.closure.size,
-            },
+            JointDisplacement::Direction(_) => length(amount.unit_direction() - turn),
+            JointDisplacement::Value(given) => {
+                match self.manipulator.coordinates()[coordinate].quantity {
+                    Quantity::Angle => (given - value).abs(),
+                    Quantity::Length => (given - value).abs() / self.manipulator.closure.size,
+                }
+            }
         }
     }
 

@@ -1,115 +1,131 @@
 //! Where a displacement that moves along the intersection motion meets a condition: a link that swings
 //! about a point until its end is on a circle or a line, an axis that turns until it lies on a cone.
 
-use super::VERGE;
-use super::condition::{Condition, dot, flat, length};
-use crate::chain::{Amount, Gap};
-use crate::task::{Cut, Displacement};
+use crate::chain::ReachDeficit;
+use crate::chain::condition::{Condition, VERGE, dot, length};
+use crate::group::{
+    Displacement, IntersectionMotion, JointDisplacement, PlanarMotion, SphericalMotion,
+};
 use nalgebra::Complex;
 
 /// Where `v · exp(I τ)` meets a condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Meeting {
     /// At one τ or two.
-    At([Option<Amount>; 2]),
+    At([Option<JointDisplacement>; 2]),
     /// Nowhere: by how much it misses.
-    Never(Gap),
+    Never(ReachDeficit),
     /// The condition holds for every τ, or it does not depend on τ.
     Anywhere,
 }
 
 /// Where `v · exp(I τ)` meets `condition`; lengths are compared with `size`.
-pub fn along(condition: &Condition, v: &Displacement, cut: &Cut, size: f64) -> Meeting {
-    match (condition, v, cut) {
-        (Condition::Circle { point, centre, radius }, Displacement::Planar(v), Cut::Turn) => {
-            // |P − c + r w e(τ)| = a, P − c = d
-            let (d, w) = (v.translation - centre, v.rotation * point);
-            let arm = length(*point);
-            let constant = d.norm_sqr() + arm * arm - radius * radius;
-            turning(2.0 * d.conj() * w, constant, size * size, || {
-                let far = d.norm() - (arm + radius);
-                Gap::length(far.max((arm - radius).abs() - d.norm()))
-            })
-        }
-        (Condition::Line { point, normal, offset }, Displacement::Planar(v), Cut::Turn) => {
-            let constant = dot(*normal, v.translation) - offset;
-            let w = normal.conj() * v.rotation * point;
-            turning(w, constant, size, || Gap::length(constant.abs() - w.norm()))
-        }
-        (Condition::CarriedLine { point, normal, offset }, Displacement::Planar(v), Cut::Turn) => {
-            // normal · e(−τ) z = Re(conj(normal) conj(e) z) = Re(normal conj(z) e)
-            let z = v.rotation.conj() * (point - v.translation);
-            let w = normal * z.conj();
-            turning(w, -offset, size, || Gap::length(offset.abs() - w.norm()))
-        }
-        (Condition::Heading { rotation }, Displacement::Planar(v), Cut::Turn) => {
-            one(Amount::Turn(v.rotation.conj() * rotation))
-        }
-        (Condition::Cone { fixed, carried, cosine }, Displacement::Spherical(r), Cut::Turn) => {
-            let (f, w) = (r.tr_mul(fixed), carried);
-            // f · Rz(τ) w = (f.x w.x + f.y w.y) cos τ + (f.y w.x − f.x w.y) sin τ + f.z w.z
-            let z = Complex::new(f.x * w.x + f.y * w.y, f.x * w.y - f.y * w.x);
-            let constant = f.z * w.z - cosine;
-            turning(z, constant, 1.0, || {
-                let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-                // The angle between the two ranges over an interval as the axis turns.
-                let [a, b] = [arc(f.z), arc(w.z)];
-                let (least, most) = ((a - b).abs(), (a + b).min(std::f64::consts::TAU - a - b));
-                Gap::angle((least - arc(*cosine)).max(arc(*cosine) - most))
-            })
-        }
-        (Condition::Circle { point, centre, radius }, Displacement::Planar(v), Cut::Slide(d)) => {
-            // |z + d τ| = a, z = g w − c
-            let (z, d) = (v.apply(*point) - centre, v.rotation * d);
-            let (foot, aside) = (dot(d, z), d.re * z.im - d.im * z.re);
-            let square = radius * radius - aside * aside;
-            if square < -2.0 * VERGE * size * size {
-                return Meeting::Never(Gap::length(aside.abs() - radius));
+pub fn along(
+    condition: &Condition,
+    v: &Displacement,
+    motion: &IntersectionMotion,
+    size: f64,
+) -> Meeting {
+    match condition {
+        Condition::Circle { point, centre, radius } => {
+            let v = v.planar();
+            match motion.planar() {
+                PlanarMotion::Turn => {
+                    // |P − c + r w e(τ)| = a, P − c = d
+                    let (d, w) = (v.translation - centre, v.rotation * point);
+                    let arm = length(*point);
+                    let constant = d.norm_sqr() + arm * arm - radius * radius;
+                    turning(2.0 * d.conj() * w, constant, size * size, || {
+                        let far = d.norm() - (arm + radius);
+                        ReachDeficit::length(far.max((arm - radius).abs() - d.norm()))
+                    })
+                }
+                PlanarMotion::Slide(d) => {
+                    // |z + d τ| = a, z = g w − c
+                    let (z, d) = (v.apply(*point) - centre, v.rotation * d);
+                    let (foot, aside) = (dot(d, z), d.re * z.im - d.im * z.re);
+                    let square = radius * radius - aside * aside;
+                    if square < -2.0 * VERGE * size * size {
+                        return Meeting::Never(ReachDeficit::length(aside.abs() - radius));
+                    }
+                    let root = square.max(0.0).sqrt();
+                    let at = |root: f64| JointDisplacement::Value(root - foot);
+                    two(at(root), at(-root), root == 0.0)
+                }
             }
-            let root = square.max(0.0).sqrt();
-            two(Amount::Value(root - foot), Amount::Value(-root - foot), root == 0.0)
         }
-        (Condition::Line { point, normal, offset }, Displacement::Planar(v), Cut::Slide(d)) => {
-            let slope = dot(*normal, v.rotation * d);
-            sliding(slope, dot(*normal, v.apply(*point)) - offset, size)
+        Condition::Line { point, normal, offset } => {
+            let v = v.planar();
+            match motion.planar() {
+                PlanarMotion::Turn => {
+                    let constant = dot(*normal, v.translation) - offset;
+                    let w = normal.conj() * v.rotation * point;
+                    turning(w, constant, size, || ReachDeficit::length(constant.abs() - w.norm()))
+                }
+                PlanarMotion::Slide(d) => {
+                    let slope = dot(*normal, v.rotation * d);
+                    sliding(slope, dot(*normal, v.apply(*point)) - offset, size)
+                }
+            }
         }
-        (
-            Condition::CarriedLine { point, normal, offset },
-            Displacement::Planar(v),
-            Cut::Slide(d),
-        ) => {
+        Condition::CarriedLine { point, normal, offset } => {
+            let v = v.planar();
             let z = v.rotation.conj() * (point - v.translation);
-            sliding(-dot(*normal, *d), dot(*normal, z) - offset, size)
+            match motion.planar() {
+                PlanarMotion::Turn => {
+                    // normal · e(−τ) z = Re(conj(normal) conj(e) z) = Re(normal conj(z) e)
+                    let w = normal * z.conj();
+                    turning(w, -offset, size, || ReachDeficit::length(offset.abs() - w.norm()))
+                }
+                PlanarMotion::Slide(d) => {
+                    sliding(-dot(*normal, *d), dot(*normal, z) - offset, size)
+                }
+            }
         }
-        (Condition::Heading { .. }, Displacement::Planar(_), Cut::Slide(_)) => Meeting::Anywhere,
-        (Condition::Flat { normal, value }, v, _) => {
-            let ([a, b], [p, q]) = (flat(v), direction(cut));
+        Condition::Heading { rotation } => match motion.planar() {
+            PlanarMotion::Turn => {
+                one(JointDisplacement::Direction(v.planar().rotation.conj() * rotation))
+            }
+            PlanarMotion::Slide(_) => Meeting::Anywhere,
+        },
+        Condition::Cone { fixed, carried, cosine } => match motion.spherical() {
+            SphericalMotion::Turn => {
+                let (f, w) = (v.spherical().tr_mul(fixed), carried);
+                // f · Rz(τ) w = (f.x w.x + f.y w.y) cos τ + (f.y w.x − f.x w.y) sin τ + f.z w.z
+                let z = Complex::new(f.x * w.x + f.y * w.y, f.x * w.y - f.y * w.x);
+                let constant = f.z * w.z - cosine;
+                turning(z, constant, 1.0, || {
+                    let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
+                    // The angle between the two ranges over an interval as the axis turns.
+                    let [a, b] = [arc(f.z), arc(w.z)];
+                    let (least, most) = ((a - b).abs(), (a + b).min(std::f64::consts::TAU - a - b));
+                    ReachDeficit::angle((least - arc(*cosine)).max(arc(*cosine) - most))
+                })
+            }
+        },
+        Condition::Flat { normal, value } => {
+            let ([a, b], [p, q]) = (v.sum(), motion.sum());
             let scale = normal[0].hypot(normal[1]) * size.max(1.0);
             sliding(normal[0] * p + normal[1] * q, normal[0] * a + normal[1] * b - value, scale)
         }
-        _ => unreachable!("a condition and a displacement of two kinds of subspace"),
     }
 }
 
-/// What a unit of the intersection motion adds to a displacement that adds up.
-pub fn direction(cut: &Cut) -> [f64; 2] {
-    match cut {
-        Cut::Turn => [1.0, 0.0],
-        Cut::Advance => [0.0, 1.0],
-        Cut::Slide(d) => [d.re, d.im],
-    }
-}
-
-fn one(amount: Amount) -> Meeting {
+fn one(amount: JointDisplacement) -> Meeting {
     Meeting::At([Some(amount), None])
 }
 
-fn two(first: Amount, second: Amount, same: bool) -> Meeting {
+fn two(first: JointDisplacement, second: JointDisplacement, same: bool) -> Meeting {
     Meeting::At([Some(first), (!same).then_some(second)])
 }
 
 /// The turns `e`, `|e| = 1`, with `Re(z e) + constant = 0`, in units of which `scale` is a large one.
-fn turning(z: Complex<f64>, constant: f64, scale: f64, gap: impl FnOnce() -> Gap) -> Meeting {
+fn turning(
+    z: Complex<f64>,
+    constant: f64,
+    scale: f64,
+    gap: impl FnOnce() -> ReachDeficit,
+) -> Meeting {
     let square = z.norm_sqr();
     if square <= VERGE * VERGE * scale * scale {
         // The arm has no length, or swings about the circle's centre.
@@ -124,17 +140,17 @@ fn turning(z: Complex<f64>, constant: f64, scale: f64, gap: impl FnOnce() -> Gap
         return Meeting::Never(gap());
     }
     let root = Complex::new(0.0, root.max(0.0).sqrt());
-    let at = |sign: f64| Amount::Turn(z.conj() * (root * sign - constant) / square);
+    let at = |sign: f64| JointDisplacement::Direction(z.conj() * (root * sign - constant) / square);
     two(at(1.0), at(-1.0), root.im == 0.0)
 }
 
 /// The τ with `slope τ + constant = 0`.
 fn sliding(slope: f64, constant: f64, scale: f64) -> Meeting {
     if slope.abs() > VERGE {
-        one(Amount::Value(-constant / slope))
+        one(JointDisplacement::Value(-constant / slope))
     } else if constant.abs() <= VERGE * scale {
         Meeting::Anywhere
     } else {
-        Meeting::Never(Gap::length(constant.abs()))
+        Meeting::Never(ReachDeficit::length(constant.abs()))
     }
 }

@@ -3,15 +3,13 @@
 //! so that Euler angles on their pole (home, of many mechanisms) do not stop them.
 
 use super::{Assembly, ForwardError, RESIDUAL};
-use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::planar::PlanarDisplacement;
-use crate::chain::unit;
-use crate::joint::{JointKind, Quantity};
+use crate::group::LocalTwist;
 use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
-use crate::svd::Svd;
-use crate::task::{Displacement, SubspaceKind};
-use crate::velocity::{Jacobians, Local};
-use nalgebra::{DMatrix, DVector, Rotation3};
+use crate::mechanism::joint::JointKind;
+use crate::numeric::Quantity;
+use crate::numeric::svd::Svd;
+use crate::velocity::Jacobians;
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::fmt;
 
@@ -204,7 +202,11 @@ impl Newton<'_> {
         // Lengths over the size, in rows and columns.
         let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
         let columns: Vec<f64> = (directions.iter())
-            .map(|[u, l]| if is_length(upper, u) || is_length(lower, l) { size } else { 1.0 })
+            .map(
+                |[u, l]| {
+                    if upper.is_translation(u) || lower.is_translation(l) { size } else { 1.0 }
+                },
+            )
             .collect();
         let row = |i: usize| match m.coordinates()[m.actuated()[i]].quantity {
             Quantity::Angle => 1.0,
@@ -227,14 +229,14 @@ impl Newton<'_> {
         let mut stop = Stop::Stalled;
         for halving in 0..HALVINGS {
             let scale = share * 0.5_f64.powi(halving as i32);
-            let [mut up, mut low] = [Local::zeros(); 2];
+            let [mut up, mut low] = [LocalTwist::zeros(); 2];
             for ((component, column), [u, l]) in step.iter().zip(&columns).zip(&directions) {
                 up += u * (component * column * scale);
                 low += l * (component * column * scale);
             }
             // ḃ b⁻¹ and v⁻¹ v̇
-            let moved_b = product(&small(upper, &up), &b);
-            let moved_v = product(&v, &small(lower, &low));
+            let moved_b = upper.first_order(&up).after(&b);
+            let moved_v = v.after(&lower.first_order(&low));
             let pose = m.task().pose(&moved_v, &moved_b);
             match m.inverse(&pose, self.mode, &mut tried) {
                 Ok(true) => {
@@ -256,47 +258,6 @@ impl Newton<'_> {
             }
         }
         Err(stop)
-    }
-}
-
-/// Whether a direction of a subspace is a translation.
-fn is_length(kind: SubspaceKind, direction: &Local) -> bool {
-    match kind {
-        SubspaceKind::Planar | SubspaceKind::Cylindrical => {
-            direction.x == 0.0 && *direction != Local::zeros()
-        }
-        SubspaceKind::TranslationalPlane => *direction != Local::zeros(),
-        SubspaceKind::Spherical => false,
-    }
-}
-
-/// A displacement that agrees with the exponential of a twist to first order.
-fn small(kind: SubspaceKind, twist: &Local) -> Displacement {
-    match kind {
-        SubspaceKind::Planar => Displacement::Planar(PlanarDisplacement {
-            rotation: unit(twist.x),
-            translation: nalgebra::Complex::new(twist.y, twist.z),
-        }),
-        SubspaceKind::Spherical => Displacement::Spherical(Rotation3::new(*twist).into_inner()),
-        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => kind.flat(twist.x, twist.y),
-    }
-}
-
-/// First `b`, then `a`.
-fn product(a: &Displacement, b: &Displacement) -> Displacement {
-    match (a, b) {
-        (Displacement::Planar(a), Displacement::Planar(b)) => Displacement::Planar(a.after(b)),
-        (Displacement::Spherical(a), Displacement::Spherical(b)) => Displacement::Spherical(a * b),
-        (Displacement::Cylindrical(a), Displacement::Cylindrical(b)) => {
-            Displacement::Cylindrical(CylindricalDisplacement {
-                angle: a.angle + b.angle,
-                advance: a.advance + b.advance,
-            })
-        }
-        (Displacement::Translational(a), Displacement::Translational(b)) => {
-            Displacement::Translational(a + b)
-        }
-        _ => unreachable!("displacements of two kinds of subspace"),
     }
 }
 

@@ -1,24 +1,25 @@
 //! The search for assemblies: every combination of what the sections allow, one section after the other.
 
 use super::along::{Meeting, along};
-use super::condition::{self, Condition};
-use super::plan::{self, Anchor, Plan};
 use super::three::{self, Solutions};
-use super::track::Track;
-use super::{Assemblies, Unmet, VERGE};
-use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
-use crate::chain::{Amount, Branch, Chain, Gap, planar, unit};
+use super::{Assemblies, Unmet};
+use crate::chain::condition::{Condition, VERGE, flat_joints};
+use crate::chain::planar::PlanarJoint;
+use crate::chain::track::Track;
+use crate::chain::{Branch, Chain, ReachDeficit, planar};
+use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind};
+use crate::manipulator::plan::{Anchor, Plan};
 use crate::manipulator::{Manipulator, Section, Solution};
-use crate::task::{Displacement, SubspaceKind};
+use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// The possible values of a leg's τ.
 enum Taus {
-    These([Option<Amount>; 2]),
+    These([Option<JointDisplacement>; 2]),
     /// Nothing holds it, or nothing needs it.
     Free,
-    Never(Gap),
+    Never(ReachDeficit),
 }
 
 /// One run of the forward kinematics.
@@ -37,7 +38,7 @@ pub(super) struct Search<'a> {
     /// A combination of lower sections that the upper one does not close.
     pub upper_failed: bool,
     /// Of each leg, by how little it failed.
-    pub gaps: Vec<Option<Gap>>,
+    pub gaps: Vec<Option<ReachDeficit>>,
 }
 
 impl<'a> Search<'a> {
@@ -67,7 +68,7 @@ impl<'a> Search<'a> {
             Anchor::Leg(leg) => {
                 let v = self.held_displacement(*leg);
                 let mut known = none;
-                known[*leg] = Some(Amount::Value(0.0));
+                known[*leg] = Some(JointDisplacement::Value(0.0));
                 self.with_lower(&v, &known);
             }
             Anchor::Tracks(tracked) => {
@@ -91,7 +92,7 @@ impl<'a> Search<'a> {
                     return;
                 };
                 let share = value / (a * a + b * b);
-                let v = m.task().lower.kind.flat(a * share, b * share);
+                let v = m.task().lower.kind.of_sum([a * share, b * share]);
                 self.with_lower(&v, &none);
             }
             Anchor::Together { functional, legs } => {
@@ -101,7 +102,7 @@ impl<'a> Search<'a> {
                     if legs.contains(&number) {
                         let tau = self.followed(number, functional);
                         known[number] = Some(tau);
-                        let cut = m.task().lower_cut.after(&m.task().lower.kind.identity(), tau);
+                        let cut = m.task().lower_intersection.displacement(tau);
                         let own = held.lower.iter().filter_map(|slot| self.lower(number, *slot));
                         conditions.extend(own.map(|c| c.before(&cut)));
                     } else if leg.cut == Section::Lower {
@@ -125,9 +126,11 @@ impl<'a> Search<'a> {
     }
 
     /// The amount of a held slot.
-    fn amount(&self, leg: usize, section: Section, slot: usize) -> Amount {
+    fn amount(&self, leg: usize, section: Section, slot: usize) -> JointDisplacement {
         let slot = self.manipulator.legs[leg].section(section).slots[slot];
-        Amount::Value(slot.and_then(|slot| slot.drive).map_or(0.0, |drive| self.amounts[drive]))
+        JointDisplacement::Value(
+            slot.and_then(|slot| slot.drive).map_or(0.0, |drive| self.amounts[drive]),
+        )
     }
 
     /// What a held lower slot asks of `v`, or of `v · exp(I τ)`.
@@ -162,23 +165,23 @@ impl<'a> Search<'a> {
     }
 
     /// The τ of a leg whose cut follows a functional of `b`, where that is zero.
-    fn followed(&self, leg: usize, functional: &[f64; 2]) -> Amount {
+    fn followed(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
         let held = self.plan.legs[leg].upper.first();
         let driven = held.and_then(|&slot| {
             let chain = &self.manipulator.legs[leg].upper.chain;
-            let [p, q] = condition::flat_joints(chain)?[slot];
+            let [p, q] = flat_joints(chain)?[slot];
             let amount = self.amount(leg, Section::Upper, slot).value();
             Some(-(functional[0] * p + functional[1] * q) * amount)
         });
-        Amount::Value(driven.unwrap_or(0.0))
+        JointDisplacement::Value(driven.unwrap_or(0.0))
     }
 
     /// With `v` known: every combination of the legs' τ.
-    fn with_lower(&mut self, v: &Displacement, known: &[Option<Amount>]) {
+    fn with_lower(&mut self, v: &Displacement, known: &[Option<JointDisplacement>]) {
         // As the pose has it: then what is within half a turn here is so there.
         let (v, turned) = self.manipulator.task().without_turn(v);
         let v = &v;
-        let mut options: Vec<[Option<Amount>; 2]> = Vec::with_capacity(known.len());
+        let mut options: Vec<[Option<JointDisplacement>; 2]> = Vec::with_capacity(known.len());
         let mut closes = true;
         for (leg, known) in known.iter().enumerate() {
             options.push(match known {
@@ -202,7 +205,8 @@ impl<'a> Search<'a> {
         }
         let choices: Vec<usize> = (0..options.len()).filter(|&i| options[i][1].is_some()).collect();
         for combination in 0..1_u64 << choices.len() {
-            let mut taus: Vec<Option<Amount>> = options.iter().map(|option| option[0]).collect();
+            let mut taus: Vec<Option<JointDisplacement>> =
+                options.iter().map(|option| option[0]).collect();
             for (bit, &leg) in choices.iter().enumerate() {
                 if combination >> bit & 1 == 1 {
                     taus[leg] = options[leg][1];
@@ -219,7 +223,7 @@ impl<'a> Search<'a> {
             Section::Upper => {
                 for &slot in &held.lower {
                     let Some(condition) = self.lower(number, slot) else { continue };
-                    match along(&condition, v, &m.task().lower_cut, m.closure.size) {
+                    match along(&condition, v, &m.task().lower_intersection, m.closure.size) {
                         Meeting::At(taus) => return Taus::These(taus),
                         Meeting::Never(gap) => return Taus::Never(gap),
                         // Another held joint may say more.
@@ -253,7 +257,7 @@ impl<'a> Search<'a> {
     }
 
     /// With `v` and the cuts known: `b` from the legs' conditions.
-    fn with_cuts(&mut self, v: &Displacement, taus: &[Option<Amount>]) {
+    fn with_cuts(&mut self, v: &Displacement, taus: &[Option<JointDisplacement>]) {
         let m = self.manipulator;
         let upper = m.task().upper.kind;
         let mut conditions = Vec::with_capacity(2 * taus.len());
@@ -266,18 +270,18 @@ impl<'a> Search<'a> {
             match (leg.cut, tau) {
                 (Section::Upper, Some(tau)) => {
                     let tau = match tau {
-                        Amount::Turn(_) if plan::adds_up(upper) => {
+                        JointDisplacement::Direction(_) if upper.commutes() => {
                             let counted = tau.nearest(splined) + self.whole_turns(number);
-                            Amount::Value(if slides(chain) { splined } else { counted })
+                            JointDisplacement::Value(if slides(chain) { splined } else { counted })
                         }
-                        Amount::Turn(_) | Amount::Value(_) => *tau,
+                        JointDisplacement::Direction(_) | JointDisplacement::Value(_) => *tau,
                     };
                     conditions.extend(Condition::new(chain, 0, tau));
                     conditions.extend(own);
                 }
                 (Section::Upper, None) => conditions.extend(own),
                 (Section::Lower, Some(tau)) => {
-                    let cut = m.task().upper_cut.before(&upper.identity(), *tau);
+                    let cut = m.task().upper_intersection.displacement(*tau);
                     conditions.extend(own.map(|condition| condition.after(&cut)));
                 }
                 (Section::Lower, None) => {}
@@ -296,7 +300,7 @@ impl<'a> Search<'a> {
 
     /// The angle that a leg whose upper joint only slides gives a platform on a cylinder: screws are then
     /// taken within half a turn. Zero where there is no such leg.
-    fn splined(&self, taus: &[Option<Amount>]) -> f64 {
+    fn splined(&self, taus: &[Option<JointDisplacement>]) -> f64 {
         let legs = self.manipulator.legs.iter().zip(taus);
         let splined = legs.filter_map(|(leg, tau)| match (leg.cut, tau) {
             (Section::Upper, Some(tau)) if slides(&leg.upper.chain) => Some(tau.value()),
@@ -323,32 +327,20 @@ impl<'a> Search<'a> {
     /// where there are none such.
     fn solve(&self, kind: SubspaceKind, conditions: &[Condition]) -> Option<Vec<Displacement>> {
         let size = self.manipulator.closure.size;
-        if plan::adds_up(kind) {
-            return crossing(kind, conditions, size).map(|g| vec![g]);
-        }
-        let planar = kind == SubspaceKind::Planar;
-        let scaled: Vec<Condition> = conditions.iter().map(|c| c.scaled(1.0 / size)).collect();
-        let n = conditions.len();
-        for i in 0..n {
-            for j in i + 1..n {
-                for k in j + 1..n {
-                    let chosen = [scaled[i], scaled[j], scaled[k]];
-                    if planar {
-                        if let Solutions::At(found) = three::planar(&chosen) {
-                            let grown = |g: PlanarDisplacement| PlanarDisplacement {
-                                translation: g.translation * size,
-                                ..g
-                            };
-                            let grown = |g| Displacement::Planar(grown(g));
-                            return Some(found.into_iter().map(grown).collect());
-                        }
-                    } else if let Solutions::At(found) = three::spherical(&chosen) {
-                        return Some(found.into_iter().map(Displacement::Spherical).collect());
-                    }
-                }
+        match kind {
+            SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
+                crossing(kind, conditions, size).map(|g| vec![g])
+            }
+            SubspaceKind::Planar => {
+                first_at(conditions, size, three::planar, |g: PlanarDisplacement| {
+                    let translation = g.translation * size;
+                    Displacement::Planar(PlanarDisplacement { translation, ..g })
+                })
+            }
+            SubspaceKind::Spherical => {
+                first_at(conditions, size, three::spherical, Displacement::Spherical)
             }
         }
-        None
     }
 
     fn loose(&mut self, section: Section) {
@@ -358,21 +350,41 @@ impl<'a> Search<'a> {
     }
 }
 
+/// The solutions of the first three conditions that are independent, which are solved with lengths over
+/// the size.
+fn first_at<G>(
+    conditions: &[Condition],
+    size: f64,
+    solve: fn(&[Condition; 3]) -> Solutions<G>,
+    displacement: impl Fn(G) -> Displacement + Copy,
+) -> Option<Vec<Displacement>> {
+    let conditions: Vec<Condition> = conditions.iter().map(|c| c.scaled(1.0 / size)).collect();
+    let n = conditions.len();
+    for i in 0..n {
+        for j in i + 1..n {
+            for k in j + 1..n {
+                let chosen = [conditions[i], conditions[j], conditions[k]];
+                if let Solutions::At(found) = solve(&chosen) {
+                    return Some(found.into_iter().map(displacement).collect());
+                }
+            }
+        }
+    }
+    None
+}
+
 /// Whether a chain of the cut and one joint is a spline: the joint slides where the cut turns.
 fn slides(chain: &Chain) -> bool {
     match chain {
         Chain::Cylindrical(chain) => chain.joints()[0].turn != 0.0 && chain.joints()[1].turn == 0.0,
-        _ => false,
+        Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => false,
     }
 }
 
-/// Where the first two of several lines that are not parallel meet, the most square of them.
+/// Where the first two of several lines that are not parallel meet, those that are the most nearly perpendicular.
 fn crossing(kind: SubspaceKind, conditions: &[Condition], size: f64) -> Option<Displacement> {
     // Angles and advances, or lengths, over the size.
-    let scale = match kind {
-        SubspaceKind::Cylindrical => [1.0, size],
-        _ => [size, size],
-    };
+    let scale = kind.sum_units(size);
     let rows: Vec<([f64; 2], f64)> = conditions
         .iter()
         .filter_map(|condition| match condition {
@@ -398,5 +410,5 @@ fn crossing(kind: SubspaceKind, conditions: &[Condition], size: f64) -> Option<D
     let (([a, b], m), ([p, q], n)) = (rows[i], rows[j]);
     let x = (m * q - b * n) / determinant;
     let y = (a * n - m * p) / determinant;
-    Some(kind.flat(x * scale[0], y * scale[1]))
+    Some(kind.of_sum([x * scale[0], y * scale[1]]))
 }

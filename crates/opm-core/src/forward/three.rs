@@ -8,10 +8,10 @@
 //! highest coefficient vanishes. Three lines in a plane are linear in the translation instead, with the
 //! rotation as θ.
 
-use super::condition::{Condition, QUARTER, dot, length};
 use super::trigonometric::{Roots, Trigonometric};
-use crate::chain::planar::PlanarDisplacement;
-use crate::chain::unit;
+use crate::chain::condition::{Condition, QUARTER, dot, length};
+use crate::group::PlanarDisplacement;
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
 /// What three conditions leave.

@@ -307,7 +307,7 @@ fn bracketed(powers: &[f64; COEFFICIENTS], [mut low, mut high]: [f64; 2], rising
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chain::unit;
+    use crate::numeric::angle::unit;
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 

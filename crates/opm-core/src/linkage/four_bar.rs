@@ -31,7 +31,8 @@
 //! * Two axes that are neighbours in the loop and parallel make one joint of two: refused.
 
 use crate::chain::spherical::SphericalChain;
-use crate::chain::{Amount, Branch, ChainError, Gap};
+use crate::chain::{Branch, ChainError, ReachDeficit};
+use crate::group::JointDisplacement;
 use nalgebra::{Complex, Matrix3, Unit, Vector3};
 
 /// A closed loop of four revolutes through one point, at home.
@@ -102,7 +103,11 @@ impl DrivenFourBar {
     /// # Errors
     /// The loop does not close at this input: by which angle.
     #[inline]
-    pub fn solve(&self, input: Complex<f64>, branch: Branch) -> Result<[Amount; 3], Gap> {
+    pub fn solve(
+        &self,
+        input: Complex<f64>,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         self.chain.inverse(&self.target(input), branch)
     }
 

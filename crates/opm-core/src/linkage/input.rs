@@ -1,8 +1,10 @@
 //! A linkage moved by one of its joints, and where that puts the others.
 
 use super::{Linkage, Loop};
-use crate::chain::{Amount, Branch, unit};
-use crate::joint::JointCoordinate;
+use crate::chain::Branch;
+use crate::group::JointDisplacement;
+use crate::mechanism::joint::JointCoordinate;
+use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::fmt;
 
@@ -129,9 +131,9 @@ impl<'a> Input<'a> {
         let Some([own, other]) = self.amounts(unit(displacement), branch) else { return false };
         position.branch = branch;
         position.within_limits =
-            linkage.limits[self.coordinate].admits(Amount::Value(displacement));
+            linkage.limits[self.coordinate].admits(JointDisplacement::Value(displacement));
         position.joints[self.coordinate] = value;
-        let mut put = |coordinate: usize, amount: Amount| {
+        let mut put = |coordinate: usize, amount: JointDisplacement| {
             let home = linkage.coordinates[coordinate].home;
             let held = held(coordinate, position).map(|held| held - home);
             let (value, within) = linkage.limits[coordinate].place(amount, held);
@@ -156,9 +158,13 @@ impl<'a> Input<'a> {
     /// The rotations of the three joints after the input in its loop, and of the three after the
     /// imaginary joint in the other one.
     #[inline]
-    fn amounts(&self, turn: Complex<f64>, branch: LinkageBranch) -> Option<[[Amount; 3]; 2]> {
+    fn amounts(
+        &self,
+        turn: Complex<f64>,
+        branch: LinkageBranch,
+    ) -> Option<[[JointDisplacement; 3]; 2]> {
         let own = self.own().four_bar.driven_by(self.place).solve(turn, branch.first).ok()?;
-        let tau = own[self.imaginary_amount()].turn();
+        let tau = own[self.imaginary_amount()].unit_direction();
         let other = self.other().four_bar.driven_by(0).solve(tau, branch.second).ok()?;
         Some([own, other])
     }

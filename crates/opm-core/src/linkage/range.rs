@@ -7,7 +7,8 @@
 //! linkage closes there.
 
 use super::Input;
-use crate::chain::{Branch, unit};
+use crate::chain::Branch;
+use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -139,7 +140,7 @@ impl Input<'_> {
         for tau in self.other().four_bar.driven_by(0).dead_points() {
             for branch in Branch::BOTH {
                 if let Ok(amounts) = own.driven_by(0).solve(tau, branch) {
-                    folds.push((angle(amounts[self.place - 1].turn()), Fold::Second));
+                    folds.push((angle(amounts[self.place - 1].unit_direction()), Fold::Second));
                 }
             }
         }
@@ -152,7 +153,7 @@ impl Input<'_> {
     fn closes(&self, turn: Complex<f64>, first: Branch) -> bool {
         let own = self.own().four_bar.driven_by(self.place).solve(turn, first);
         own.is_ok_and(|amounts| {
-            let tau = amounts[self.imaginary_amount()].turn();
+            let tau = amounts[self.imaginary_amount()].unit_direction();
             self.other().four_bar.driven_by(0).closes(tau)
         })
     }

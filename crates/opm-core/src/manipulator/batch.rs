@@ -12,9 +12,9 @@ mod section;
 use super::inverse::{LARGEST, PoseError, Solution};
 use super::leg::CompiledLeg;
 use super::{Manipulator, Mode};
-use crate::angle::MOST_REDUCED;
-use crate::joint::Quantity;
-use crate::leg::Section;
+use crate::mechanism::leg::Section;
+use crate::numeric::Quantity;
+use crate::numeric::angle::MOST_REDUCED;
 use lanes::{Amounts, Column, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
 use section::{Found, Side};
@@ -297,12 +297,12 @@ impl Block {
                 section::unwind(leg.unwinds, &found.amounts[cut], tau);
                 match section {
                     Section::Lower => {
-                        let way = (task.upper.kind, task.upper_cut, Side::Before);
+                        let way = (task.upper_intersection, Side::Before);
                         section::shift(way, b, tau, shifted);
                         section::invert(tau);
                     }
                     Section::Upper => {
-                        let way = (task.lower.kind, task.lower_cut, Side::After);
+                        let way = (task.lower_intersection, Side::After);
                         section::shift(way, v, tau, shifted);
                     }
                 }

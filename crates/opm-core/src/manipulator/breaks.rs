@@ -9,11 +9,11 @@
 use super::leg::CompiledSection;
 use super::{Follow, Manipulator};
 use crate::chain::equation::Span;
+use crate::chain::limits::Limits;
 use crate::chain::surface::Surface;
-use crate::chain::{Amount, unit};
-use crate::joint::Quantity;
-use crate::limits::Limits;
-use crate::task::Displacement;
+use crate::group::{Displacement, JointDisplacement};
+use crate::numeric::Quantity;
+use crate::numeric::angle::unit;
 use std::f64::consts::PI;
 
 /// How far a cut may slide, in sizes of the leg, and its upper section still be asked for: beyond, its
@@ -85,9 +85,13 @@ impl Manipulator {
         let most = if turns { PI } else { FAR * breaks.size };
         breaks.most = (!turns).then_some(most);
         let span = Span { from: -most, to: most, step: 0.0 };
-        let path = self.task.upper_cut.path(b);
+        let path = self.task.upper_intersection.path(b);
         let hold = |at: f64| {
-            let amount = if turns { Amount::Turn(unit(at)) } else { Amount::Value(at) };
+            let amount = if turns {
+                JointDisplacement::Direction(unit(at))
+            } else {
+                JointDisplacement::Value(at)
+            };
             leg.lower.chain.held(last, amount)
         };
         let size = breaks.size;
@@ -126,11 +130,11 @@ impl Manipulator {
             self.task.lower(&pose)
         };
         let start = match way.tau {
-            Some(tau) => self.task.lower_cut.after(&at(home), tau),
+            Some(tau) => self.task.lower_intersection.after(&at(home), tau),
             None => at(home),
         };
         let path = self.task.row(&start);
-        let size = breaks.size + path.size(&moved);
+        let size = breaks.size + path.size(moved.reach());
         for surface in &breaks.surfaces {
             surface.meet(&path, &moved, [size, 0.0], &mut found);
         }

@@ -4,8 +4,8 @@
 
 use super::leg::{CompiledSection, LegSolution, Section, Slot};
 use super::{Manipulator, Mode};
-use crate::chain::{Amount, Chain, Gap};
-use crate::task::Displacement;
+use crate::chain::{Chain, ReachDeficit};
+use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -42,7 +42,7 @@ pub struct Unreachable {
     /// Which of its sections does not close.
     pub section: Section,
     /// By how much.
-    pub gap: Gap,
+    pub gap: ReachDeficit,
 }
 
 /// Every joint of one working mode; made by [`Manipulator::solution`].
@@ -295,7 +295,12 @@ impl Manipulator {
     }
 
     #[inline]
-    fn write_drives(&self, section: &CompiledSection, amounts: &[Amount; 3], out: &mut Drives) {
+    fn write_drives(
+        &self,
+        section: &CompiledSection,
+        amounts: &[JointDisplacement; 3],
+        out: &mut Drives,
+    ) {
         out.within_limits &= section.admits(&self.limits, amounts);
         if !section.driven {
             return;
@@ -348,7 +353,7 @@ impl Manipulator {
     fn write_section(
         &self,
         section: &CompiledSection,
-        amounts: &[Amount; 3],
+        amounts: &[JointDisplacement; 3],
         out: &mut Solution,
         turns: Turns,
     ) {
@@ -359,7 +364,8 @@ impl Manipulator {
             let near = Vector3::from_fn(|i, _| out.joints[first + i] - home(first + i));
             let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
             for i in 0..3 {
-                out.within_limits &= self.limits[first + i].admits(Amount::Value(vector[i]));
+                out.within_limits &=
+                    self.limits[first + i].admits(JointDisplacement::Value(vector[i]));
                 out.joints[first + i] = home(first + i) + vector[i];
             }
             return;

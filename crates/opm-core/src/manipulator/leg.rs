@@ -1,14 +1,15 @@
 //! One leg, cut in two closed-form chains.
 
+use crate::chain::limits::Limits;
+use crate::chain::screws::{determinant_scale, screws};
 use crate::chain::shape::Shape;
-use crate::chain::{Amount, Branch, Chain, ChainError, ChainJoint, Gap, screws};
+use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, LegSplit};
-use crate::joint::JointKind;
-use crate::leg::Leg;
-pub use crate::leg::Section;
-use crate::limits::Limits;
-use crate::task::{Displacement, Subspace, SubspaceKind, Task};
-use crate::velocity::determinant_scale;
+use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
+use crate::mechanism::joint::JointKind;
+use crate::mechanism::leg::Leg;
+pub use crate::mechanism::leg::Section;
+use crate::task::Task;
 use nalgebra::{Unit, Vector3};
 
 /// Why a leg has no closed form.
@@ -94,16 +95,16 @@ pub(crate) struct Surroundings<'a> {
 /// One solution of a leg: displacements from home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegSolution {
-    pub lower: [Amount; 3],
-    pub upper: [Amount; 3],
+    pub lower: [JointDisplacement; 3],
+    pub upper: [JointDisplacement; 3],
     /// Along the intersection motion.
-    pub tau: Amount,
+    pub tau: JointDisplacement,
 }
 
 impl LegSolution {
     /// No displacement.
     pub const HOME: Self = {
-        let none = Amount::Value(0.0);
+        let none = JointDisplacement::Value(0.0);
         Self { lower: [none; 3], upper: [none; 3], tau: none }
     };
 }
@@ -195,7 +196,7 @@ impl CompiledLeg {
         task: &Task,
         [v, b]: [&Displacement; 2],
         branches: LegBranches,
-    ) -> Result<([Amount; 3], Amount), Gap> {
+    ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
         match self.cut {
             Section::Upper => {
                 let tau = self.unwound(self.upper.chain.first(b, branches.upper)?, 0.0);
@@ -217,8 +218,8 @@ impl CompiledLeg {
         [v, b]: [&Displacement; 2],
         branches: LegBranches,
         near: f64,
-    ) -> Result<LegSolution, (Section, Gap)> {
-        let of = |section: Section| move |gap: Gap| (section, gap);
+    ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        let of = |section: Section| move |gap: ReachDeficit| (section, gap);
         match self.cut {
             Section::Upper => {
                 let upper =
@@ -233,7 +234,7 @@ impl CompiledLeg {
                     self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
                 // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
                 let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
-                let target = task.upper_cut.before(b, cut);
+                let target = task.upper_intersection.before(b, cut);
                 let upper = self
                     .upper
                     .chain
@@ -259,8 +260,8 @@ impl CompiledLeg {
     }
 
     #[inline(always)]
-    pub fn unwound(&self, cut: Amount, near: f64) -> Amount {
-        if self.unwinds { Amount::Value(cut.nearest(near)) } else { cut }
+    pub fn unwound(&self, cut: JointDisplacement, near: f64) -> JointDisplacement {
+        if self.unwinds { JointDisplacement::Value(cut.nearest(near)) } else { cut }
     }
 
     /// `L = v · exp(I τ)`: the lower joints.
@@ -269,17 +270,17 @@ impl CompiledLeg {
         &self,
         task: &Task,
         v: &Displacement,
-        tau: Amount,
+        tau: JointDisplacement,
         branch: Branch,
-    ) -> Result<[Amount; 3], Gap> {
-        self.lower.chain.inverse(&task.lower_cut.after(v, tau), branch)
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        self.lower.chain.inverse(&task.lower_intersection.after(v, tau), branch)
     }
 }
 
 impl CompiledSection {
     /// Whether the amounts of this section's chain are within the limits.
     #[inline]
-    pub fn admits(&self, limits: &[Limits], amounts: &[Amount; 3]) -> bool {
+    pub fn admits(&self, limits: &[Limits], amounts: &[JointDisplacement; 3]) -> bool {
         !self.limited
             || self.slots.iter().zip(amounts).all(|(slot, &amount)| match slot {
                 Some(slot) => limits[slot.coordinate].admits(amount),
@@ -319,6 +320,7 @@ fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
 
 /// Number of a freedom among the leg's coordinates.
 fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
-    let before: usize = leg.joints[..freedom.joint].iter().map(crate::joint::Joint::freedoms).sum();
+    let before: usize =
+        leg.joints[..freedom.joint].iter().map(crate::mechanism::joint::Joint::freedoms).sum();
     before + freedom.index
 }

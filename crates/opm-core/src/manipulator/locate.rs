@@ -6,8 +6,8 @@
 //! motion it ends at the nearest pose, which is what one wants to be told.
 
 use super::Manipulator;
-use crate::joint::Quantity;
-use crate::mobility::frame;
+use crate::decomposition::mobility::frame;
+use crate::numeric::Quantity;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
 use std::fmt;

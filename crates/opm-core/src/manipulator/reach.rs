@@ -14,9 +14,9 @@
 
 use super::leg::{LegBranches, Section};
 use super::{ImaginaryJoint, Manipulator, Mode};
+use crate::chain::Chain;
 use crate::chain::region::Region;
-use crate::chain::{Amount, Chain};
-use crate::task::Displacement;
+use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Complex;
 
 /// One way in which a leg can follow a slice of poses that share `b`.
@@ -25,7 +25,7 @@ pub struct Follow {
     pub(super) leg: usize,
     pub(super) branches: LegBranches,
     /// Found from `b`, where the leg's upper section takes the cut.
-    pub(super) tau: Option<Amount>,
+    pub(super) tau: Option<JointDisplacement>,
     /// `b`, where the leg takes the cut in its lower section, and its upper one has a say at every pose.
     pub(super) with_upper: Option<Displacement>,
 }
@@ -34,7 +34,7 @@ impl Follow {
     /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where whole turns
     /// do not matter) or metres; `None` of a leg that is cut in its lower section.
     pub fn cut(&self) -> Option<f64> {
-        self.tau.map(Amount::value)
+        self.tau.map(JointDisplacement::value)
     }
 
     /// Whether the leg follows alike in every slice: `b` makes no difference to it.
@@ -50,8 +50,8 @@ impl Follow {
     /// The displacement as the direction of a vector, where it is a turn of which whole turns do not matter.
     pub fn direction(&self) -> Option<Complex<f64>> {
         match self.tau {
-            Some(Amount::Turn(direction)) => Some(direction),
-            Some(Amount::Value(_)) | None => None,
+            Some(JointDisplacement::Direction(direction)) => Some(direction),
+            Some(JointDisplacement::Value(_)) | None => None,
         }
     }
 }
@@ -119,7 +119,7 @@ impl Manipulator {
     /// one working mode, or (`None`) in any. A leg that is cut in its lower section has no use for it.
     pub fn follow_lower(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<Follow>) {
         let compiled = &self.legs[leg];
-        let tau = (compiled.cut == Section::Upper).then_some(Amount::Value(tau));
+        let tau = (compiled.cut == Section::Upper).then_some(JointDisplacement::Value(tau));
         let mut push = |branches: LegBranches| {
             // Choices of the upper section make no difference.
             if ways.iter().all(|way| way.branches.lower != branches.lower) {
@@ -197,7 +197,7 @@ impl Manipulator {
         }
         let shape = self.legs[way.leg].shape(way.branches.lower)?;
         let target = match way.tau {
-            Some(tau) => &self.task.lower_cut.after(v, tau),
+            Some(tau) => &self.task.lower_intersection.after(v, tau),
             None => v,
         };
         match target {

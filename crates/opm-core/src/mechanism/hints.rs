@@ -1,6 +1,6 @@
 //! How the pose of the platform is to be measured, where the geometry alone does not say.
 
-use crate::leg::Section;
+use crate::mechanism::leg::Section;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 

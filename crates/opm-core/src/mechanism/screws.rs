@@ -1,9 +1,9 @@
 //! Mechanisms from nothing but the screws of their joints.
 
 use super::{Mechanism, TaskHints};
-use crate::joint::{Joint, JointKind};
-use crate::leg::Leg;
-use crate::screw::Screw;
+use crate::group::screw::Screw;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::Leg;
 use nalgebra::{Point3, Unit, Vector3};
 
 /// A joint of one freedom.
@@ -37,7 +37,7 @@ pub enum ScrewError {
 const FARTHEST: f64 = 1e9;
 
 /// Pitches over the mechanism's size that rounding may leave of none. Far below what the
-/// decomposition still takes for none ([`TOLERANCE`](crate::subspace::TOLERANCE)).
+/// decomposition still takes for none ([`TOLERANCE`](crate::group::subspace::TOLERANCE)).
 const ROUNDING: f64 = 1e-9;
 
 impl Screw {

@@ -28,9 +28,9 @@
 //! hint.
 
 use super::{Harmonics, Motion, Path, Sinusoid};
-use crate::joint::Quantity;
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
+use crate::numeric::Quantity;
 
 /// Reads the text of a motion file, in the task coordinates and working modes of `manipulator`.
 ///

@@ -11,9 +11,9 @@
 //! turns matter, because a helical joint follows it, is taken as it stands.
 
 use super::{Motion, Path, Spline};
-use crate::joint::Quantity;
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
+use crate::numeric::Quantity;
 use std::f64::consts::TAU;
 
 /// Problems that are told one by one; a file with more of them is another kind of file.

@@ -4,9 +4,10 @@
 //! joint stands on it. And axes of one centre (the joints of a spherical section) are drawn each at
 //! the same distance out from there, or all of their links would have no length.
 
-use crate::joint::{Joint, JointKind, Quantity};
+use crate::decomposition::mobility::frame;
 use crate::mechanism::Mechanism;
-use crate::mobility::frame;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 
 /// Points closer than this, as a share of the mechanism's size, are one.

@@ -1,7 +1,7 @@
 //! What bodies look like: rods, pins, balls and blocks.
 
 use super::centre::TOUCH;
-use crate::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Point3, Unit, Vector3};
 
 /// A simple solid.

@@ -1,10 +1,10 @@
 //! Skeletons of the shipped mechanisms: at home, and that what shares a joint stays together.
 
 use super::*;
+use crate::decomposition::mobility::frame;
 use crate::manipulator::Manipulator;
 use crate::mechanism::examples::EXAMPLES;
 use crate::mechanism::file;
-use crate::mobility::frame;
 use std::collections::HashSet;
 
 /// Rounding of a leg's product of exponentials, as a share of the mechanism's size.
@@ -70,8 +70,8 @@ fn what_shares_a_joint_stays_together() {
                 .iter()
                 .enumerate()
                 .map(|(i, c)| match c.quantity {
-                    crate::joint::Quantity::Angle => c.home + 0.15 * step(i),
-                    crate::joint::Quantity::Length => c.home + 0.08 * size * step(i),
+                    crate::mechanism::joint::Quantity::Angle => c.home + 0.15 * step(i),
+                    crate::mechanism::joint::Quantity::Length => c.home + 0.08 * size * step(i),
                 })
                 .collect();
             if !manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap() {

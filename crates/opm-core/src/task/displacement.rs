@@ -1,155 +1,103 @@
-//! Displacements inside one subspace, and steps along the intersection motion.
+//! From the coordinates of a section to its displacement.
 
-use crate::chain::Amount;
-use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::planar::PlanarDisplacement;
-use crate::chain::surface::Path;
-use nalgebra::{Complex, Matrix3, Vector3};
+use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
+use crate::numeric::angle::sin_cos;
+use nalgebra::{Complex, Matrix3};
 
-/// A displacement inside one subspace, in that subspace's own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Displacement {
-    /// Of the plane.
-    Planar(PlanarDisplacement),
-    /// About the centre.
-    Spherical(Matrix3<f64>),
-    /// About and along the axis.
-    Cylindrical(CylindricalDisplacement),
-    /// In the plane, without rotation.
-    Translational(Complex<f64>),
+/// Which coordinates a section has: its subspace, and whether the intersection motion is a rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Form {
+    pub kind: SubspaceKind,
+    pub turn: bool,
 }
 
-impl Displacement {
-    /// Its largest number, radians or metres; of a rotation about a centre zero.
-    pub(crate) fn size(&self) -> f64 {
-        match self {
-            Self::Planar(g) => g.translation.norm(),
-            Self::Spherical(_) => 0.0,
-            Self::Cylindrical(g) => g.angle.abs().max(g.advance.abs()),
-            Self::Translational(t) => t.norm(),
+/// `v` for its coordinates and their values at home: straight arithmetic where `form` is a constant.
+#[inline(always)]
+pub(crate) fn lower_displacement(
+    form: Form,
+    at: [f64; 3],
+    home: [f64; 3],
+    sin_cos: impl Fn(f64) -> (f64, f64),
+) -> Displacement {
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.turn) {
+        (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
+        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
+        (SubspaceKind::Spherical, _) => {
+            Displacement::Spherical(tilt([sin_cos(q(0)), sin_cos(q(1))]))
+        }
+        (SubspaceKind::Cylindrical, true) => cylindrical(0.0, q(0)),
+        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), q(1)),
+        (SubspaceKind::TranslationalPlane, _) => {
+            Displacement::Translational(Complex::new(q(0), q(1)))
         }
     }
 }
 
-/// The intersection motion as seen in one subspace's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cut {
-    /// Rotation about the frame's origin and third direction.
-    Turn,
-    /// Translation in this direction of a plane.
-    Slide(Complex<f64>),
-    /// Translation along a cylinder's axis.
-    Advance,
+/// As [`lower_displacement`], `b`; of a sphere, of which the coordinates are absolute, the orientation.
+#[inline(always)]
+pub(crate) fn upper_displacement(
+    form: Form,
+    at: [f64; 3],
+    home: [f64; 3],
+    sin_cos: impl Fn(f64) -> (f64, f64),
+) -> Displacement {
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.turn) {
+        (SubspaceKind::Spherical, _) => {
+            // Three calls, where a map would not be inlined.
+            let [zeta, xi, psi] = at;
+            Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
+        }
+        (SubspaceKind::Planar, true) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
+        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(1))), 0.0, q(0)),
+        (SubspaceKind::Cylindrical, true) => cylindrical(q(0), q(1)),
+        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), 0.0),
+        (SubspaceKind::TranslationalPlane, _) => {
+            Displacement::Translational(Complex::new(0.0, q(0)))
+        }
+    }
 }
 
-impl Cut {
-    /// `v · exp(I τ)`.
-    #[inline(always)]
-    pub fn after(&self, v: &Displacement, tau: Amount) -> Displacement {
-        match (self, v) {
-            (Self::Turn, Displacement::Planar(v)) => Displacement::Planar(PlanarDisplacement {
-                rotation: v.rotation * tau.turn(),
-                translation: v.translation,
-            }),
-            (Self::Turn, Displacement::Spherical(r)) => {
-                // Columns one and two of R turn; the third, the axis of I, stays.
-                let e = tau.turn();
-                let (x, y, z) = (r.column(0), r.column(1), r.column(2));
-                Displacement::Spherical(Matrix3::from_columns(&[
-                    x * e.re + y * e.im,
-                    y * e.re - x * e.im,
-                    z.into_owned(),
-                ]))
-            }
-            _ => self.commuting(v, tau),
-        }
-    }
+#[inline(always)]
+fn unit_of((sin, cos): (f64, f64)) -> Complex<f64> {
+    Complex::new(cos, sin)
+}
 
-    /// `exp(I τ) · b`.
-    #[inline(always)]
-    pub fn before(&self, b: &Displacement, tau: Amount) -> Displacement {
-        match (self, b) {
-            (Self::Turn, Displacement::Planar(b)) => {
-                let e = tau.turn();
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: e * b.rotation,
-                    translation: e * b.translation,
-                })
-            }
-            (Self::Turn, Displacement::Spherical(r)) => {
-                let e = tau.turn();
-                let (x, y, z) = (r.row(0), r.row(1), r.row(2));
-                Displacement::Spherical(Matrix3::from_rows(&[
-                    x * e.re - y * e.im,
-                    x * e.im + y * e.re,
-                    z.into_owned(),
-                ]))
-            }
-            (Self::Slide(along), Displacement::Planar(b)) => {
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: b.rotation,
-                    translation: b.translation + along * tau.value(),
-                })
-            }
-            _ => self.commuting(b, tau),
-        }
-    }
+/// `Rx(mu) Ry(nu)`, of the angles' sines and cosines.
+#[inline(always)]
+pub(super) fn tilt([(sm, cm), (sn, cn)]: [(f64, f64); 2]) -> Matrix3<f64> {
+    Matrix3::new(cn, 0.0, sn, sm * sn, cm, -sm * cn, -cm * sn, sm, cm * cn)
+}
 
-    /// `exp(I τ) · b` for every τ.
-    pub(crate) fn path(&self, b: &Displacement) -> Path {
-        match (self, *b) {
-            (Self::Slide(along), Displacement::Planar(start)) => {
-                Path::Slide { start, rate: *along }
-            }
-            (_, Displacement::Planar(start)) => Path::Turn { start },
-            (_, Displacement::Spherical(start)) => Path::Tilt { start, axis: Vector3::z() },
-            (Self::Turn, Displacement::Cylindrical(start)) => {
-                Path::Coaxial { start, rate: CylindricalDisplacement { angle: 1.0, advance: 0.0 } }
-            }
-            (_, Displacement::Cylindrical(start)) => {
-                Path::Coaxial { start, rate: CylindricalDisplacement { angle: 0.0, advance: 1.0 } }
-            }
-            (Self::Slide(along), Displacement::Translational(start)) => {
-                Path::Translation { start, rate: *along }
-            }
-            // A subspace that does not hold the motion, as below.
-            (_, Displacement::Translational(start)) => {
-                Path::Translation { start, rate: Complex::new(0.0, 0.0) }
-            }
-        }
-    }
+/// `Rz(zeta) Ry(xi) Rz(psi)`.
+#[inline]
+pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
+    euler_of([zeta, xi, psi].map(sin_cos))
+}
 
-    /// The pairs for which the order does not matter, and `v · exp(I τ)` in a plane.
-    #[inline(always)]
-    fn commuting(&self, g: &Displacement, tau: Amount) -> Displacement {
-        match (self, g) {
-            (Self::Turn, Displacement::Cylindrical(g)) => {
-                cylindrical(g.angle + tau.value(), g.advance)
-            }
-            (Self::Advance, Displacement::Cylindrical(g)) => {
-                cylindrical(g.angle, g.advance + tau.value())
-            }
-            (Self::Slide(along), Displacement::Planar(g)) => {
-                Displacement::Planar(PlanarDisplacement {
-                    rotation: g.rotation,
-                    translation: g.translation + g.rotation * along * tau.value(),
-                })
-            }
-            (Self::Slide(along), Displacement::Translational(t)) => {
-                Displacement::Translational(t + along * tau.value())
-            }
-            // A subspace that does not hold the motion: Subspace::cut never pairs them.
-            _ => *g,
-        }
-    }
+/// The same, of the angles' sines and cosines.
+#[inline(always)]
+fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
+    Matrix3::new(
+        cz * cx * cp - sz * sp,
+        -cz * cx * sp - sz * cp,
+        cz * sx,
+        sz * cx * cp + cz * sp,
+        -sz * cx * sp + cz * cp,
+        sz * sx,
+        -sx * cp,
+        sx * sp,
+        cx,
+    )
 }
 
 #[inline]
-pub(super) fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
+fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
     Displacement::Planar(PlanarDisplacement { rotation, translation: Complex::new(x, y) })
 }
 
 #[inline]
-pub(super) fn cylindrical(angle: f64, advance: f64) -> Displacement {
+fn cylindrical(angle: f64, advance: f64) -> Displacement {
     Displacement::Cylindrical(CylindricalDisplacement { angle, advance })
 }

@@ -1,11 +1,13 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
-use super::{Cut, Displacement, SubspaceKind, Task};
-use crate::angle::sin_cos;
-use crate::chain::Amount;
-use crate::chain::planar::PlanarDisplacement;
-use crate::joint::Quantity;
-use nalgebra::Matrix3;
+use super::{CoordinateKind, Task};
+use crate::group::{
+    CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, PlanarMotion,
+    SphericalMotion, SubspaceKind, TranslationalMotion,
+};
+use crate::numeric::Quantity;
+use crate::numeric::angle::sin_cos;
+use nalgebra::{Complex, Matrix3};
 use std::f64::consts::TAU;
 
 /// The sine of an angle between two axes that counts as none: the rounding of a rotation.
@@ -27,9 +29,9 @@ impl Task {
             self.without_turn(v)
         } else {
             let advanced = self.advanced(b);
-            (self.lower_cut.after(v, advanced), advanced.inverse())
+            (self.lower_intersection.after(v, advanced), advanced.inverse())
         };
-        let b = self.upper_cut.before(b, handed);
+        let b = self.upper_intersection.before(b, handed);
         match v {
             Displacement::Planar(g) => {
                 pose.extend([home(0) + g.translation.re, home(1) + g.translation.im]);
@@ -69,10 +71,19 @@ impl Task {
             Displacement::Translational(t) => pose.push(home(0) + t.im),
         }
         for (q, c) in pose.iter_mut().zip(&self.coordinates) {
-            let counted = matches!(
-                (c.name, self.lower.kind, self.upper.kind),
-                ("theta", SubspaceKind::Cylindrical, _) | ("phi", _, SubspaceKind::Cylindrical)
-            );
+            let counted = match c.kind() {
+                CoordinateKind::Theta => self.lower.kind == SubspaceKind::Cylindrical,
+                CoordinateKind::Phi => self.upper.kind == SubspaceKind::Cylindrical,
+                CoordinateKind::X
+                | CoordinateKind::Y
+                | CoordinateKind::Z
+                | CoordinateKind::W
+                | CoordinateKind::Zeta
+                | CoordinateKind::Xi
+                | CoordinateKind::Psi
+                | CoordinateKind::Mu
+                | CoordinateKind::Nu => false,
+            };
             if c.quantity == Quantity::Angle && !counted {
                 *q = near(*q, c.home);
             }
@@ -82,41 +93,43 @@ impl Task {
 
     /// `v` without the turn about the shared axis that its coordinates do not have, and that turn: it was
     /// applied first. Where the intersection motion is a translation, `v` itself.
-    pub(crate) fn without_turn(&self, v: &Displacement) -> (Displacement, Amount) {
+    pub(crate) fn without_turn(&self, v: &Displacement) -> (Displacement, JointDisplacement) {
         if self.cut_point.is_none() {
-            return (*v, Amount::Value(0.0));
+            return (*v, JointDisplacement::Value(0.0));
         }
         let turned = self.turned(v);
-        (self.lower_cut.after(v, turned.inverse()), turned)
+        (self.lower_intersection.after(v, turned.inverse()), turned)
     }
 
     /// The turn about the shared axis that `v` has beyond its coordinates.
-    fn turned(&self, v: &Displacement) -> Amount {
+    fn turned(&self, v: &Displacement) -> JointDisplacement {
         match v {
-            Displacement::Planar(g) => Amount::Turn(g.rotation),
+            Displacement::Planar(g) => JointDisplacement::Direction(g.rotation),
             Displacement::Spherical(r) => {
                 // Rx(mu) Ry(nu) without the rest: R = tilt · Rz.
                 let [mu, nu] = tilt_angles(r);
-                let rest = super::tilt([mu, nu].map(sin_cos)).tr_mul(r);
-                Amount::Turn(nalgebra::Complex::new(rest[(0, 0)], rest[(1, 0)]))
+                let rest = super::displacement::tilt([mu, nu].map(sin_cos)).tr_mul(r);
+                JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
-            Displacement::Cylindrical(g) => Amount::Value(g.angle),
-            Displacement::Translational(_) => Amount::Value(0.0),
+            Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle),
+            Displacement::Translational(_) => JointDisplacement::Value(0.0),
         }
     }
 
     /// The way along the shared direction that `b` has beyond its coordinates.
-    fn advanced(&self, b: &Displacement) -> Amount {
-        Amount::Value(match (b, self.upper_cut) {
-            (
-                Displacement::Planar(PlanarDisplacement { translation: t, .. }),
-                Cut::Slide(along),
-            )
-            | (Displacement::Translational(t), Cut::Slide(along)) => {
-                t.re * along.re + t.im * along.im
+    fn advanced(&self, b: &Displacement) -> JointDisplacement {
+        let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
+        JointDisplacement::Value(match self.upper_intersection {
+            IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+                component(b.planar().translation, along)
             }
-            (Displacement::Cylindrical(g), Cut::Advance) => g.advance,
-            _ => 0.0,
+            IntersectionMotion::Translational(TranslationalMotion::Slide(along)) => {
+                component(*b.translational(), along)
+            }
+            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => b.cylindrical().advance,
+            IntersectionMotion::Planar(PlanarMotion::Turn)
+            | IntersectionMotion::Spherical(SphericalMotion::Turn)
+            | IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => 0.0,
         })
     }
 }

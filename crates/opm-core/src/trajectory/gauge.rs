@@ -1,7 +1,7 @@
 //! What is watched along a motion, and what is told of it.
 
-use crate::joint::Quantity;
 use crate::manipulator::{Manipulator, Section};
+use crate::numeric::Quantity;
 
 /// One end of a joint's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,8 +1,8 @@
 //! What there is to say of a violation: names instead of numbers.
 
 use super::gauge::{Bound, Gauge, Part, Violation};
-use crate::joint::Quantity;
 use crate::manipulator::{Manipulator, Section};
+use crate::numeric::Quantity;
 
 /// A violation in names.
 #[derive(Clone, Copy, Debug, PartialEq)]

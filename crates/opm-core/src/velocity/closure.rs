@@ -4,11 +4,12 @@
 //! length; in a sphere angular velocities. Columns have units of their own, so that every entry is a
 //! number, and a determinant too.
 
-use super::local::{Local, linear, planar, quarter};
 use super::section::Differential;
 use crate::chain::Chain;
+use crate::group::{
+    IntersectionMotion, LocalTwist, SubspaceKind, angular_and_linear, linear, quarter,
+};
 use crate::manipulator::{CompiledLeg, CompiledSection, Section};
-use crate::task::{Cut, SubspaceKind};
 use nalgebra::DMatrix;
 
 /// Shorter than this share of the mechanism, a link is too short to measure by.
@@ -36,12 +37,12 @@ pub(super) fn section_rows(
     section: Section,
     differential: &Differential,
     length: f64,
-) -> ([Local; 3], usize) {
+) -> ([LocalTwist; 3], usize) {
     let compiled = leg.section(section);
     let inputs = inputs(leg, section);
     let kind = differential.screws.kind;
     let moved = &differential.screws.moved;
-    let mut rows = [Local::zeros(); 3];
+    let mut rows = [LocalTwist::zeros(); 3];
     let count = inputs.iter().filter(|input| **input).count();
     let first = |wanted: bool| inputs.iter().position(|input| *input == wanted).unwrap_or_default();
     match count {
@@ -56,8 +57,13 @@ pub(super) fn section_rows(
             (rows[0], rows[1]) = (a, b);
         }
         _ => {
-            let turn = if kind == SubspaceKind::Planar { length } else { 1.0 };
-            rows = [Local::x() * turn, Local::y(), Local::z()];
+            let turn = match kind {
+                SubspaceKind::Planar => length,
+                SubspaceKind::Spherical
+                | SubspaceKind::Cylindrical
+                | SubspaceKind::TranslationalPlane => 1.0,
+            };
+            rows = [LocalTwist::x() * turn, LocalTwist::y(), LocalTwist::z()];
         }
     }
     (rows, count)
@@ -67,7 +73,7 @@ pub(super) fn section_rows(
 /// velocity, or an angular velocity in a sphere.
 fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, length: f64) -> f64 {
     let [a, b] = [section.screws[(input + 1) % 3], section.screws[(input + 2) % 3]];
-    let turns = |screw: &Local| screw.x != 0.0;
+    let turns = |screw: &LocalTwist| screw.x != 0.0;
     match kind {
         SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
         // One of them only makes up the number: a slider holds an angle.
@@ -88,50 +94,69 @@ fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, lengt
 }
 
 /// Two screws that one passive joint is reciprocal to, whose cross product is its screw.
-fn square_to(kind: SubspaceKind, passive: &Local, length: f64) -> [Local; 2] {
+fn square_to(kind: SubspaceKind, passive: &LocalTwist, length: f64) -> [LocalTwist; 2] {
     match kind {
         // The velocity of its point.
         SubspaceKind::Planar if passive.x != 0.0 => {
             let at = quarter(linear(passive)) * passive.x;
-            let [a, b] = [Local::new(-at.im, 1.0, 0.0), Local::new(at.re, 0.0, 1.0)];
+            let [a, b] = [LocalTwist::new(-at.im, 1.0, 0.0), LocalTwist::new(at.re, 0.0, 1.0)];
             if passive.x > 0.0 { [a, b] } else { [b, a] }
         }
-        SubspaceKind::Planar => [planar(0.0, quarter(linear(passive))), Local::x() * length],
+        SubspaceKind::Planar => {
+            [angular_and_linear(0.0, quarter(linear(passive))), LocalTwist::x() * length]
+        }
         SubspaceKind::Spherical => {
-            let other = if passive.x.abs() > 0.9 { Local::y() } else { Local::x() };
+            let other = if passive.x.abs() > 0.9 { LocalTwist::y() } else { LocalTwist::x() };
             let first = passive.cross(&other).normalize();
             [first, passive.cross(&first)]
         }
-        SubspaceKind::Cylindrical => [Local::x() * length, Local::y()],
-        SubspaceKind::TranslationalPlane => [Local::x(), Local::y()],
+        SubspaceKind::Cylindrical => [LocalTwist::x() * length, LocalTwist::y()],
+        SubspaceKind::TranslationalPlane => [LocalTwist::x(), LocalTwist::y()],
     }
 }
 
 /// What a rate along the cut is measured in: radians or the characteristic length; where it swings
 /// the last link of a planar section, from the leg's last pivot to the axis, what that link makes of
 /// it.
-pub(super) fn cut_unit(leg: &CompiledLeg, cut: Cut, length: f64) -> f64 {
-    match (cut, &leg.lower.chain, leg.cut) {
-        (Cut::Turn, Chain::Planar(_), Section::Upper) => {
+pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f64) -> f64 {
+    if !motion.is_rotation() {
+        return length;
+    }
+    match (&leg.lower.chain, leg.cut) {
+        (Chain::Planar(_), Section::Upper) => {
             let last = leg.lower.screws[2];
             let link = linear(&last).norm();
             if last.x != 0.0 && link > SHORT * length { length / link } else { 1.0 }
         }
-        (Cut::Turn, ..) => 1.0,
-        (Cut::Slide(_) | Cut::Advance, ..) => length,
+        (Chain::Planar(_), Section::Lower)
+        | (
+            Chain::Spherical(_) | Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_),
+            Section::Lower | Section::Upper,
+        ) => 1.0,
     }
 }
 
 /// What a row is measured in: a velocity in the characteristic length, an angular one in radians.
 pub(super) fn row_unit(kind: SubspaceKind, length: f64) -> f64 {
-    if kind == SubspaceKind::Spherical { 1.0 } else { length }
+    match kind {
+        SubspaceKind::Spherical => 1.0,
+        SubspaceKind::Planar | SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
+            length
+        }
+    }
 }
 
 /// What a component of a twist is measured in, over its row's unit.
-pub(super) fn twist_unit(kind: SubspaceKind, twist: &Local, length: f64) -> f64 {
+pub(super) fn twist_unit(kind: SubspaceKind, twist: &LocalTwist, length: f64) -> f64 {
     match kind {
-        SubspaceKind::Planar | SubspaceKind::Cylindrical if twist.x != 0.0 => 1.0 / length,
-        _ => 1.0,
+        SubspaceKind::Planar | SubspaceKind::Cylindrical => {
+            if twist.x != 0.0 {
+                1.0 / length
+            } else {
+                1.0
+            }
+        }
+        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
     }
 }
 

@@ -1,8 +1,8 @@
 //! How far a pose is from singular: condition number and manipulability.
 
 use super::{Jacobians, SingularCause, SingularLeg};
-use crate::joint::Quantity;
 use crate::manipulator::Manipulator;
+use crate::numeric::Quantity;
 use nalgebra::SMatrix;
 
 /// Most components of a section twist: two subspaces of three dimensions that share one.

@@ -1,10 +1,9 @@
 //! The Jacobians: of the upper section, of the lower one, of the whole, and of the pose.
 
-use super::local::{Local, planar, quarter};
 use super::{LegDifferential, SingularLeg, VelocityError};
-use crate::chain::Amount;
+use crate::group::{Displacement, JointDisplacement, LocalTwist, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
-use crate::task::{Cut, Displacement, Subspace, SubspaceKind, Task};
+use crate::task::Task;
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 
 /// The Jacobians at one solved pose; made by [`Manipulator::jacobians`].
@@ -58,14 +57,14 @@ pub struct Jacobians {
     /// Where the lower section is.
     pub(super) v: Displacement,
     /// Every leg's displacement along the intersection motion.
-    pub(super) cuts: Vec<Amount>,
+    pub(super) cuts: Vec<JointDisplacement>,
 }
 
 /// The directions that the section twist is measured along.
 #[derive(Clone, Debug)]
 struct Basis {
-    upper: [Local; 3],
-    lower: [Local; 3],
+    upper: [LocalTwist; 3],
+    lower: [LocalTwist; 3],
     /// How many there are of each; the rest are zeros.
     counts: [usize; 2],
     /// Each as a twist in base coordinates, upper first: angular part, velocity at a point.
@@ -76,17 +75,18 @@ struct Basis {
 
 impl Basis {
     fn new(task: &Task, platform: &Point3<f64>) -> Self {
-        let (kept, rest) = (whole(task.upper.kind), whole(task.lower.kind));
+        let (kept, rest) = (task.upper.kind.basis(), task.lower.kind.basis());
         let rotation = task.cut_point.is_some();
-        let upper = if rotation { kept } else { beside(task.upper_cut, task.upper.kind) };
-        let lower = if rotation { beside(task.lower_cut, task.lower.kind) } else { rest };
-        let in_base =
-            |subspace: &Subspace, twist: &Local| (subspace.embedded(twist), subspace.origin.coords);
+        let upper = if rotation { kept } else { task.upper_intersection.complement() };
+        let lower = if rotation { task.lower_intersection.complement() } else { rest };
+        let in_base = |subspace: &Subspace, twist: &LocalTwist| {
+            (subspace.embedded(twist), subspace.origin.coords)
+        };
         let twists = (upper.iter().map(|twist| in_base(&task.upper, twist)))
             .chain(lower.iter().map(|twist| in_base(&task.lower, twist)))
             .collect();
-        let padded = |twists: &[Local]| {
-            std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(Local::zeros))
+        let padded = |twists: &[LocalTwist]| {
+            std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(LocalTwist::zeros))
         };
         Self {
             counts: [upper.len(), lower.len()],
@@ -98,37 +98,10 @@ impl Basis {
     }
 }
 
-/// All directions of a subspace.
-pub(super) fn whole(kind: SubspaceKind) -> Vec<Local> {
-    match kind {
-        SubspaceKind::Planar | SubspaceKind::Spherical => vec![Local::x(), Local::y(), Local::z()],
-        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
-            vec![Local::x(), Local::y()]
-        }
-    }
-}
-
-/// All but the intersection motion.
-pub(super) fn beside(cut: Cut, kind: SubspaceKind) -> Vec<Local> {
-    match (cut, kind) {
-        (Cut::Turn, SubspaceKind::Spherical) => vec![Local::x(), Local::y()],
-        (Cut::Turn, SubspaceKind::Planar) => vec![Local::y(), Local::z()],
-        (Cut::Turn, _) => vec![Local::y()],
-        (Cut::Advance, _) => vec![Local::x()],
-        (Cut::Slide(along), SubspaceKind::Planar) => {
-            vec![Local::x(), planar(0.0, quarter(along))]
-        }
-        (Cut::Slide(along), _) => {
-            let across = quarter(along);
-            vec![Local::new(across.re, across.im, 0.0)]
-        }
-    }
-}
-
 /// What has moved with `v`: the intersection motion, and the directions of the lower section.
 struct Moved {
-    along: Local,
-    lower: [Local; 3],
+    along: LocalTwist,
+    lower: [LocalTwist; 3],
 }
 
 impl Jacobians {
@@ -140,8 +113,8 @@ impl Jacobians {
 
     /// The components of the section twist, in the order of the columns: what each does to the upper
     /// section and to the lower one, twists in the sections' frames.
-    pub(crate) fn directions(&self) -> Vec<[Local; 2]> {
-        let zero = Local::zeros();
+    pub(crate) fn directions(&self) -> Vec<[LocalTwist; 2]> {
+        let zero = LocalTwist::zeros();
         let [n_upper, n_lower] = self.basis.counts;
         let upper = self.basis.upper[..n_upper].iter().map(|twist| [*twist, zero]);
         upper.chain(self.basis.lower[..n_lower].iter().map(|twist| [zero, *twist])).collect()
@@ -203,8 +176,8 @@ impl Manipulator {
         out.singular.clear();
         out.v = at.place.v;
         let task = self.task();
-        let along = at.place.v.carried(&task.lower_cut.twist(task.lower.kind));
-        let lower = out.basis.lower.map(|twist| at.place.v.carried(&twist));
+        let along = at.place.v.adjoint(&task.lower_intersection.unit_twist());
+        let lower = out.basis.lower.map(|twist| at.place.v.adjoint(&twist));
         let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
             let differential = self.leg_differential(at, number);
@@ -240,7 +213,7 @@ impl Manipulator {
         &self,
         number: usize,
         LegDifferential { lower: low, upper: up }: &LegDifferential,
-        tau: Amount,
+        tau: JointDisplacement,
         moved: &Moved,
         out: &mut Jacobians,
     ) {
@@ -265,9 +238,9 @@ impl Manipulator {
                 for (i, twist) in moved.lower.iter().enumerate() {
                     cut[n_upper + i] = low.rate(last, twist);
                 }
-                let (kind, amount) = (task.upper.kind, tau.inverse());
-                let carried = |twist: Local| task.upper_cut.carried(kind, amount, &twist);
-                (out.basis.upper.map(carried), task.upper_cut.twist(kind))
+                let amount = tau.inverse();
+                let carried = |twist: LocalTwist| task.upper_intersection.adjoint(amount, &twist);
+                (out.basis.upper.map(carried), task.upper_intersection.unit_twist())
             }
         };
         let (n, bridges, joints) = (n_upper + n_lower, out.bridged.len(), out.joints.nrows());
@@ -317,13 +290,13 @@ impl Manipulator {
         let n_upper = out.basis.counts[0];
         let n = pose.len();
         let rotation = task.cut_point.is_some();
-        let lower_along = task.lower_cut.twist(task.lower.kind);
-        let upper_along = task.upper_cut.twist(task.upper.kind);
+        let lower_along = task.lower_intersection.unit_twist();
+        let upper_along = task.upper_intersection.unit_twist();
         let (of_v, of_b) = (task.lower_screws(pose), task.upper_screws(pose));
         for column in 0..n {
-            let (mut lower, mut upper) = (Local::zeros(), Local::zeros());
+            let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
             if column < task.lower_count {
-                lower = v.carried_back(&of_v.moved[column]);
+                lower = v.adjoint_of_inverse(&of_v.moved[column]);
             } else {
                 upper = of_b.moved[column - task.lower_count];
             }
@@ -348,7 +321,7 @@ impl Manipulator {
     fn platform_columns(&self, at: &Solution, out: &mut Jacobians) {
         // In a frame that moves with v, the platform's point is b's image of it.
         let upper = &self.task().upper;
-        let point = upper.restored(&at.place.b.moved(&out.basis.platform)).coords;
+        let point = upper.restored(&at.place.b.act(&out.basis.platform)).coords;
         for (i, ([angular, linear], origin)) in out.basis.twists.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
             let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];

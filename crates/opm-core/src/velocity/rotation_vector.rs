@@ -6,13 +6,13 @@
 //! there is no such derivative: the axis of a full turn is any axis.
 
 use super::SINGULAR;
-use super::local::Local;
+use crate::group::LocalTwist;
 use nalgebra::Matrix3;
 
 /// A rotation vector, with what its derivatives need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RotationVector {
-    vector: Local,
+    vector: LocalTwist,
     /// `c(θ)`.
     second: f64,
     /// `c′(θ) / θ`.
@@ -25,7 +25,7 @@ pub(crate) struct RotationVector {
 const SMALL: f64 = 0.5;
 
 impl RotationVector {
-    pub fn new(vector: Local) -> Self {
+    pub fn new(vector: LocalTwist) -> Self {
         let square = vector.norm_squared();
         let angle = square.sqrt();
         if angle < SMALL {
@@ -71,7 +71,7 @@ impl RotationVector {
     }
 
     /// `r̈` at constant `ω`, that is the derivative of that matrix times `ω`.
-    pub fn bias(&self, rates: &Local, spin: &Local) -> Local {
+    pub fn bias(&self, rates: &LocalTwist, spin: &LocalTwist) -> LocalTwist {
         let r = &self.vector;
         let turned = r.cross(spin);
         let squared = rates.cross(&turned) + r.cross(&rates.cross(spin));
@@ -127,8 +127,8 @@ mod tests {
 
     #[test]
     fn a_whole_turn_has_no_derivative_but_half_a_turn_has() {
-        assert!(RotationVector::new(Local::z() * (2.0 * PI)).is_singular());
-        assert!(!RotationVector::new(Local::z() * PI).is_singular());
-        assert!(!RotationVector::new(Local::zeros()).is_singular());
+        assert!(RotationVector::new(LocalTwist::z() * (2.0 * PI)).is_singular());
+        assert!(!RotationVector::new(LocalTwist::z() * PI).is_singular());
+        assert!(!RotationVector::new(LocalTwist::zeros()).is_singular());
     }
 }

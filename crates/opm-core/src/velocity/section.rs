@@ -1,12 +1,11 @@
 //! One section of a leg at one configuration: from the twist of its outer link to its joints' rates.
 
-use super::local::{Local, linear, quarter};
 use super::rotation_vector::RotationVector;
 use super::screws::Screws;
 use super::{SINGULAR, SingularCause};
-use crate::chain::{Amount, Chain};
+use crate::chain::Chain;
+use crate::group::{JointDisplacement, LocalTwist, SubspaceKind};
 use crate::manipulator::CompiledSection;
-use crate::task::SubspaceKind;
 use nalgebra::Matrix3;
 
 /// A section's screws as they have moved, and the reciprocal ones.
@@ -14,9 +13,9 @@ use nalgebra::Matrix3;
 pub(crate) struct Differential {
     pub screws: Screws,
     /// The reciprocal screws times the determinant: as regular as the screws.
-    pub crosses: [Local; 3],
+    pub crosses: [LocalTwist; 3],
     /// Rows that give the rates; zeros where there are none.
-    pub reciprocal: [Local; 3],
+    pub reciprocal: [LocalTwist; 3],
     /// The determinant over what it is measured in: dimensionless.
     pub measure: f64,
     /// Where the section is a spherical joint: it has no screws, but three coordinates.
@@ -30,15 +29,15 @@ impl Differential {
     pub fn new(
         kind: SubspaceKind,
         section: &CompiledSection,
-        amounts: &[Amount; 3],
-        vector: impl FnOnce(usize) -> Local,
+        amounts: &[JointDisplacement; 3],
+        vector: impl FnOnce(usize) -> LocalTwist,
     ) -> Self {
         if let Chain::Ball(ball) = &section.chain {
             let first = section.slots[0].map_or(0, |slot| slot.coordinate);
             let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
             let rows = ball.axes * vector.rates_of_spin();
             let reciprocal = if vector.is_singular() {
-                [Local::zeros(); 3]
+                [LocalTwist::zeros(); 3]
             } else {
                 [0, 1, 2].map(|i| rows.row(i).transpose())
             };
@@ -54,7 +53,7 @@ impl Differential {
         let (crosses, determinant) = screws.reciprocal();
         let measure = determinant / section.scale;
         let reciprocal = if measure.abs() < SINGULAR {
-            [Local::zeros(); 3]
+            [LocalTwist::zeros(); 3]
         } else {
             let inverse = determinant.recip();
             crosses.map(|row| row * inverse)
@@ -74,20 +73,25 @@ impl Differential {
 
     /// The rates of its joints, base first, for a twist of its outer link.
     #[inline]
-    pub fn rates(&self, twist: &Local) -> Local {
-        Local::from_fn(|joint, _| self.rate(joint, twist))
+    pub fn rates(&self, twist: &LocalTwist) -> LocalTwist {
+        LocalTwist::from_fn(|joint, _| self.rate(joint, twist))
     }
 
     /// The rate of one joint.
     #[inline]
-    pub fn rate(&self, joint: usize, twist: &Local) -> f64 {
+    pub fn rate(&self, joint: usize, twist: &LocalTwist) -> f64 {
         self.reciprocal[joint].dot(twist)
     }
 
     /// The accelerations of its joints for a twist of its outer link, that twist's derivative, and the
     /// rates that go with them.
     #[inline]
-    pub fn accelerations(&self, twist: &Local, derivative: &Local, rates: &Local) -> Local {
+    pub fn accelerations(
+        &self,
+        twist: &LocalTwist,
+        derivative: &LocalTwist,
+        rates: &LocalTwist,
+    ) -> LocalTwist {
         match &self.ball {
             Some(vector) => {
                 let axes = Matrix3::from_rows(&self.screws.moved.map(|screw| screw.transpose()));
@@ -95,25 +99,6 @@ impl Differential {
                 self.rates(derivative) + axes * bias
             }
             None => self.rates(&(derivative - self.screws.bias(rates))),
-        }
-    }
-}
-
-/// What the determinant of a chain's screws is measured in, so that it has no dimension: links in a
-/// plane, where two neighbouring pivots are on one; `size` where a slider is between two pivots. On
-/// an axis the determinant does not change, and is its own measure.
-pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[Local; 3], size: f64) -> f64 {
-    match kind {
-        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
-        SubspaceKind::Cylindrical => home[0].cross(&home[1]).z.abs(),
-        SubspaceKind::Planar => {
-            let pivot = |s: &Local| (s.x != 0.0).then(|| quarter(linear(s)) * s.x);
-            match home.each_ref().map(pivot) {
-                [Some(a), Some(b), Some(c)] => (b - a).norm() * (c - b).norm(),
-                [Some(a), Some(b), None] | [None, Some(a), Some(b)] => (b - a).norm(),
-                [Some(_), None, Some(_)] => size,
-                _ => 1.0,
-            }
         }
     }
 }

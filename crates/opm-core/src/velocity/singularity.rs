@@ -22,10 +22,9 @@
 
 use super::Jacobians;
 use super::closure::{cut_unit, inputs, row_unit, section_rows, twist_unit, volume};
-use super::jacobian::{beside, whole};
-use super::local::Local;
+use crate::group::LocalTwist;
 use crate::manipulator::{Manipulator, Section};
-use crate::svd::Svd;
+use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
 
 /// The share of the largest component that a leg needs to count as a cause of a parallel singularity.
@@ -84,8 +83,8 @@ struct Layout {
     /// Every leg's column for the rate along its cut, where that is a motion of the sections.
     cuts: Vec<Option<usize>>,
     cut_count: usize,
-    lower_basis: Vec<Local>,
-    upper_basis: Vec<Local>,
+    lower_basis: Vec<LocalTwist>,
+    upper_basis: Vec<LocalTwist>,
     /// Leg and section of every row.
     rows: Vec<Cause>,
     lower_rows: usize,
@@ -113,7 +112,7 @@ impl Layout {
         // Where some leg is fixed to it, the frame between the sections moves along I as well.
         let fixed = legs.iter().any(|leg| leg.cut == Section::Upper && leg.imaginary.is_none());
         let lower_basis =
-            if fixed { whole(task.lower.kind) } else { beside(task.lower_cut, task.lower.kind) };
+            if fixed { task.lower.kind.basis() } else { task.lower_intersection.complement() };
         let rows_of = |section: Section| {
             legs.iter().enumerate().flat_map(move |(number, leg)| {
                 let count = inputs(leg, section).into_iter().filter(|input| *input).count();
@@ -122,7 +121,7 @@ impl Layout {
         };
         let lower_rows = rows_of(Section::Lower).count();
         let rows = rows_of(Section::Lower).chain(rows_of(Section::Upper)).collect();
-        let upper_basis = whole(task.upper.kind);
+        let upper_basis = task.upper.kind.basis();
         Self { cuts, cut_count, lower_basis, upper_basis, rows, lower_rows }
     }
 
@@ -233,13 +232,13 @@ impl Manipulator {
         let task = self.task();
         let length = self.characteristic_length();
         let split = layout.lower_columns();
-        let along = v.carried(&task.lower_cut.twist(task.lower.kind));
-        let upper_along = task.upper_cut.twist(task.upper.kind);
+        let along = v.adjoint(&task.lower_intersection.unit_twist());
+        let upper_along = task.upper_intersection.unit_twist();
         let mut row = 0;
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let kind = task.lower.kind;
             let (rows, count) = section_rows(leg, Section::Lower, &differential.lower, length);
-            let cut = cut_unit(leg, task.lower_cut, length) / row_unit(kind, length);
+            let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
                 if let Some(column) = layout.cuts[number] {
                     closure[(row, column)] = match leg.cut {
@@ -252,7 +251,7 @@ impl Manipulator {
                 }
                 for (i, twist) in layout.lower_basis.iter().enumerate() {
                     closure[(row, layout.cut_count + i)] =
-                        w.dot(&v.carried(twist)) * twist_unit(kind, twist, length);
+                        w.dot(&v.adjoint(twist)) * twist_unit(kind, twist, length);
                 }
                 row += 1;
             }
@@ -260,7 +259,7 @@ impl Manipulator {
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let (rows, count) = section_rows(leg, Section::Upper, &differential.upper, length);
             let kind = task.upper.kind;
-            let cut = cut_unit(leg, task.lower_cut, length) / row_unit(kind, length);
+            let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
                 if let Some(column) = layout.cuts[number] {
                     closure[(row, column)] = match leg.cut {
@@ -273,7 +272,7 @@ impl Manipulator {
                         Section::Upper => *twist,
                         Section::Lower => {
                             let amount = cuts[number].inverse();
-                            task.upper_cut.carried(kind, amount, twist)
+                            task.upper_intersection.adjoint(amount, twist)
                         }
                     };
                     closure[(row, split + i)] = w.dot(&carried) * twist_unit(kind, twist, length);

@@ -1,14 +1,14 @@
 //! Planar chains with one joint held: what is left are two joints, a link, a slider or a cross slide.
 
-use super::{PlanarChain, PlanarDisplacement, PlanarJoint};
-use crate::chain::Amount;
+use super::{PlanarChain, PlanarJoint};
 use crate::chain::surface::Surface;
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use PlanarJoint::{Prismatic, Revolute};
 use nalgebra::Complex;
 
 impl PlanarChain {
     /// The targets on which the chain closes with joint number `joint` at `amount`.
-    pub(in crate::chain) fn held(&self, joint: usize, amount: Amount) -> Surface {
+    pub(in crate::chain) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
         let joints = self.joints();
         let hold = joints[joint].displacement(amount);
         let free = PlanarDisplacement::IDENTITY;
@@ -23,12 +23,12 @@ impl PlanarChain {
     }
 
     /// The amounts of the middle joint at which the two branches meet, or two slides are parallel.
-    pub(in crate::chain) fn folds(&self) -> Vec<Amount> {
+    pub(in crate::chain) fn folds(&self) -> Vec<JointDisplacement> {
         // A rotation that lays one direction along another, and that against it.
         let laid = |from: Complex<f64>, to: Complex<f64>, reversed: bool| {
             let turn = to * from.conj();
             let turn = if reversed { turn.conj() } else { turn };
-            vec![Amount::Turn(turn), Amount::Turn(-turn)]
+            vec![JointDisplacement::Direction(turn), JointDisplacement::Direction(-turn)]
         };
         let square = Complex::<f64>::i();
         match self.joints() {
@@ -42,7 +42,7 @@ impl PlanarChain {
                 laid(along, (p2 - p1) * square, reversed)
             }
             [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
-                vec![Amount::Value(-((p3 - p1) * along.conj()).re)]
+                vec![JointDisplacement::Value(-((p3 - p1) * along.conj()).re)]
             }
             [Prismatic { along: d1 }, Revolute { reversed, .. }, Prismatic { along: d3 }] => {
                 laid(d3, d1, reversed)

@@ -1,8 +1,9 @@
 //! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
 
-use super::{Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, Rpp};
+use super::{Branch, ChainError, Pivot, PlanarJoint, Rpp};
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm};
+use crate::group::PlanarDisplacement;
 use nalgebra::Complex;
 
 /// Two sliders, then a pivot: one solution.

@@ -1,9 +1,10 @@
 //! PRP: a pivot between two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
+use super::{Branch, Pivot, PlanarJoint, ReachDeficit, along, cross};
 use crate::chain::region::{Region, parallelogram};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM};
+use crate::chain::{Attempt, ClosedForm, DEGENERATE, REACH_TOLERANCE};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// A slider, a pivot and a slider: one solution, none where the two slides come to be parallel.
@@ -55,21 +56,25 @@ impl ClosedForm for Prp {
         let turned = target.rotation * self.slides[1];
         let (s1, s3) = along(self.slides[0], turned, self.moved(target));
         let turn = self.pivot.amount(target.rotation);
-        let crossing = cross(self.slides[0], turned).abs() > RIM;
-        let amounts = [Amount::Value(s1), turn, Amount::Value(s3)];
+        let crossing = cross(self.slides[0], turned).abs() > REACH_TOLERANCE;
+        let amounts = [JointDisplacement::Value(s1), turn, JointDisplacement::Value(s3)];
         Attempt { amounts, holds: crossing, beyond: false }
     }
 
     /// With the slides parallel only one line is in reach, and on it the sliders are free: they are then
     /// given as the inner one alone.
     #[cold]
-    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &PlanarDisplacement,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let moved = self.moved(target);
         let aside = cross(self.slides[0], moved).abs();
-        if aside.is_nan() || aside > RIM * moved.norm() {
-            return Err(Gap::length(aside));
+        if aside.is_nan() || aside > REACH_TOLERANCE * moved.norm() {
+            return Err(ReachDeficit::length(aside));
         }
-        let along = Amount::Value((moved * self.slides[0].conj()).re);
-        Ok([along, self.pivot.amount(target.rotation), Amount::Value(0.0)])
+        let along = JointDisplacement::Value((moved * self.slides[0].conj()).re);
+        Ok([along, self.pivot.amount(target.rotation), JointDisplacement::Value(0.0)])
     }
 }

@@ -1,10 +1,11 @@
 //! PRR: a slider that carries a link (Eqs. 13-16 of the paper, with the division by 2 that its
 //! Eq. 16 lacks).
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
+use super::{Branch, ChainError, Pivot, PlanarJoint, ReachDeficit};
 use crate::chain::region::{Band, Convex, Region, Stadium};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, RIM};
+use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
@@ -38,7 +39,7 @@ impl Prr {
     /// Whether the link can leave this square along the slide, the rim included.
     #[inline]
     fn closes(&self, square: f64) -> bool {
-        square >= -2.0 * RIM * self.link_square
+        square >= -2.0 * REACH_TOLERANCE * self.link_square
     }
 
     /// The home position of the outer pivot, which a target displaces.
@@ -61,9 +62,11 @@ impl Prr {
             Branch::Plus => (self.slide, low, high),
             Branch::Minus => (-self.slide, -high, -low),
         };
-        let stadium = |at: f64| Stadium::new(home + along * at, along, self.link_square, RIM);
+        let stadium =
+            |at: f64| Stadium::new(home + along * at, along, self.link_square, REACH_TOLERANCE);
         let whole = if start == f64::NEG_INFINITY {
-            let (across, radius) = (along * Complex::i(), self.link_square.sqrt() * (1.0 + RIM));
+            let (across, radius) =
+                (along * Complex::i(), self.link_square.sqrt() * (1.0 + REACH_TOLERANCE));
             let middle = across.re * home.re + across.im * home.im;
             Convex::Bands([Band::new(across, [middle - radius, middle + radius]); 2])
         } else {
@@ -85,13 +88,21 @@ impl ClosedForm for Prr {
         let link = outer - self.pivots[0].at - self.slide * slider;
         let r2 = link * self.link.conj();
         let r3 = target.rotation * r2.conj();
-        let amounts = [Amount::Value(slider), self.pivots[0].amount(r2), self.pivots[1].amount(r3)];
+        let amounts = [
+            JointDisplacement::Value(slider),
+            self.pivots[0].amount(r2),
+            self.pivots[1].amount(r3),
+        ];
         Attempt::decided(amounts, self.closes(square))
     }
 
     #[cold]
-    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &PlanarDisplacement,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let local = (target.apply(self.outer()) - self.pivots[0].at) * self.slide.conj();
-        Err(Gap::length(local.im.abs() - self.link.norm()))
+        Err(ReachDeficit::length(local.im.abs() - self.link.norm()))
     }
 }

@@ -1,9 +1,10 @@
 //! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
 
-use super::{Amount, Branch, ChainError, Pivot, PlanarDisplacement, PlanarJoint, along, cross};
+use super::{Branch, ChainError, Pivot, PlanarJoint, along, cross};
 use crate::chain::region::parallelogram;
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, DEGENERATE};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// A pivot, then two sliders: one solution.
@@ -47,6 +48,6 @@ impl ClosedForm for Rpp {
         let moved = target.apply(self.pivot.at) - self.pivot.at;
         let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
         let turn = self.pivot.amount(target.rotation);
-        Attempt::decided([turn, Amount::Value(s2), Amount::Value(s3)], true)
+        Attempt::decided([turn, JointDisplacement::Value(s2), JointDisplacement::Value(s3)], true)
     }
 }

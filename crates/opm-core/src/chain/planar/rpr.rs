@@ -1,9 +1,10 @@
 //! RPR: a telescope between two pivots.
 
-use super::{Amount, Branch, Gap, Pivot, PlanarDisplacement, PlanarJoint};
+use super::{Branch, Pivot, PlanarJoint, ReachDeficit};
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, RIM, direction};
+use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE, direction};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// A pivot, a slider and a pivot. `+` where the slider's root has the plus sign: the outer pivot is
@@ -39,7 +40,8 @@ impl Rpr {
         }
         let aside = self.offset.im * self.offset.im;
         let disc = |square: f64| Convex::Disc(Disc::new(centre, square));
-        let inner = if low > 0.0 { aside + low * low } else { aside * (1.0 - 2.0 * RIM) };
+        let inner =
+            if low > 0.0 { aside + low * low } else { aside * (1.0 - 2.0 * REACH_TOLERANCE) };
         let hole = (inner > 0.0).then(|| disc(inner));
         Shape::of_places(Region { whole: disc(aside + high * high), hole }, outer)
     }
@@ -65,14 +67,18 @@ impl ClosedForm for Rpr {
         let r3 = target.rotation * r1.conj();
         let amounts = [
             self.pivots[0].amount(r1),
-            Amount::Value(ahead - self.offset.re),
+            JointDisplacement::Value(ahead - self.offset.re),
             self.pivots[1].amount(r3),
         ];
-        Attempt::decided(amounts, square >= -2.0 * RIM * aside)
+        Attempt::decided(amounts, square >= -2.0 * REACH_TOLERANCE * aside)
     }
 
     #[cold]
-    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
-        Err(Gap::length(self.offset.im.abs() - self.reach(target).norm()))
+    fn exception(
+        &self,
+        target: &PlanarDisplacement,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        Err(ReachDeficit::length(self.offset.im.abs() - self.reach(target).norm()))
     }
 }

@@ -1,8 +1,9 @@
 //! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint, Prr};
+use super::{Branch, ChainError, Pivot, PlanarJoint, Prr, ReachDeficit};
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
@@ -34,7 +35,11 @@ impl ClosedForm for Rrp {
     }
 
     #[cold]
-    fn exception(&self, target: &PlanarDisplacement, branch: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         self.0.exception(&target.inverse(), branch)
     }
 }

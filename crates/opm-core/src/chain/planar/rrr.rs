@@ -1,9 +1,10 @@
 //! RRR: a two-link arm from a fixed pivot, with a wrist.
 
-use super::{Amount, Branch, ChainError, Gap, Pivot, PlanarDisplacement, PlanarJoint};
+use super::{Branch, ChainError, Pivot, PlanarJoint, ReachDeficit};
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, DEGENERATE, RIM, direction};
+use crate::chain::{Attempt, ClosedForm, DEGENERATE, REACH_TOLERANCE, direction};
+use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
 /// Two links between three pivots. `+` where the second link turns counter-clockwise from the first.
@@ -47,12 +48,12 @@ impl Rrr {
     /// Whether the elbow can take this cosine, the rim included.
     #[inline]
     fn closes(cosine: f64) -> bool {
-        cosine.abs() <= 1.0 + RIM
+        cosine.abs() <= 1.0 + REACH_TOLERANCE
     }
 
     /// A ring about the first pivot, for the wrist.
     pub(super) fn shape(&self) -> Shape {
-        let swing = self.product * (1.0 + RIM);
+        let swing = self.product * (1.0 + REACH_TOLERANCE);
         let disc = |half_square: f64| Convex::Disc(Disc::new(self.pivots[0].at, 2.0 * half_square));
         let inner = self.mean_square - swing;
         let hole = (inner > 0.0).then(|| disc(inner));
@@ -91,9 +92,13 @@ impl ClosedForm for Rrr {
     }
 
     #[cold]
-    fn exception(&self, target: &PlanarDisplacement, _: Branch) -> Result<[Amount; 3], Gap> {
+    fn exception(
+        &self,
+        target: &PlanarDisplacement,
+        _: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let distance = (target.apply(self.wrist()) - self.pivots[0].at).norm();
         let (a, b) = (self.first.norm(), self.second.norm());
-        Err(Gap::length((distance - (a + b)).max((a - b).abs() - distance)))
+        Err(ReachDeficit::length((distance - (a + b)).max((a - b).abs() - distance)))
     }
 }

@@ -1,7 +1,7 @@
 //! Against the textbook's input-output equation, in coordinates of its own.
 
 use super::*;
-use crate::chain::unit;
+use crate::numeric::angle::unit;
 use nalgebra::{Rotation3, UnitQuaternion};
 use proptest::prelude::*;
 use std::f64::consts::PI;

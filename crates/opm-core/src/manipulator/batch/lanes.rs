@@ -1,8 +1,6 @@
 //! Numbers of many poses side by side, so that one loop works on all of them.
 
-use crate::chain::Amount;
-use crate::chain::cylindrical::CylindricalDisplacement;
-use crate::chain::planar::PlanarDisplacement;
+use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacement};
 use nalgebra::{Complex, Matrix3};
 
 /// Poses that are solved together.
@@ -93,21 +91,23 @@ impl Amounts {
     }
 
     #[inline(always)]
-    pub fn turn(&self, lane: usize) -> Amount {
-        Amount::Turn(Complex::new(self.columns[0][lane], self.columns[1][lane]))
+    pub fn turn(&self, lane: usize) -> JointDisplacement {
+        JointDisplacement::Direction(Complex::new(self.columns[0][lane], self.columns[1][lane]))
     }
 
     #[inline(always)]
-    pub fn value(&self, lane: usize) -> Amount {
-        Amount::Value(self.columns[0][lane])
+    pub fn value(&self, lane: usize) -> JointDisplacement {
+        JointDisplacement::Value(self.columns[0][lane])
     }
 
     /// Of the kind that `turns` says.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, amount: Amount) {
+    pub fn set(&mut self, lane: usize, amount: JointDisplacement) {
         match amount {
-            Amount::Turn(e) => (self.columns[0][lane], self.columns[1][lane]) = (e.re, e.im),
-            Amount::Value(value) => self.columns[0][lane] = value,
+            JointDisplacement::Direction(e) => {
+                (self.columns[0][lane], self.columns[1][lane]) = (e.re, e.im);
+            }
+            JointDisplacement::Value(value) => self.columns[0][lane] = value,
         }
     }
 }

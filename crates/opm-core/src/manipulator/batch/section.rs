@@ -2,17 +2,20 @@
 //! it is is decided outside of the loop, and what it does is what it does for one pose.
 
 use super::lanes::{Amounts, Column, Displacements, LANES, Lane, Mask};
-use crate::angle::sin_cos_reduced;
-use crate::chain::cylindrical::{CylindricalDisplacement, WithRevolute};
-use crate::chain::planar::{PlanarChain, PlanarDisplacement};
-use crate::chain::{Amount, Attempt, Branch, Chain, ClosedForm};
-use crate::leg::Section;
-use crate::limits::Limits;
-use crate::manipulator::ImaginaryJoint;
-use crate::task::{
-    Cut, Displacement, Form, SubspaceKind, Task, lower_displacement, upper_displacement,
+use crate::chain::cylindrical::WithRevolute;
+use crate::chain::limits::Limits;
+use crate::chain::planar::PlanarChain;
+use crate::chain::{Attempt, Branch, Chain, ClosedForm};
+use crate::group::{
+    Cylindrical, CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, Planar,
+    PlanarMotion, Spherical, SphericalMotion, Subgroup, SubspaceKind, TranslationalMotion,
+    TranslationalPlane,
 };
-use nalgebra::{Complex, Matrix3};
+use crate::manipulator::ImaginaryJoint;
+use crate::mechanism::leg::Section;
+use crate::numeric::angle::sin_cos_reduced;
+use crate::task::{Form, Task, lower_displacement, upper_displacement};
+use nalgebra::Matrix3;
 
 /// What a section's chain finds.
 #[derive(Clone, Debug)]
@@ -115,7 +118,7 @@ where
     let first = chain.attempt(&C::Target::load(targets, 0), branch);
     let [a, b, c] = &mut found.amounts;
     for (amounts, amount) in [&mut *a, &mut *b, &mut *c].into_iter().zip(first.amounts) {
-        amounts.turns = matches!(amount, Amount::Turn(_));
+        amounts.turns = matches!(amount, JointDisplacement::Direction(_));
     }
     for lane in 0..LANES {
         let Attempt { amounts, holds, beyond } =
@@ -140,47 +143,52 @@ pub enum Side {
 /// Moves displacements of a subspace along the intersection motion.
 #[inline(always)]
 pub fn shift(
-    (kind, cut, side): (SubspaceKind, Cut, Side),
+    (motion, side): (IntersectionMotion, Side),
     from: &Displacements,
     tau: &Amounts,
     to: &mut Displacements,
 ) {
     macro_rules! each {
-        ($wrap:ident, $type:ty, $cut:expr, $amount:ident) => {{
-            let cut = $cut;
+        ($group:ty, $motion:expr, $amount:ident) => {{
+            let motion = $motion;
             for lane in 0..LANES {
-                let displacement = Displacement::$wrap(<$type>::load(from, lane));
+                let displacement = <$group as Subgroup>::Displacement::load(from, lane);
                 match side {
-                    Side::After => cut.after(&displacement, tau.$amount(lane)),
-                    Side::Before => cut.before(&displacement, tau.$amount(lane)),
+                    Side::After => <$group>::after(&motion, &displacement, tau.$amount(lane)),
+                    Side::Before => <$group>::before(&motion, &displacement, tau.$amount(lane)),
                 }
                 .store(to, lane);
             }
         }};
     }
-    use SubspaceKind as Kind;
-    match (kind, cut, tau.turns) {
-        (Kind::Planar, Cut::Turn, true) => each!(Planar, PlanarDisplacement, Cut::Turn, turn),
-        (Kind::Planar, Cut::Turn, false) => each!(Planar, PlanarDisplacement, Cut::Turn, value),
-        (Kind::Planar, Cut::Slide(along), _) => {
-            each!(Planar, PlanarDisplacement, Cut::Slide(along), value);
+    match (motion, tau.turns) {
+        (IntersectionMotion::Planar(PlanarMotion::Turn), true) => {
+            each!(Planar, PlanarMotion::Turn, turn);
         }
-        (Kind::Spherical, Cut::Turn, true) => each!(Spherical, Matrix3<f64>, Cut::Turn, turn),
-        (Kind::Spherical, Cut::Turn, false) => each!(Spherical, Matrix3<f64>, Cut::Turn, value),
-        (Kind::Cylindrical, Cut::Turn, true) => {
-            each!(Cylindrical, CylindricalDisplacement, Cut::Turn, turn);
+        (IntersectionMotion::Planar(PlanarMotion::Turn), false) => {
+            each!(Planar, PlanarMotion::Turn, value);
         }
-        (Kind::Cylindrical, Cut::Turn, false) => {
-            each!(Cylindrical, CylindricalDisplacement, Cut::Turn, value);
+        (IntersectionMotion::Planar(PlanarMotion::Slide(along)), _) => {
+            each!(Planar, PlanarMotion::Slide(along), value);
         }
-        (Kind::Cylindrical, Cut::Advance, _) => {
-            each!(Cylindrical, CylindricalDisplacement, Cut::Advance, value);
+        (IntersectionMotion::Spherical(SphericalMotion::Turn), true) => {
+            each!(Spherical, SphericalMotion::Turn, turn);
         }
-        (Kind::TranslationalPlane, Cut::Slide(along), _) => {
-            each!(Translational, Complex<f64>, Cut::Slide(along), value);
+        (IntersectionMotion::Spherical(SphericalMotion::Turn), false) => {
+            each!(Spherical, SphericalMotion::Turn, value);
         }
-        // A subspace that does not hold the motion: Subspace::cut never pairs them.
-        _ => *to = *from,
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), true) => {
+            each!(Cylindrical, CylindricalMotion::Turn, turn);
+        }
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), false) => {
+            each!(Cylindrical, CylindricalMotion::Turn, value);
+        }
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Advance), _) => {
+            each!(Cylindrical, CylindricalMotion::Advance, value);
+        }
+        (IntersectionMotion::Translational(TranslationalMotion::Slide(along)), _) => {
+            each!(TranslationalPlane, TranslationalMotion::Slide(along), value);
+        }
     }
 }
 
@@ -221,7 +229,7 @@ pub fn report(
 #[inline(always)]
 pub fn imaginary(joint: &ImaginaryJoint, tau: &Amounts, values: &mut Column) {
     let (home, sign) = (joint.home, joint.sign);
-    let value = |amount: Amount| home + sign * amount.value();
+    let value = |amount: JointDisplacement| home + sign * amount.value();
     if tau.turns {
         for (lane, to) in values.iter_mut().enumerate() {
             *to = value(tau.turn(lane));
@@ -239,7 +247,7 @@ pub fn unwind(counts: bool, cut: &Amounts, tau: &mut Amounts) {
     if counts && cut.turns {
         tau.turns = false;
         for lane in 0..LANES {
-            tau.set(lane, Amount::Value(cut.turn(lane).value()));
+            tau.set(lane, JointDisplacement::Value(cut.turn(lane).value()));
         }
     } else {
         tau.clone_from(cut);

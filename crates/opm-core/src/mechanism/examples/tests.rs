@@ -1,9 +1,9 @@
 use super::*;
-use crate::joint::Joint;
-use crate::leg::Leg;
+use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
 use crate::mechanism::file::{self, Digits};
-use crate::screw::Screw;
+use crate::mechanism::joint::Joint;
+use crate::mechanism::leg::Leg;
 use nalgebra::{DMatrix, Point3, Vector3};
 
 /// Numbers in the joint lists have 12 decimals, of millimetres and degrees; unit vectors have 14.

@@ -1,9 +1,11 @@
 //! What every family needs to place its joints at home, and what can go wrong with that.
 
-use crate::chain::{Amount, ChainError, Gap};
-use crate::joint::{Joint, Quantity};
-use crate::leg::Leg;
+use crate::chain::{ChainError, ReachDeficit};
+use crate::group::JointDisplacement;
 use crate::mechanism::file::FileUnits;
+use crate::mechanism::joint::Joint;
+use crate::mechanism::leg::Leg;
+use crate::numeric::Quantity;
 use nalgebra::Isometry3;
 use std::f64::consts::PI;
 use std::fmt;
@@ -98,7 +100,7 @@ pub enum AssemblyReason {
         /// The links that are too short or too long.
         links: &'static str,
         /// By how much.
-        gap: Gap,
+        gap: ReachDeficit,
     },
     /// A joint's value at home is not within its limits.
     OutsideLimits {
@@ -229,7 +231,7 @@ impl From<ChainError> for Problems {
 }
 
 /// A leg that does not reach, by its links.
-pub(super) fn out_of_reach(links: &'static str) -> impl Fn(Gap) -> Problems {
+pub(super) fn out_of_reach(links: &'static str) -> impl Fn(ReachDeficit) -> Problems {
     move |gap| Problems(vec![(None, AssemblyReason::OutOfReach { links, gap })])
 }
 
@@ -261,7 +263,7 @@ pub(super) fn all_legs<'a>(
 /// these values: each moves with the joints before it (product of exponentials). An angle is taken
 /// modulo a turn: in `(-π, π]`, or within the joint's limits where it has some.
 pub(super) fn carried(
-    reference: impl IntoIterator<Item = (Joint, Amount)>,
+    reference: impl IntoIterator<Item = (Joint, JointDisplacement)>,
 ) -> Result<Vec<Joint>, Problems> {
     let mut g = Isometry3::identity();
     let mut joints = Vec::new();
@@ -286,11 +288,11 @@ pub(super) fn carried(
     problems.none().map(|()| joints)
 }
 
-fn home_value(amount: Amount, limits: Option<[f64; 2]>) -> f64 {
+fn home_value(amount: JointDisplacement, limits: Option<[f64; 2]>) -> f64 {
     match (amount, limits) {
-        (Amount::Turn(_), Some([low, high])) => amount.nearest((low + high) / 2.0),
+        (JointDisplacement::Direction(_), Some([low, high])) => amount.nearest((low + high) / 2.0),
         // atan2 gives -π for a turn of -1 with a negative zero.
-        _ if matches!(amount, Amount::Turn(_)) && amount.value() <= -PI => PI,
+        _ if matches!(amount, JointDisplacement::Direction(_)) && amount.value() <= -PI => PI,
         _ => amount.value(),
     }
 }

@@ -2,8 +2,8 @@
 //! Files are read and written by this list, and parameters changed by name without a file.
 
 use super::Family;
-use crate::joint::Quantity;
 use crate::mechanism::file::{FileUnits, checks};
+use crate::numeric::Quantity;
 use std::fmt::Write;
 
 /// One parameter of home or of a leg.

@@ -33,11 +33,13 @@ pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};
 use super::slider::{SliderChain, onto, pivot};
-use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
-use crate::chain::{Branch, unit};
-use crate::joint::{Joint, JointKind};
-use crate::leg::{ImaginaryLabel, Leg};
+use crate::chain::Branch;
+use crate::chain::planar::{PlanarChain, PlanarJoint};
+use crate::group::PlanarDisplacement;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

@@ -23,11 +23,12 @@ pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};
 use super::slider::{SliderChain, onto, pivot};
+use crate::chain::Branch;
 use crate::chain::planar::PlanarChain;
 use crate::chain::spherical::SphericalChain;
-use crate::chain::{Amount, Branch};
-use crate::joint::{Joint, JointKind};
-use crate::leg::{ImaginaryLabel, Leg};
+use crate::group::JointDisplacement;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::{Complex, Point3, Rotation3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -205,8 +206,8 @@ impl SliderLeg {
             .map_err(out_of_reach("arcs"))?;
 
         // Lower section: the slider and both revolutes bring P and the direction θ1 there.
-        let place = Complex::new(home.x, home.y) + theta1.turn() * self.a2;
-        let lower = chain.reach(place, theta1.turn(), self.slider)?;
+        let place = Complex::new(home.x, home.y) + theta1.unit_direction() * self.a2;
+        let lower = chain.reach(place, theta1.unit_direction(), self.slider)?;
 
         let name = |symbol: &str| format!("{symbol}{number}");
         let limits = &self.limits;
@@ -269,7 +270,7 @@ impl ArmLeg {
 }
 
 /// An angle in `[0, 2π)`.
-fn positive_turn(angle: Amount) -> f64 {
+fn positive_turn(angle: JointDisplacement) -> f64 {
     let angle = angle.value().rem_euclid(TAU);
     // A tiny negative angle is rounded up to a whole turn.
     if angle < TAU { angle } else { 0.0 }

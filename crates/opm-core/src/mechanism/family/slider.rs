@@ -9,9 +9,11 @@
 //! laid out where `S = φ1 = φ2 = 0`: the link a1, and what it carries, lie along the slider.
 
 use super::assembly::{Problems, out_of_reach};
-use crate::chain::planar::{PlanarChain, PlanarDisplacement, PlanarJoint};
-use crate::chain::{Amount, Branch, unit};
-use crate::joint::{Joint, JointKind};
+use crate::chain::Branch;
+use crate::chain::planar::{PlanarChain, PlanarJoint};
+use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -38,7 +40,7 @@ impl SliderChain {
         place: Complex<f64>,
         direction: Complex<f64>,
         branch: Branch,
-    ) -> Result<[Amount; 3], Problems> {
+    ) -> Result<[JointDisplacement; 3], Problems> {
         let joints = [PlanarJoint::Prismatic { along: self.along }, pivot(self.a), pivot(self.c)];
         PlanarChain::new(joints)?
             .inverse(&onto(self.c, place, direction * self.along.conj()), branch)

@@ -21,12 +21,13 @@ mod file;
 pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried};
-use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain, CylindricalDisplacement};
+use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain};
 use crate::chain::translational::TranslationalChain;
-use crate::chain::{Amount, unit};
-use crate::joint::{Joint, JointKind};
-use crate::leg::{ImaginaryLabel, Leg};
+use crate::group::{CylindricalDisplacement, JointDisplacement};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -148,7 +149,7 @@ impl TranslationalLeg {
         .inverse(&CylindricalDisplacement { angle: home.phi, advance: 0.0 });
         // A revolute joint is at home's φ too, whole turns included, unless its limits say where.
         let phi = match (self.pitch, self.limits.phi) {
-            (None, None) => Amount::Value(home.phi),
+            (None, None) => JointDisplacement::Value(home.phi),
             _ => phi,
         };
 

@@ -3,7 +3,7 @@
 
 use super::reader::LARGEST;
 use super::units::FileUnits;
-use crate::joint::Quantity;
+use crate::numeric::Quantity;
 
 /// A number, neither NaN nor infinite.
 pub(crate) fn finite(value: f64) -> Result<f64, String> {

@@ -3,9 +3,10 @@
 use super::leg_name;
 use super::problem::Places;
 use super::reader::{Table, UniqueNames, Value, all};
-use crate::joint::{Joint, JointKind, Quantity};
-use crate::leg::{Leg, Section};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{FrameHints, Mechanism, TaskHints, TaskKey};
+use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
 const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];

@@ -6,7 +6,7 @@ use super::checks;
 use super::hint::expected_one_of;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
-use crate::joint::Quantity;
+use crate::numeric::Quantity;
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 use toml::Spanned;

@@ -33,7 +33,7 @@ joints = [
 
 #[test]
 fn every_kind_of_joint_is_read_in_si() {
-    use crate::joint::JointKind;
+    use crate::mechanism::joint::JointKind;
     use nalgebra::{Point3, Unit, Vector3};
 
     let file = read(JOINTS).unwrap();
@@ -61,7 +61,7 @@ fn every_kind_of_joint_is_read_in_si() {
 
     let [u1, c1, s1] = &mechanism.legs[1].joints[..] else { panic!() };
     assert_eq!(u1.kind, JointKind::Universal { second: Vector3::y_axis() });
-    let home = |joint: &crate::joint::Joint| -> Vec<f64> {
+    let home = |joint: &crate::mechanism::joint::Joint| -> Vec<f64> {
         joint.coordinates.iter().map(|c| c.home).collect()
     };
     assert_eq!(home(u1), [10.0_f64.to_radians(), -20.0_f64.to_radians()]);

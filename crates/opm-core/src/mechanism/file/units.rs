@@ -1,7 +1,7 @@
 //! The units that a mechanism file names for its own numbers; everything after reading is SI.
 
-use crate::joint::Quantity;
-use crate::number::readable;
+use crate::numeric::Quantity;
+use crate::numeric::number::readable;
 use std::fmt;
 
 /// A unit of length.

@@ -1,8 +1,9 @@
 //! A mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use crate::joint::{Joint, JointKind, Quantity};
+use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::{Mechanism, TaskHints};
+use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
 

@@ -1,8 +1,8 @@
 use super::*;
-use crate::joint::JointCoordinate;
 use crate::mechanism::examples;
 use crate::mechanism::family::Family;
 use crate::mechanism::file;
+use crate::mechanism::joint::JointCoordinate;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 

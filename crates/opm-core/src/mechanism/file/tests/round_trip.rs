@@ -1,8 +1,8 @@
 //! A random mechanism, written and read again, is the same.
 
-use crate::joint::{Joint, JointKind};
-use crate::leg::Leg;
 use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::Leg;
 use crate::mechanism::{FrameHints, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;

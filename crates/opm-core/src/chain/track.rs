@@ -1,11 +1,12 @@
 //! Where legs that hold all but one of their lower joints let the axis of the intersection motion go,
 //! and where two such tracks meet: two circles or lines in the plane, two cones about a centre.
 
-use super::VERGE;
-use super::condition::{Condition, QUARTER, dot, rotation};
-use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
-use crate::chain::{Amount, Chain};
-use crate::task::Displacement;
+use super::condition::{Condition, QUARTER, VERGE, dot};
+use crate::chain::Chain;
+use crate::chain::planar::PlanarJoint;
+use crate::group::{
+    Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind, mismatch, rotation_about,
+};
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// Where the axis of a rotation that two subspaces share can be.
@@ -33,7 +34,7 @@ impl Track {
     }
 
     /// Of a chain that holds every joint but `free`.
-    pub fn of_chain(chain: &Chain, free: usize, amounts: &[Amount; 3]) -> Option<Self> {
+    pub fn of_chain(chain: &Chain, free: usize, amounts: &[JointDisplacement; 3]) -> Option<Self> {
         match chain {
             Chain::Planar(chain) => {
                 let joints = chain.joints();
@@ -57,8 +58,9 @@ impl Track {
             Chain::Spherical(chain) => {
                 let axes = chain.axes();
                 let held = |range: std::ops::Range<usize>| {
-                    range
-                        .fold(Matrix3::identity(), |g, i| g * rotation(&axes[i], amounts[i].turn()))
+                    range.fold(Matrix3::identity(), |g, i| {
+                        g * rotation_about(&axes[i], amounts[i].unit_direction())
+                    })
                 };
                 let axis = held(free + 1..3) * Vector3::z();
                 let cosine = axes[free].dot(&axis);
@@ -109,7 +111,10 @@ impl Track {
                 let signs: &[f64] = if left > 0.0 { &[1.0, -1.0] } else { &[1.0] };
                 Some(signs.iter().map(|sign| pointing(&(middle + aside * *sign))).collect())
             }
-            _ => unreachable!("tracks in two kinds of subspace"),
+            (Self::Cone { .. }, Self::Circle { .. } | Self::Line { .. })
+            | (Self::Circle { .. } | Self::Line { .. }, Self::Cone { .. }) => {
+                mismatch(SubspaceKind::Planar, SubspaceKind::Spherical)
+            }
         }
     }
 }
@@ -135,7 +140,7 @@ fn on_line(
 }
 
 fn translation(z: Complex<f64>) -> Displacement {
-    Displacement::Planar(PlanarDisplacement { rotation: Complex::new(1.0, 0.0), translation: z })
+    PlanarDisplacement::translation(z).into()
 }
 
 /// A rotation that brings the third direction to `u`.

@@ -1,8 +1,8 @@
 //! The connected subgroups of SE(3), and which of them a set of screws generates.
 
 use super::{Basis, Frame, TOLERANCE};
-use crate::screw::Screw;
-use crate::svd::Svd;
+use crate::group::screw::Screw;
+use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, Matrix3, Point3, Unit, Vector3, Vector6};
 use std::fmt;
 

@@ -1,8 +1,8 @@
 //! Orthonormal bases of sets of normalised screws.
 
 use super::TOLERANCE;
-use crate::screw::Screw;
-use crate::svd::Svd;
+use crate::group::screw::Screw;
+use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, Vector6};
 
 /// At most six orthonormal six-vectors, on the stack.

@@ -2,12 +2,11 @@
 //! linear in the pose, and are solved once for all actuated joints. For the 2-PPR + PPH manipulator this
 //! is the 3×3 system of its three sliders (Eqs. 27-28 of the paper).
 
-use super::along::direction;
-use super::condition::{Condition, flat_joints};
-use super::plan::HeldLeg;
-use crate::chain::Amount;
-use crate::manipulator::{CompiledLeg, Section};
-use crate::task::{Displacement, SubspaceKind, Task};
+use super::super::{CompiledLeg, Section};
+use super::HeldLeg;
+use crate::chain::condition::{Condition, flat_joints};
+use crate::group::{Displacement, JointDisplacement};
+use crate::task::Task;
 use nalgebra::{DMatrix, DVector};
 
 /// A diagonal entry of the triangular factor this small beside the largest: the equations are dependent.
@@ -34,7 +33,7 @@ impl Flat {
             // b has no share of the intersection motion: v takes it all.
             left: {
                 let mut left = vec![0.0; 4 + legs.len()];
-                left[2..4].copy_from_slice(&direction(&task.upper_cut));
+                left[2..4].copy_from_slice(&task.upper_intersection.sum());
                 left
             },
             right: vec![0.0; drives],
@@ -43,8 +42,8 @@ impl Flat {
             for section in [Section::Lower, Section::Upper] {
                 let compiled = leg.section(section);
                 let (first, held, cut, sign) = match section {
-                    Section::Lower => (0, &held.lower, &task.lower_cut, 1.0),
-                    Section::Upper => (2, &held.upper, &task.upper_cut, -1.0),
+                    Section::Lower => (0, &held.lower, &task.lower_intersection, 1.0),
+                    Section::Upper => (2, &held.upper, &task.upper_intersection, -1.0),
                 };
                 let joints = flat_joints(&compiled.chain)?;
                 let cut_slot = (section == leg.cut).then_some(match section {
@@ -52,14 +51,14 @@ impl Flat {
                     Section::Upper => 0,
                 });
                 for slot in held.iter().copied().chain(cut_slot) {
-                    let one = Condition::new(&compiled.chain, slot, Amount::Value(1.0))?;
+                    let one = Condition::new(&compiled.chain, slot, JointDisplacement::Value(1.0))?;
                     let Condition::Flat { normal: [a, b], .. } = one else { return None };
                     let mut row = Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; drives] };
                     row.left[first] = a;
                     row.left[first + 1] = b;
-                    let [p, q] = direction(cut);
+                    let [p, q] = cut.sum();
                     // v + I τ, or b − I τ, is what the real joints make; in a chain with the cut, the
-                    // row of its other joint is square to I.
+                    // row of its other joint is perpendicular to I.
                     row.left[4 + number] = sign * (a * p + b * q);
                     if Some(slot) != cut_slot {
                         let drive = compiled.slots[slot]?.drive?;
@@ -71,12 +70,8 @@ impl Flat {
             }
         }
         // Lengths in sizes: then no row or column is small by its units alone.
-        let lengths = |kind: SubspaceKind| match kind {
-            SubspaceKind::Cylindrical => [1.0, size],
-            _ => [size, size],
-        };
-        let mut scale = lengths(task.lower.kind).to_vec();
-        scale.extend(lengths(task.upper.kind));
+        let mut scale = task.lower.kind.sum_units(size).to_vec();
+        scale.extend(task.upper.kind.sum_units(size));
         scale.extend(vec![size; legs.len()]);
         let columns = scale.len();
         let mut left = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i].left[j] * scale[j]);
@@ -104,6 +99,6 @@ impl Flat {
     /// `v` and `b` for displacements of the actuated joints from home.
     pub fn solve(&self, task: &Task, actuated: &[f64]) -> [Displacement; 2] {
         let x = &self.matrix * DVector::from_column_slice(actuated);
-        [task.lower.kind.flat(x[0], x[1]), task.upper.kind.flat(x[2], x[3])]
+        [task.lower.kind.of_sum([x[0], x[1]]), task.upper.kind.of_sum([x[2], x[3]])]
     }
 }

@@ -1,14 +1,15 @@
 //! In which order the sections of a mechanism are solved forwards: found once, from which joints are
 //! actuated and what the two subspaces are.
 
-use super::along::direction;
-use super::condition::{Condition, flat_joints};
-use super::flat::Flat;
-use super::track::Track;
-use crate::chain::cylindrical::CoaxialJoint;
-use crate::chain::{Amount, Chain};
-use crate::manipulator::{CompiledLeg, CompiledSection, Section};
-use crate::task::{SubspaceKind, Task};
+mod flat;
+
+use super::{CompiledLeg, CompiledSection, Section};
+use crate::chain::Chain;
+use crate::chain::condition::{Condition, flat_joints};
+use crate::chain::track::Track;
+use crate::group::JointDisplacement;
+use crate::task::Task;
+use flat::Flat;
 
 /// Why a mechanism's forward kinematics have no closed form here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -87,7 +88,7 @@ impl Plan {
         {
             return Err(NoClosedForm::Turns);
         }
-        if adds_up(task.lower.kind) && adds_up(task.upper.kind) {
+        if task.lower.kind.commutes() && task.upper.kind.commutes() {
             let flat = Flat::new(task, legs, &held, size).ok_or(NoClosedForm::Lower)?;
             return Ok(Self { legs: held, anchor: Anchor::Flat(flat) });
         }
@@ -104,27 +105,23 @@ impl Plan {
 
 /// Whether a section on one axis has screws, and actuated revolutes.
 fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool {
-    let joints = legs.iter().map(|leg| match &leg.section(section).chain {
-        Chain::Cylindrical(chain) => *chain.joints(),
-        _ => [CoaxialJoint { turn: 0.0, advance: 1.0 }; 2],
-    });
-    let screw = |joint: &CoaxialJoint| joint.turn != 0.0 && joint.advance != 0.0;
-    let screws = joints.clone().flatten().any(|joint| screw(&joint));
-    let driven = joints.zip(held).any(|(joints, held)| {
+    let (mut screws, mut driven) = (false, false);
+    for (leg, held) in legs.iter().zip(held) {
+        let joints = match &leg.section(section).chain {
+            Chain::Cylindrical(chain) => chain.joints(),
+            // Chains in other subspaces have no screws.
+            Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
+                return false;
+            }
+        };
         let held = match section {
             Section::Lower => &held.lower,
             Section::Upper => &held.upper,
         };
-        held.iter().any(|&slot| slot < 2 && joints[slot].advance == 0.0)
-    });
-    screws && driven
-}
-
-pub fn adds_up(kind: SubspaceKind) -> bool {
-    match kind {
-        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => true,
-        SubspaceKind::Planar | SubspaceKind::Spherical => false,
+        screws |= joints.iter().any(|joint| joint.turn != 0.0 && joint.advance != 0.0);
+        driven |= held.iter().any(|&slot| joints[slot].advance == 0.0);
     }
+    screws && driven
 }
 
 fn held(section: &CompiledSection) -> Vec<usize> {
@@ -140,11 +137,12 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
         held.lower.len() == real
     };
     found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
-    if adds_up(task.lower.kind) {
-        let cut = direction(&task.lower_cut);
+    if task.lower.kind.commutes() {
+        let cut = task.lower_intersection.sum();
         found.extend((0..legs.len()).find_map(|leg| {
             let level = |slot: &&usize| {
-                let c = Condition::new(&legs[leg].lower.chain, **slot, Amount::Value(0.0));
+                let c =
+                    Condition::new(&legs[leg].lower.chain, **slot, JointDisplacement::Value(0.0));
                 matches!(c, Some(Condition::Flat { normal: [a, b], .. })
                     if (a * cut[0] + b * cut[1]).abs() <= LEVEL * a.hypot(b))
             };
@@ -160,7 +158,7 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
             found.push(Anchor::Tracks([first, second]));
         }
     }
-    if adds_up(task.upper.kind) {
+    if task.upper.kind.commutes() {
         found.extend(together(task, legs, held));
     }
     found
@@ -179,7 +177,7 @@ fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> 
         _ => return None,
     };
     // Of a chain with the cut there may be one that leaves the axis where it likes.
-    let amounts = [Amount::Value(0.0); 3];
+    let amounts = [JointDisplacement::Value(0.0); 3];
     let track = match leg.cut {
         Section::Upper => Track::of_chain(&leg.lower.chain, slot, &amounts),
         Section::Lower => {
@@ -192,7 +190,7 @@ fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> 
 
 /// The functional of `b` that the cuts of most legs follow.
 fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
-    let cut = direction(&task.upper_cut);
+    let cut = task.upper_intersection.sum();
     // With its one upper joint passive, a leg's cut is what b has beside that joint's motion.
     let functional = |leg: &CompiledLeg, held: &HeldLeg| {
         if leg.cut == Section::Lower || !held.upper.is_empty() {
@@ -241,13 +239,13 @@ fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anc
         for slot in cut.into_iter().chain(held.upper.iter().copied()) {
             count += 1;
             if let Some(Condition::Flat { normal, .. }) =
-                Condition::new(&leg.upper.chain, slot, Amount::Value(0.0))
+                Condition::new(&leg.upper.chain, slot, JointDisplacement::Value(0.0))
             {
                 normals.push(normal);
             }
         }
     }
-    if !adds_up(task.upper.kind) {
+    if !task.upper.kind.commutes() {
         return count >= task.upper.dimension();
     }
     normals.iter().enumerate().any(|(i, [a, b])| {

@@ -7,10 +7,10 @@
 //! mechanism (Fan and Yuan, Computing 74, 2005).
 
 use super::linkage::{Linkage, Pose, Ranks};
+use crate::group::screw::Screw;
+use crate::group::subspace::TOLERANCE;
 use crate::mechanism::Mechanism;
-use crate::screw::Screw;
-use crate::subspace::TOLERANCE;
-use crate::svd::Svd;
+use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, DVector, Isometry3, Vector6};
 use std::fmt;
 

@@ -1,8 +1,8 @@
 use super::*;
 use crate::decomposition::samples::*;
 use crate::decomposition::{DecomposeError, decompose};
-use crate::joint::{Joint, JointKind};
-use crate::leg::Leg;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::Leg;
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
 

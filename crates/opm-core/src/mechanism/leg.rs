@@ -1,7 +1,7 @@
 //! A leg: joints in series from the base to the platform.
 
-use crate::joint::{Joint, JointCoordinate};
-use crate::screw::Screw;
+use crate::group::screw::Screw;
+use crate::mechanism::joint::{Joint, JointCoordinate};
 use nalgebra::{Isometry3, Vector3};
 use std::fmt;
 

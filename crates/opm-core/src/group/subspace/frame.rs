@@ -1,7 +1,7 @@
 //! The frame in which ranks are decided: a mechanism's own middle, and its own size as the unit.
 
 use super::TOLERANCE;
-use crate::screw::Screw;
+use crate::group::screw::Screw;
 use nalgebra::{Matrix3, Point3, Vector3, Vector6};
 
 /// Below this share of the largest, the middle is not determined in a direction (axes all but

@@ -4,10 +4,14 @@
 //! others, `X` and `Y`, free: where the second is held, the third is carried over it,
 //! `E₀ E₁ E₂ = E₀ (E₁ E₂ E₁⁻¹) E₁`. What two free joints leave fixed is one of the equations below.
 
-use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
-use crate::chain::{Amount, Chain};
-use crate::task::Displacement;
-use nalgebra::{Complex, Matrix3, Vector3};
+use crate::chain::Chain;
+use crate::chain::planar::PlanarJoint;
+use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, rotation_about};
+use nalgebra::{Complex, Vector3};
+
+/// Conditions that miss each other by less than this, as a share of the size, meet: rounding at the
+/// boundary of reach must not decide.
+pub const VERGE: f64 = 1e-13;
 
 /// A quarter turn.
 pub const QUARTER: Complex<f64> = Complex::new(0.0, 1.0);
@@ -58,22 +62,11 @@ pub enum Condition {
     },
     /// Of a subspace whose displacements add up: `normal · g = value`.
     Flat {
-        /// In the coordinates of [`flat`].
+        /// In the coordinates of the displacement's logarithm.
         normal: [f64; 2],
         /// In their units.
         value: f64,
     },
-}
-
-/// The two numbers of a displacement that adds up: angle and advance, or a translation.
-pub fn flat(g: &Displacement) -> [f64; 2] {
-    match g {
-        Displacement::Cylindrical(g) => [g.angle, g.advance],
-        Displacement::Translational(t) => [t.re, t.im],
-        Displacement::Planar(_) | Displacement::Spherical(_) => {
-            unreachable!("planar and spherical displacements do not add up")
-        }
-    }
 }
 
 /// What one unit of each joint adds, of a chain whose displacements add up.
@@ -85,18 +78,10 @@ pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
     }
 }
 
-/// A rotation about `axis` by a turn.
-pub fn rotation(axis: &Vector3<f64>, turn: Complex<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (turn.re, turn.im);
-    Matrix3::from_diagonal_element(cos)
-        + axis.cross_matrix() * sin
-        + axis * axis.transpose() * (1.0 - cos)
-}
-
 impl Condition {
     /// What the joint `held` alone asks of the chain's displacement; `None` of a spherical joint, no part
     /// of which asks for one equation.
-    pub fn new(chain: &Chain, held: usize, amount: Amount) -> Option<Self> {
+    pub fn new(chain: &Chain, held: usize, amount: JointDisplacement) -> Option<Self> {
         match chain {
             Chain::Planar(chain) => Some(planar(&chain.joints(), held, amount)),
             Chain::Spherical(chain) => Some(spherical(chain.axes(), held, amount)),
@@ -132,57 +117,57 @@ impl Condition {
     /// The condition on `g` that this one is on `g · h`.
     #[must_use]
     pub fn before(self, h: &Displacement) -> Self {
-        match (self, h) {
-            (Self::Circle { point, centre, radius }, Displacement::Planar(h)) => {
-                Self::Circle { point: h.apply(point), centre, radius }
+        match self {
+            Self::Circle { point, centre, radius } => {
+                Self::Circle { point: h.planar().apply(point), centre, radius }
             }
-            (Self::Line { point, normal, offset }, Displacement::Planar(h)) => {
-                Self::Line { point: h.apply(point), normal, offset }
+            Self::Line { point, normal, offset } => {
+                Self::Line { point: h.planar().apply(point), normal, offset }
             }
-            (Self::CarriedLine { point, normal, offset }, Displacement::Planar(h)) => {
+            Self::CarriedLine { point, normal, offset } => {
                 // normal · h⁻¹ z = (h normal) · (z − translation)
+                let h = h.planar();
                 let normal = h.rotation * normal;
                 Self::CarriedLine { point, normal, offset: offset + dot(normal, h.translation) }
             }
-            (Self::Heading { rotation }, Displacement::Planar(h)) => {
-                Self::Heading { rotation: rotation * h.rotation.conj() }
+            Self::Heading { rotation } => {
+                Self::Heading { rotation: rotation * h.planar().rotation.conj() }
             }
-            (Self::Cone { fixed, carried, cosine }, Displacement::Spherical(h)) => {
-                Self::Cone { fixed, carried: h * carried, cosine }
+            Self::Cone { fixed, carried, cosine } => {
+                Self::Cone { fixed, carried: h.spherical() * carried, cosine }
             }
-            (Self::Flat { normal, value }, h) => {
-                let [a, b] = flat(h);
+            Self::Flat { normal, value } => {
+                let [a, b] = h.sum();
                 Self::Flat { normal, value: value - normal[0] * a - normal[1] * b }
             }
-            _ => unreachable!("a condition and a displacement of two kinds of subspace"),
         }
     }
 
     /// The condition on `g` that this one is on `h⁻¹ · g`.
     #[must_use]
     pub fn after(self, h: &Displacement) -> Self {
-        match (self, h) {
-            (Self::Circle { point, centre, radius }, Displacement::Planar(h)) => {
-                Self::Circle { point, centre: h.apply(centre), radius }
+        match self {
+            Self::Circle { point, centre, radius } => {
+                Self::Circle { point, centre: h.planar().apply(centre), radius }
             }
-            (Self::Line { point, normal, offset }, Displacement::Planar(h)) => {
+            Self::Line { point, normal, offset } => {
+                let h = h.planar();
                 let normal = h.rotation * normal;
                 Self::Line { point, normal, offset: offset + dot(normal, h.translation) }
             }
-            (Self::CarriedLine { point, normal, offset }, Displacement::Planar(h)) => {
-                Self::CarriedLine { point: h.apply(point), normal, offset }
+            Self::CarriedLine { point, normal, offset } => {
+                Self::CarriedLine { point: h.planar().apply(point), normal, offset }
             }
-            (Self::Heading { rotation }, Displacement::Planar(h)) => {
-                Self::Heading { rotation: rotation * h.rotation }
+            Self::Heading { rotation } => {
+                Self::Heading { rotation: rotation * h.planar().rotation }
             }
-            (Self::Cone { fixed, carried, cosine }, Displacement::Spherical(h)) => {
-                Self::Cone { fixed: h * fixed, carried, cosine }
+            Self::Cone { fixed, carried, cosine } => {
+                Self::Cone { fixed: h.spherical() * fixed, carried, cosine }
             }
-            (Self::Flat { normal, value }, h) => {
-                let [a, b] = flat(h);
+            Self::Flat { normal, value } => {
+                let [a, b] = h.sum();
                 Self::Flat { normal, value: value + normal[0] * a + normal[1] * b }
             }
-            _ => unreachable!("a condition and a displacement of two kinds of subspace"),
         }
     }
 }
@@ -199,7 +184,7 @@ pub fn length(z: Complex<f64>) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-fn planar(joints: &[PlanarJoint; 3], held: usize, amount: Amount) -> Condition {
+fn planar(joints: &[PlanarJoint; 3], held: usize, amount: JointDisplacement) -> Condition {
     let known = joints[held].displacement(amount);
     let none = PlanarDisplacement::IDENTITY;
     let (before, first, second, after) = match held {
@@ -238,8 +223,8 @@ fn carried(g: &PlanarDisplacement, joint: &PlanarJoint) -> PlanarJoint {
     }
 }
 
-fn spherical(axes: &[Vector3<f64>; 3], held: usize, amount: Amount) -> Condition {
-    let known = rotation(&axes[held], amount.turn());
+fn spherical(axes: &[Vector3<f64>; 3], held: usize, amount: JointDisplacement) -> Condition {
+    let known = rotation_about(&axes[held], amount.unit_direction());
     let (fixed, carried, cosine) = match held {
         0 => (known * axes[1], axes[2], axes[1].dot(&axes[2])),
         1 => {

@@ -1,10 +1,10 @@
 //! Legs as chains of unit freedoms in the normalised frame: closure, ranks, and displaced poses.
 
 use super::{MAX_FREEDOMS, MobilityError, frame};
+use crate::group::screw::Screw;
+use crate::group::subspace::Frame;
 use crate::mechanism::Mechanism;
-use crate::screw::Screw;
-use crate::subspace::Frame;
-use crate::svd;
+use crate::numeric::svd;
 use nalgebra::{DMatrix, Isometry3, Vector6};
 
 /// A mechanism as screws: one freedom after the other, leg by leg, in its normalised frame.

@@ -1,7 +1,7 @@
 //! Limits of a joint coordinate, tested without trigonometry.
 
-use crate::chain::{Amount, unit};
-use crate::joint::{JointCoordinate, Quantity};
+use crate::group::JointDisplacement;
+use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -37,15 +37,11 @@ pub struct Arc {
 }
 
 impl Limits {
-    /// From a coordinate's limits and its value at home; `size` is the mechanism's, in metres, which
-    /// the rounding of a length is in proportion to however short the length.
-    pub fn new(coordinate: &JointCoordinate, size: f64) -> Self {
-        let Some([low, high]) = coordinate.limits else { return Self::Free };
-        let home = coordinate.home;
-        let size = match coordinate.quantity {
-            Quantity::Angle => 1.0,
-            Quantity::Length => size,
-        };
+    /// From the lowest and the highest value of a coordinate and its value at home. The ends get a slack
+    /// for rounding, in proportion to the largest of these numbers and of `size`: the mechanism's in
+    /// metres, one for an angle.
+    pub fn new(limits: Option<[f64; 2]>, home: f64, size: f64) -> Self {
+        let Some([low, high]) = limits else { return Self::Free };
         let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(size);
         let (low, high) = (low - home - slack, high - home + slack);
         let arc = (high - low < TAU).then(|| Arc {
@@ -59,23 +55,29 @@ impl Limits {
     /// Whether a displacement from home is allowed. A turn is, when it is at any whole number of
     /// turns.
     #[inline(always)]
-    pub fn admits(&self, amount: Amount) -> bool {
+    pub fn admits(&self, amount: JointDisplacement) -> bool {
         match (self, amount) {
-            (Self::Free, _) | (Self::Range { arc: None, .. }, Amount::Turn(_)) => true,
-            (Self::Range { low, high, .. }, Amount::Value(value)) => {
+            (Self::Free, _) | (Self::Range { arc: None, .. }, JointDisplacement::Direction(_)) => {
+                true
+            }
+            (Self::Range { low, high, .. }, JointDisplacement::Value(value)) => {
                 (value >= *low) & (value <= *high)
             }
-            (Self::Range { arc: Some(arc), .. }, Amount::Turn(e)) => arc.contains(e),
+            (Self::Range { arc: Some(arc), .. }, JointDisplacement::Direction(e)) => {
+                arc.contains(e)
+            }
         }
     }
 
     /// The value to report for an amount, a displacement from home: the turn nearest to home, but one
     /// within the limits where there is one.
     #[inline(always)]
-    pub fn report(&self, amount: Amount) -> f64 {
+    pub fn report(&self, amount: JointDisplacement) -> f64 {
         let nearest = amount.value();
         match (self, amount) {
-            (Self::Range { low, high, .. }, Amount::Turn(_)) => turned(nearest, *low, *high),
+            (Self::Range { low, high, .. }, JointDisplacement::Direction(_)) => {
+                turned(nearest, *low, *high)
+            }
             _ => nearest,
         }
     }
@@ -84,28 +86,32 @@ impl Limits {
     /// [`Limits::report`] and [`Limits::admits`] say, or (`held`) at the turn nearest to a value that
     /// a motion comes from, wherever the limits are.
     #[inline(always)]
-    pub fn place(&self, amount: Amount, held: Option<f64>) -> (f64, bool) {
+    pub fn place(&self, amount: JointDisplacement, held: Option<f64>) -> (f64, bool) {
         match held {
             None => (self.report(amount), self.admits(amount)),
             Some(held) => {
                 let value = amount.nearest(held);
-                (value, self.admits(Amount::Value(value)))
+                (value, self.admits(JointDisplacement::Value(value)))
             }
         }
     }
 
     /// The ends of the limits of a length, or of an angle that counts whole turns.
-    pub(crate) fn values(&self) -> Option<[Amount; 2]> {
+    pub(crate) fn values(&self) -> Option<[JointDisplacement; 2]> {
         match self {
             Self::Free => None,
-            Self::Range { low, high, .. } => Some([low, high].map(|&end| Amount::Value(end))),
+            Self::Range { low, high, .. } => {
+                Some([low, high].map(|&end| JointDisplacement::Value(end)))
+            }
         }
     }
 
     /// The ends of the limits of an angle that does not count whole turns; none of a full turn.
-    pub(crate) fn turns(&self) -> Option<[Amount; 2]> {
+    pub(crate) fn turns(&self) -> Option<[JointDisplacement; 2]> {
         match self {
-            Self::Range { arc: Some(arc), .. } => Some([arc.from, arc.to].map(Amount::Turn)),
+            Self::Range { arc: Some(arc), .. } => {
+                Some([arc.from, arc.to].map(JointDisplacement::Direction))
+            }
             _ => None,
         }
     }
@@ -151,13 +157,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn limits(quantity: Quantity, limits: [f64; 2], home: f64, size: f64) -> Limits {
-        let name = "q".to_owned();
-        Limits::new(&JointCoordinate { name, quantity, home, limits: Some(limits) }, size)
-    }
-
     fn of_angle(low: f64, high: f64, home: f64) -> Limits {
-        limits(Quantity::Angle, [low, high], home, 1.0)
+        Limits::new(Some([low, high]), home, 1.0)
     }
 
     proptest! {
@@ -173,8 +174,8 @@ mod tests {
             let margin = (from_low - width).abs().min(from_low).min(TAU - from_low);
             prop_assume!(margin > 1e-9);
             let inside = from_low <= width;
-            prop_assert_eq!(limits.admits(Amount::Turn(unit(angle))), inside);
-            let reported = home + limits.report(Amount::Turn(unit(angle)));
+            prop_assert_eq!(limits.admits(JointDisplacement::Direction(unit(angle))), inside);
+            let reported = home + limits.report(JointDisplacement::Direction(unit(angle)));
             prop_assert!((unit(reported) - unit(home + angle)).norm() < 1e-9);
             prop_assert_eq!(inside, (low..=low + width).contains(&reported));
         }
@@ -187,26 +188,29 @@ mod tests {
         {
             let limits = of_angle(low, high, home);
             for end in [low, high] {
-                assert!(limits.admits(Amount::Value(end - home)), "{low} {high} {home}");
-                assert!(limits.admits(Amount::Turn(unit(end - home))), "{low} {high} {home}");
+                assert!(limits.admits(JointDisplacement::Value(end - home)), "{low} {high} {home}");
+                assert!(
+                    limits.admits(JointDisplacement::Direction(unit(end - home))),
+                    "{low} {high} {home}"
+                );
             }
-            assert!(!limits.admits(Amount::Value(high - home + 1e-9)));
-            assert!(!limits.admits(Amount::Turn(unit(high - home + 1e-9))));
+            assert!(!limits.admits(JointDisplacement::Value(high - home + 1e-9)));
+            assert!(!limits.admits(JointDisplacement::Direction(unit(high - home + 1e-9))));
         }
     }
     /// Zero is a limit like any other: what rounds there is the size of the mechanism.
     #[test]
     fn a_limit_at_zero_is_inside() {
         for size in [1e-6, 1.0, 1e6] {
-            let locked = limits(Quantity::Length, [0.0, 0.0], 0.0, size);
+            let locked = Limits::new(Some([0.0, 0.0]), 0.0, size);
             for rounding in [0.0, f64::EPSILON, -f64::EPSILON] {
-                assert!(locked.admits(Amount::Value(rounding * size)));
+                assert!(locked.admits(JointDisplacement::Value(rounding * size)));
             }
-            assert!(!locked.admits(Amount::Value(1e-9 * size)));
+            assert!(!locked.admits(JointDisplacement::Value(1e-9 * size)));
         }
         let locked = of_angle(0.0, 0.0, 0.0);
-        assert!(locked.admits(Amount::Value(f64::EPSILON)));
-        assert!(locked.admits(Amount::Turn(unit(f64::EPSILON))));
-        assert!(!locked.admits(Amount::Value(1e-9)));
+        assert!(locked.admits(JointDisplacement::Value(f64::EPSILON)));
+        assert!(locked.admits(JointDisplacement::Direction(unit(f64::EPSILON))));
+        assert!(!locked.admits(JointDisplacement::Value(1e-9)));
     }
 }

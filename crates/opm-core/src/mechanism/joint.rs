@@ -1,6 +1,8 @@
 //! Joints: a kind, an axis at the assembled home, and the coordinates that measure them.
 
-use crate::screw::Screw;
+use crate::chain::limits::Limits;
+use crate::group::screw::Screw;
+pub use crate::numeric::Quantity;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// What a joint lets its two links do.
@@ -26,25 +28,6 @@ pub enum JointKind {
     Spherical,
 }
 
-/// Whether a coordinate is an angle or a length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Radians.
-    Angle,
-    /// Metres.
-    Length,
-}
-
-impl Quantity {
-    /// The SI unit: `rad` or `m`.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Angle => "rad",
-            Self::Length => "m",
-        }
-    }
-}
-
 /// One coordinate of a joint: what is reported, and within which limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointCoordinate {
@@ -56,6 +39,18 @@ pub struct JointCoordinate {
     pub home: f64,
     /// Lowest and highest value allowed, both included.
     pub limits: Option<[f64; 2]>,
+}
+
+impl JointCoordinate {
+    /// The displacements from home that its limits allow; `size` is the mechanism's, in metres: the
+    /// rounding of a length is in proportion to it, however short the length.
+    pub fn displacement_limits(&self, size: f64) -> Limits {
+        let size = match self.quantity {
+            Quantity::Angle => 1.0,
+            Quantity::Length => size,
+        };
+        Limits::new(self.limits, self.home, size)
+    }
 }
 
 /// A joint at the assembled home pose, in base coordinates.

@@ -7,6 +7,7 @@
 //! Against extended precision, on 10⁷ random arguments of all signs and sizes and near the quarters of a
 //! turn, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
 
+use nalgebra::Complex;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4};
 
 /// Angles up to this size are reduced by quarter turns exactly; larger ones, more than a hundred
@@ -128,6 +129,19 @@ fn polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
         sums[power % 2] = sums[power % 2] * square + coefficients[power];
     }
     sums[0] + z * sums[1]
+}
+
+/// `e(angle)`, the unit vector at an angle.
+#[inline]
+pub(crate) fn unit(angle: f64) -> Complex<f64> {
+    let (sin, cos) = sin_cos(angle);
+    Complex::new(cos, sin)
+}
+
+/// `sin x / x`, one at zero.
+#[inline]
+pub(crate) fn sinc(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { sin_cos(x).0 / x }
 }
 
 #[cfg(test)]

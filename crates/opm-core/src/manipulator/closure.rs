@@ -1,10 +1,10 @@
 //! How far the legs fail to close: their products of exponentials as they stand in the mechanism, without
 //! any decomposition, against the pose of the platform.
 
-use crate::joint::JointKind;
+use crate::decomposition::mobility::frame;
+use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
-use crate::mobility::frame;
-use crate::screw::Screw;
+use crate::mechanism::joint::JointKind;
 use nalgebra::{
     DMatrix, DVector, Isometry3, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
 };

@@ -13,7 +13,7 @@ pub(crate) use class::{Fit, fit, points_up, upward};
 pub use class::{SubspaceClass, UP};
 pub use frame::Frame;
 
-use crate::screw::Screw;
+use crate::group::screw::Screw;
 
 /// What counts as zero beside the size of a mechanism, in every decision on rank and membership.
 ///

@@ -10,9 +10,9 @@ mod singular;
 pub(crate) use linkage::{Linkage, loop_closure};
 pub use singular::HomeSingularity;
 
+use crate::group::subspace::{Basis, Frame, SubspaceClass, TOLERANCE, fit};
 use crate::mechanism::Mechanism;
-use crate::subspace::{Basis, Frame, SubspaceClass, TOLERANCE, fit};
-use crate::svd::{Svd, singular_values};
+use crate::numeric::svd::{Svd, singular_values};
 use nalgebra::{DMatrix, Vector6};
 use thiserror::Error;
 

@@ -1,0 +1,77 @@
+//! The screws of a chain's joints at home, in the frame of its subspace.
+
+use super::joint::{coaxial_joints, planar_joints, slides, spherical_axes};
+use super::planar::PlanarJoint;
+use super::{ChainError, ChainJoint};
+use crate::group::{LocalTwist, Subspace, SubspaceKind, angular_and_linear, linear, quarter};
+use nalgebra::{Unit, Vector3};
+
+/// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
+/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Those of
+/// two numbers get a zero, and two joints a third one that takes what nothing moves along: then three
+/// screws are always a square matrix of the right determinant.
+///
+/// # Errors
+/// A joint that the subspace does not hold.
+pub(crate) fn screws(
+    subspace: &Subspace,
+    joints: &[ChainJoint],
+) -> Result<[LocalTwist; 3], ChainError> {
+    let needs = |needed| ChainError::Count { needed, given: joints.len() };
+    Ok(match subspace.kind {
+        SubspaceKind::Planar => {
+            let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+            planar_joints(subspace, joints)?.map(|joint| match joint {
+                // ω = ±1 about the point `at` gives the origin the velocity -i ω at.
+                PlanarJoint::Revolute { at, reversed: false } => {
+                    angular_and_linear(1.0, -quarter(at))
+                }
+                PlanarJoint::Revolute { at, reversed: true } => {
+                    angular_and_linear(-1.0, quarter(at))
+                }
+                PlanarJoint::Prismatic { along } => angular_and_linear(0.0, along),
+            })
+        }
+        SubspaceKind::Spherical => match joints {
+            // About the base's directions, as a rotation vector is measured.
+            [ChainJoint::Ball] => [0, 1, 2].map(|i| subspace.axes.row(i).transpose()),
+            _ => {
+                let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+                spherical_axes(subspace, joints)?.map(Unit::into_inner)
+            }
+        },
+        SubspaceKind::Cylindrical => {
+            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+            let [p, q] = coaxial_joints(subspace, joints)?;
+            [
+                Vector3::new(p.turn, p.advance, 0.0),
+                Vector3::new(q.turn, q.advance, 0.0),
+                Vector3::z(),
+            ]
+        }
+        SubspaceKind::TranslationalPlane => {
+            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
+            let [u, v] = slides(subspace, joints)?;
+            [Vector3::new(u.re, u.im, 0.0), Vector3::new(v.re, v.im, 0.0), Vector3::z()]
+        }
+    })
+}
+
+/// What the determinant of a chain's screws is measured in, so that it has no dimension: links in a
+/// plane, where two neighbouring pivots are on one; `size` where a slider is between two pivots. On
+/// an axis the determinant does not change, and is its own measure.
+pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[LocalTwist; 3], size: f64) -> f64 {
+    match kind {
+        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Cylindrical => home[0].cross(&home[1]).z.abs(),
+        SubspaceKind::Planar => {
+            let pivot = |s: &LocalTwist| (s.x != 0.0).then(|| quarter(linear(s)) * s.x);
+            match home.each_ref().map(pivot) {
+                [Some(a), Some(b), Some(c)] => (b - a).norm() * (c - b).norm(),
+                [Some(a), Some(b), None] | [None, Some(a), Some(b)] => (b - a).norm(),
+                [Some(_), None, Some(_)] => size,
+                [Some(_), None, None] | [None, Some(_), None] | [None, None, _] => 1.0,
+            }
+        }
+    }
+}

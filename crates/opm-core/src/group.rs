@@ -1,0 +1,60 @@
+//! The displacement subgroups of SE(3) that a section of a leg can move in, and their algebra.
+//!
+//! Each subgroup is one file, which implements [`Subgroup`](subgroup::Subgroup) in a frame of its own
+//! ([`Subspace`]): displacements and twists, product, inverse, exponential, logarithm, action on points
+//! and on twists, and steps along the intersection motion.
+//!
+//! | subgroup | file | displacement | twist |
+//! |---|---|---|---|
+//! | planar, `SE(2)` | `planar.rs` | `z ↦ r z + t`, complex numbers | `(ω, vx, vy)` |
+//! | spherical, `SO(3)` | `spherical.rs` | a rotation matrix | `ω` |
+//! | cylindrical | `cylindrical.rs` | an angle and an advance | `(ω, v, 0)` |
+//! | translational plane | `translational_plane.rs` | a complex number | `(vx, vy, 0)` |
+//!
+//! A planar twist has the velocity of the point at the frame's origin; a twist of fewer than three
+//! numbers is padded with zeros.
+//!
+//! [`SubspaceKind`], [`Displacement`] and [`IntersectionMotion`] are the closed sets of all subgroups,
+//! matched exhaustively. A new subgroup is a new file and a variant of these three; the compiler names
+//! every place that has to know it. Objects of two different subgroups are never combined: what tries to
+//! do so is a fault of the program, and panics in one place (`mismatch`).
+
+mod cylindrical;
+mod displacement;
+mod frame;
+mod intersection;
+mod joint_displacement;
+mod kind;
+mod path;
+mod planar;
+pub mod screw;
+mod spherical;
+mod subgroup;
+pub mod subspace;
+mod translational_plane;
+
+pub use cylindrical::{CylindricalDisplacement, CylindricalMotion};
+pub use displacement::Displacement;
+pub use frame::Subspace;
+pub use intersection::IntersectionMotion;
+pub use joint_displacement::JointDisplacement;
+pub use kind::SubspaceKind;
+pub use path::{Path, PlanarPath};
+pub use planar::{PlanarDisplacement, PlanarMotion};
+pub use spherical::SphericalMotion;
+pub(crate) use subgroup::{LocalTwist, Subgroup};
+pub use translational_plane::TranslationalMotion;
+
+pub(crate) use cylindrical::Cylindrical;
+pub(crate) use planar::{Planar, angular_and_linear, linear, quarter};
+pub(crate) use spherical::{Spherical, rotated, rotation_about, rotation_vector};
+pub(crate) use translational_plane::TranslationalPlane;
+
+/// Stops the program where objects of two subgroups are combined: [`Displacement`]s,
+/// [`IntersectionMotion`]s and what is made for them carry their subgroup, and every caller pairs those
+/// of one section.
+#[cold]
+#[inline(never)]
+pub(crate) fn mismatch(expected: SubspaceKind, found: SubspaceKind) -> ! {
+    panic!("something of a {found} subspace stands where a {expected} one is needed")
+}

@@ -1,0 +1,168 @@
+//! `SO(3)`: rotations about a centre, as matrices. A twist is the angular velocity.
+
+use super::path::Path;
+use super::subgroup::{LocalTwist, Subgroup};
+use super::{JointDisplacement, SubspaceKind};
+use crate::numeric::angle::atan2;
+use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
+
+/// The subgroup.
+pub(crate) struct Spherical;
+
+/// A one-parameter motion about the centre that another subspace may share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SphericalMotion {
+    /// Rotation about the frame's third direction.
+    Turn,
+}
+
+/// The rotation about an axis by the angle that a unit vector points at.
+pub(crate) fn rotation_about(axis: &Vector3<f64>, turn: Complex<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (turn.re, turn.im);
+    Matrix3::from_diagonal_element(cos)
+        + axis.cross_matrix() * sin
+        + axis * axis.transpose() * (1.0 - cos)
+}
+
+/// `exp(axis q) v`, with `q` as a unit vector.
+#[inline]
+pub(crate) fn rotated(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    v * q.re + axis.cross(v) * q.im + axis * (axis.dot(v) * (1.0 - q.re))
+}
+
+/// The rotation vector of `r`, at most half a turn, by its quaternion: of the four multiples of it that
+/// the entries of `r` give, the longest one.
+#[inline(always)]
+pub(crate) fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
+    let [xx, yy, zz] = [r[(0, 0)], r[(1, 1)], r[(2, 2)]];
+    // Four times the products of two components, w being the scalar one, and their squares.
+    let (wx, wy, wz) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
+    let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
+    let (ww, xx, yy, zz) =
+        (1.0 + (xx + yy + zz), 1.0 + (xx - yy - zz), 1.0 + (yy - xx - zz), 1.0 + (zz - xx - yy));
+    let (mut square, mut w, mut vector) = (ww, ww, [wx, wy, wz]);
+    for (other, scalar, axis) in
+        [(xx, wx, [xx, xy, xz]), (yy, wy, [xy, yy, yz]), (zz, wz, [xz, yz, zz])]
+    {
+        let longer = other > square;
+        square = if longer { other } else { square };
+        w = if longer { scalar } else { w };
+        vector = [0, 1, 2].map(|i| if longer { axis[i] } else { vector[i] });
+    }
+    let [x, y, z] = vector;
+    let length = (x * x + y * y + z * z).sqrt();
+    let angle = 2.0 * atan2(length, w.abs());
+    let scale = angle / if length > 0.0 { length } else { 1.0 };
+    Vector3::new(x, y, z) * if w < 0.0 { -scale } else { scale }
+}
+
+impl Subgroup for Spherical {
+    type Displacement = Matrix3<f64>;
+    type Motion = SphericalMotion;
+
+    const KIND: SubspaceKind = SubspaceKind::Spherical;
+    const DIMENSION: usize = 3;
+    const COMMUTES: bool = false;
+    const IDENTITY: Matrix3<f64> = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+
+    #[inline]
+    fn product(first: &Matrix3<f64>, second: &Matrix3<f64>) -> Matrix3<f64> {
+        first * second
+    }
+
+    #[inline]
+    fn inverse(r: &Matrix3<f64>) -> Matrix3<f64> {
+        r.transpose()
+    }
+
+    fn exponential(twist: &LocalTwist) -> Matrix3<f64> {
+        Rotation3::new(*twist).into_inner()
+    }
+
+    fn logarithm(r: &Matrix3<f64>) -> LocalTwist {
+        rotation_vector(r)
+    }
+
+    #[inline]
+    fn adjoint(r: &Matrix3<f64>, twist: &LocalTwist) -> LocalTwist {
+        r * twist
+    }
+
+    #[inline]
+    fn adjoint_of_inverse(r: &Matrix3<f64>, twist: &LocalTwist) -> LocalTwist {
+        r.tr_mul(twist)
+    }
+
+    #[inline]
+    fn bracket(a: &LocalTwist, b: &LocalTwist) -> LocalTwist {
+        a.cross(b)
+    }
+
+    #[inline]
+    fn act(r: &Matrix3<f64>, point: &Vector3<f64>) -> Vector3<f64> {
+        r * point
+    }
+
+    fn rotation_and_translation(r: &Matrix3<f64>) -> (Rotation3<f64>, Vector3<f64>) {
+        (Rotation3::from_matrix_unchecked(*r), Vector3::zeros())
+    }
+
+    fn embed(twist: &LocalTwist) -> [Vector3<f64>; 2] {
+        [*twist, Vector3::zeros()]
+    }
+
+    fn is_translation(_: &LocalTwist) -> bool {
+        false
+    }
+
+    fn size(_: &Matrix3<f64>) -> f64 {
+        0.0
+    }
+
+    fn motion(_: &Vector3<f64>, rotation: bool) -> SphericalMotion {
+        assert!(rotation, "a spherical subspace holds no translation");
+        SphericalMotion::Turn
+    }
+
+    #[inline]
+    fn unit_twist(motion: &SphericalMotion) -> LocalTwist {
+        match motion {
+            SphericalMotion::Turn => LocalTwist::z(),
+        }
+    }
+
+    fn complement(motion: &SphericalMotion) -> Vec<LocalTwist> {
+        match motion {
+            SphericalMotion::Turn => vec![LocalTwist::x(), LocalTwist::y()],
+        }
+    }
+
+    #[inline(always)]
+    fn after(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
+        match motion {
+            SphericalMotion::Turn => {
+                // Columns one and two of R turn; the third, the axis of I, stays.
+                let e = tau.unit_direction();
+                let (x, y, z) = (r.column(0), r.column(1), r.column(2));
+                Matrix3::from_columns(&[x * e.re + y * e.im, y * e.re - x * e.im, z.into_owned()])
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn before(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
+        match motion {
+            SphericalMotion::Turn => {
+                let e = tau.unit_direction();
+                let (x, y, z) = (r.row(0), r.row(1), r.row(2));
+                Matrix3::from_rows(&[x * e.re - y * e.im, x * e.im + y * e.re, z.into_owned()])
+            }
+        }
+    }
+
+    fn path(motion: &SphericalMotion, b: &Matrix3<f64>) -> Path {
+        match motion {
+            SphericalMotion::Turn => Path::Spherical { start: *b, axis: Vector3::z() },
+        }
+    }
+}

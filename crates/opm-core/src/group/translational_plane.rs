@@ -1,0 +1,127 @@
+//! Translations in a plane, the frame's first two directions, as complex numbers. A twist is
+//! `(vx, vy, 0)`.
+
+use super::path::Path;
+use super::subgroup::{LocalTwist, Subgroup};
+use super::{JointDisplacement, SubspaceKind, quarter};
+use nalgebra::{Complex, Rotation3, Vector3};
+
+/// The subgroup.
+pub(crate) struct TranslationalPlane;
+
+/// A one-parameter motion in the plane that another subspace may share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TranslationalMotion {
+    /// Translation in this direction, a unit vector.
+    Slide(Complex<f64>),
+}
+
+impl Subgroup for TranslationalPlane {
+    type Displacement = Complex<f64>;
+    type Motion = TranslationalMotion;
+
+    const KIND: SubspaceKind = SubspaceKind::TranslationalPlane;
+    const DIMENSION: usize = 2;
+    const COMMUTES: bool = true;
+    const IDENTITY: Complex<f64> = Complex::new(0.0, 0.0);
+
+    fn product(first: &Complex<f64>, second: &Complex<f64>) -> Complex<f64> {
+        first + second
+    }
+
+    fn inverse(t: &Complex<f64>) -> Complex<f64> {
+        -t
+    }
+
+    fn exponential(twist: &LocalTwist) -> Complex<f64> {
+        Complex::new(twist.x, twist.y)
+    }
+
+    fn logarithm(t: &Complex<f64>) -> LocalTwist {
+        LocalTwist::new(t.re, t.im, 0.0)
+    }
+
+    #[inline]
+    fn adjoint(_: &Complex<f64>, twist: &LocalTwist) -> LocalTwist {
+        *twist
+    }
+
+    #[inline]
+    fn adjoint_of_inverse(_: &Complex<f64>, twist: &LocalTwist) -> LocalTwist {
+        *twist
+    }
+
+    #[inline]
+    fn bracket(_: &LocalTwist, _: &LocalTwist) -> LocalTwist {
+        LocalTwist::zeros()
+    }
+
+    #[inline]
+    fn act(t: &Complex<f64>, point: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(point.x + t.re, point.y + t.im, point.z)
+    }
+
+    fn rotation_and_translation(t: &Complex<f64>) -> (Rotation3<f64>, Vector3<f64>) {
+        (Rotation3::identity(), Vector3::new(t.re, t.im, 0.0))
+    }
+
+    fn embed(twist: &LocalTwist) -> [Vector3<f64>; 2] {
+        [Vector3::zeros(), Vector3::new(twist.x, twist.y, 0.0)]
+    }
+
+    fn is_translation(_: &LocalTwist) -> bool {
+        true
+    }
+
+    fn size(t: &Complex<f64>) -> f64 {
+        t.norm()
+    }
+
+    fn motion(direction: &Vector3<f64>, rotation: bool) -> TranslationalMotion {
+        assert!(!rotation, "a translational plane holds no rotation");
+        TranslationalMotion::Slide(Complex::new(direction.x, direction.y))
+    }
+
+    #[inline]
+    fn unit_twist(motion: &TranslationalMotion) -> LocalTwist {
+        match motion {
+            TranslationalMotion::Slide(along) => LocalTwist::new(along.re, along.im, 0.0),
+        }
+    }
+
+    fn complement(motion: &TranslationalMotion) -> Vec<LocalTwist> {
+        match motion {
+            TranslationalMotion::Slide(along) => {
+                let across = quarter(*along);
+                vec![LocalTwist::new(across.re, across.im, 0.0)]
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn after(
+        motion: &TranslationalMotion,
+        v: &Complex<f64>,
+        tau: JointDisplacement,
+    ) -> Complex<f64> {
+        match motion {
+            TranslationalMotion::Slide(along) => v + along * tau.value(),
+        }
+    }
+
+    /// The same: translations commute.
+    #[inline(always)]
+    fn before(
+        motion: &TranslationalMotion,
+        b: &Complex<f64>,
+        tau: JointDisplacement,
+    ) -> Complex<f64> {
+        Self::after(motion, b, tau)
+    }
+
+    fn path(motion: &TranslationalMotion, b: &Complex<f64>) -> Path {
+        match motion {
+            TranslationalMotion::Slide(along) => Path::Translational { start: *b, rate: *along },
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! What a coordinate measures.
+
+/// Whether a coordinate is an angle or a length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Radians.
+    Angle,
+    /// Metres.
+    Length,
+}
+
+impl Quantity {
+    /// The SI unit: `rad` or `m`.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Angle => "rad",
+            Self::Length => "m",
+        }
+    }
+}

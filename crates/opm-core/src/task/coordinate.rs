@@ -1,0 +1,154 @@
+//! The coordinates of a pose: what each of them is, and which a section has.
+
+use crate::group::{Subspace, SubspaceKind};
+use crate::numeric::Quantity;
+
+/// What a task coordinate measures; the table in the docs of [`task`](crate::task) says which subspaces
+/// have it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CoordinateKind {
+    /// `x`: the reference point along a plane's first direction.
+    X,
+    /// `y`: the reference point along a plane's second direction.
+    Y,
+    /// `z`: along a cylinder's axis.
+    Z,
+    /// `w`: in the upper plane, perpendicular to the intersection motion.
+    W,
+    /// `theta`: the angle of the lower section about its normal or its axis.
+    Theta,
+    /// `phi`: the angle of the upper section about its normal or its axis.
+    Phi,
+    /// `zeta`: the first Euler angle, about the third direction.
+    Zeta,
+    /// `xi`: the second Euler angle, about the second direction; singular where its sine is zero.
+    Xi,
+    /// `psi`: the third Euler angle, about the third direction.
+    Psi,
+    /// `mu`: the first tilt of the axis of the intersection motion, about the first direction.
+    Mu,
+    /// `nu`: its second tilt, about the second direction; singular where its cosine is zero.
+    Nu,
+}
+
+impl CoordinateKind {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::X,
+        Self::Y,
+        Self::Z,
+        Self::W,
+        Self::Theta,
+        Self::Phi,
+        Self::Zeta,
+        Self::Xi,
+        Self::Psi,
+        Self::Mu,
+        Self::Nu,
+    ];
+
+    /// The coordinate's name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::W => "w",
+            Self::Theta => "theta",
+            Self::Phi => "phi",
+            Self::Zeta => "zeta",
+            Self::Xi => "xi",
+            Self::Psi => "psi",
+            Self::Mu => "mu",
+            Self::Nu => "nu",
+        }
+    }
+
+    /// The kind of coordinate with a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Whether it is an angle or a length.
+    pub const fn quantity(self) -> Quantity {
+        match self {
+            Self::X | Self::Y | Self::Z | Self::W => Quantity::Length,
+            Self::Theta | Self::Phi | Self::Zeta | Self::Xi | Self::Psi | Self::Mu | Self::Nu => {
+                Quantity::Angle
+            }
+        }
+    }
+}
+
+/// One coordinate of the pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskCoordinate {
+    /// Name, unique among the mechanism's task coordinates: that of its [`kind`](Self::kind).
+    pub name: &'static str,
+    /// Angle or length.
+    pub quantity: Quantity,
+    /// The value at home, radians or metres.
+    pub home: f64,
+}
+
+impl TaskCoordinate {
+    /// A coordinate with its value at home, radians or metres.
+    pub const fn new(kind: CoordinateKind, home: f64) -> Self {
+        Self { name: kind.name(), quantity: kind.quantity(), home }
+    }
+
+    /// What it measures.
+    ///
+    /// # Panics
+    /// If it was not made by [`TaskCoordinate::new`] and has a name that no kind has.
+    pub fn kind(&self) -> CoordinateKind {
+        CoordinateKind::from_name(self.name).expect("a task coordinate has the name of its kind")
+    }
+}
+
+/// The coordinates of `v`. Home values of lengths are those of the reference point.
+pub(super) fn of_lower(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
+    use CoordinateKind::{Mu, Nu, Theta, X, Y, Z};
+    let at = frame.home();
+    match (frame.kind, rotation) {
+        (SubspaceKind::Planar, true) | (SubspaceKind::TranslationalPlane, _) => {
+            listed([(X, at.x), (Y, at.y)])
+        }
+        (SubspaceKind::Planar, false) => listed([(X, at.x), (Y, at.y), (Theta, 0.0)]),
+        (SubspaceKind::Spherical, _) => listed([(Mu, 0.0), (Nu, 0.0)]),
+        (SubspaceKind::Cylindrical, true) => listed([(Z, at.z)]),
+        (SubspaceKind::Cylindrical, false) => listed([(Theta, 0.0), (Z, at.z)]),
+    }
+}
+
+/// The coordinates of `b`, likewise.
+pub(super) fn of_upper(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
+    use CoordinateKind::{Phi, Psi, W, X, Xi, Y, Z, Zeta};
+    let at = frame.home();
+    match (frame.kind, rotation) {
+        (SubspaceKind::Spherical, _) => listed([(Zeta, 0.0), (Xi, 0.0), (Psi, 0.0)]),
+        (SubspaceKind::Planar, true) => listed([(X, at.x), (Y, at.y), (Phi, 0.0)]),
+        (SubspaceKind::Planar, false) => listed([(W, at.y), (Phi, 0.0)]),
+        (SubspaceKind::Cylindrical, true) => listed([(Phi, 0.0), (Z, at.z)]),
+        (SubspaceKind::Cylindrical, false) => listed([(Phi, 0.0)]),
+        (SubspaceKind::TranslationalPlane, _) => listed([(W, at.y)]),
+    }
+}
+
+fn listed<const N: usize>(coordinates: [(CoordinateKind, f64); N]) -> Vec<TaskCoordinate> {
+    coordinates.into_iter().map(|(kind, home)| TaskCoordinate::new(kind, home)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_that_of_one_kind() {
+        for kind in CoordinateKind::ALL {
+            assert_eq!(CoordinateKind::from_name(kind.name()), Some(kind));
+            assert_eq!(TaskCoordinate::new(kind, 0.5).kind(), kind);
+        }
+        assert_eq!(CoordinateKind::from_name("xI"), None);
+    }
+}

@@ -1,0 +1,187 @@
+//! The frame of a section's subspace, from the geometry and from what the file says.
+
+use super::{FrameProblem, TaskError};
+use crate::group::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
+use crate::group::{Subspace, SubspaceKind};
+use crate::mechanism::leg::Section;
+use crate::mechanism::{FrameHints, TaskKey};
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
+
+/// The intersection motion and the platform: what both frames are laid by.
+pub(super) struct Meeting {
+    /// Direction of the intersection motion.
+    pub axis: Unit<Vector3<f64>>,
+    /// A point of its axis at home, where it is a rotation.
+    pub point: Option<Point3<f64>>,
+    /// The platform's reference point at home.
+    pub platform: Point3<f64>,
+}
+
+/// The frame of a subspace, by the rules in the docs of the module above and by what the file
+/// says.
+pub(super) fn lay(
+    class: &SubspaceClass,
+    section: Section,
+    meeting: &Meeting,
+    hints: &FrameHints,
+) -> Result<Subspace, TaskError> {
+    let Meeting { axis, point, platform } = meeting;
+    // The reference point: on the axis of I where that is a line, else the platform's own.
+    let reference = point.map_or(*platform, |p| p + axis.into_inner() * axis.dot(&(platform - p)));
+    let rotation = point.is_some();
+    let (kind, at_home, normal) = match class {
+        SubspaceClass::Planar { normal } => {
+            (SubspaceKind::Planar, reference, if rotation { *axis } else { *normal })
+        }
+        SubspaceClass::Spherical { centre } => (SubspaceKind::Spherical, *centre, *axis),
+        SubspaceClass::Cylindrical { axis: line, point } => {
+            let on_axis = point + line.into_inner() * line.dot(&(reference - point));
+            (SubspaceKind::Cylindrical, on_axis, *axis)
+        }
+        SubspaceClass::TranslationalPlane { normal } => {
+            (SubspaceKind::TranslationalPlane, reference, *normal)
+        }
+        SubspaceClass::Identity
+        | SubspaceClass::Rotation { .. }
+        | SubspaceClass::Translation { .. }
+        | SubspaceClass::Helical { .. }
+        | SubspaceClass::TranslationalSpace
+        | SubspaceClass::PlanarHelical { .. }
+        | SubspaceClass::Schoenflies { .. }
+        | SubspaceClass::Full => {
+            return Err(TaskError::Subspace { section, name: class.name(), odd: None });
+        }
+    };
+    let hints = Checked { hints, section, kind, rotation };
+    hints.refuse_what_is_not_free()?;
+    let flat = match kind {
+        SubspaceKind::Planar | SubspaceKind::TranslationalPlane => true,
+        SubspaceKind::Spherical | SubspaceKind::Cylindrical => false,
+    };
+    let given = hints.sense(TaskKey::Normal(section), normal)?;
+    let axes = if flat && !rotation && section == Section::Upper {
+        let across = Unit::new_normalize(normal.cross(axis));
+        let w = hints.sense(TaskKey::W(section), across)?.unwrap_or_else(|| upward(across));
+        let third = given.unwrap_or_else(|| standing(normal, beside(&normal)));
+        triad(Unit::new_normalize(w.cross(&third)), third)
+    } else {
+        let first = hints.perpendicular(TaskKey::X(section), normal)?;
+        let first = first.unwrap_or_else(|| beside(&normal));
+        let free = flat && !rotation;
+        let third = if free { standing(normal, first) } else { normal };
+        triad(first, given.unwrap_or(third))
+    };
+    let origin = if kind == SubspaceKind::Spherical { at_home } else { Point3::origin() };
+    Ok(Subspace {
+        kind,
+        origin: at_home,
+        axes,
+        measured_from: hints.hints.origin.unwrap_or(origin),
+    })
+}
+
+/// A direction perpendicular to `third`: base x laid into the plane, or base y where x is nearly normal.
+fn beside(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    /// Base x leans out of the plane by more than about 84 degrees: too far to lay it down.
+    const STEEP: f64 = 0.995;
+    let base = if third.x.abs() > STEEP { Vector3::y() } else { Vector3::x() };
+    Unit::new_normalize(base - third.into_inner() * third.dot(&base))
+}
+
+/// A right-handed frame with this first and third direction, which are perpendicular.
+fn triad(first: Unit<Vector3<f64>>, third: Unit<Vector3<f64>>) -> Matrix3<f64> {
+    let second = third.cross(&first);
+    Matrix3::from_columns(&[first.into_inner(), second, third.into_inner()])
+}
+
+/// The normal of a plane with this first direction: where the plane is level the one that points
+/// up, where it is upright the one that lets the second direction point up, and between these the
+/// one that lets both do so most.
+fn standing(normal: Unit<Vector3<f64>>, first: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    if points_up(&(normal.into_inner() + normal.cross(&first))) { normal } else { -normal }
+}
+
+/// What a file says of a frame, to be held against the geometry.
+struct Checked<'a> {
+    hints: &'a FrameHints,
+    section: Section,
+    kind: SubspaceKind,
+    rotation: bool,
+}
+
+impl Checked<'_> {
+    /// What the geometry leaves free.
+    fn free(&self) -> Vec<TaskKey> {
+        let keys: &[fn(Section) -> TaskKey] = match (self.kind, self.section, self.rotation) {
+            (SubspaceKind::Planar, _, true) => &[TaskKey::X, TaskKey::Origin],
+            (SubspaceKind::Planar | SubspaceKind::TranslationalPlane, Section::Lower, _) => {
+                &[TaskKey::X, TaskKey::Normal, TaskKey::Origin]
+            }
+            (SubspaceKind::Planar, Section::Upper, false) => {
+                &[TaskKey::W, TaskKey::Normal, TaskKey::Origin]
+            }
+            (SubspaceKind::TranslationalPlane, Section::Upper, _) => &[TaskKey::W, TaskKey::Origin],
+            (SubspaceKind::Spherical, ..) => &[TaskKey::X],
+            (SubspaceKind::Cylindrical, Section::Upper, false) => &[],
+            (SubspaceKind::Cylindrical, ..) => &[TaskKey::Origin],
+        };
+        keys.iter().map(|key| key(self.section)).collect()
+    }
+
+    fn refuse_what_is_not_free(&self) -> Result<(), TaskError> {
+        let (h, s) = (self.hints, self.section);
+        let given = [
+            (TaskKey::X(s), h.x.is_some()),
+            (TaskKey::W(s), h.w.is_some()),
+            (TaskKey::Normal(s), h.normal.is_some()),
+            (TaskKey::Origin(s), h.origin.is_some()),
+        ];
+        let free = self.free();
+        match given.iter().find(|(key, given)| *given && !free.contains(key)) {
+            Some((key, _)) => {
+                let free = free.iter().map(|key| key.name()).collect();
+                let problem = FrameProblem::NotFree { kind: self.kind, free };
+                Err(TaskError::Frame { key: *key, problem })
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn given(&self, key: TaskKey) -> Option<Unit<Vector3<f64>>> {
+        let given = match key {
+            TaskKey::X(_) => self.hints.x,
+            TaskKey::W(_) => self.hints.w,
+            TaskKey::Normal(_) => self.hints.normal,
+            TaskKey::Axis | TaskKey::Origin(_) => None,
+        };
+        given.map(Unit::new_normalize)
+    }
+
+    /// The direction of this line that the file asks for; what it says must be along it.
+    fn sense(
+        &self,
+        key: TaskKey,
+        line: Unit<Vector3<f64>>,
+    ) -> Result<Option<Unit<Vector3<f64>>>, TaskError> {
+        let Some(given) = self.given(key) else { return Ok(None) };
+        if given.cross(&line).norm() > TOLERANCE {
+            let (given, line) = (given.into_inner().into(), line.into_inner().into());
+            return Err(TaskError::Frame { key, problem: FrameProblem::NotAlong { given, line } });
+        }
+        Ok(Some(if given.dot(&line) < 0.0 { -line } else { line }))
+    }
+
+    /// The direction perpendicular to another that the file asks for; what it says must be so.
+    fn perpendicular(
+        &self,
+        key: TaskKey,
+        to: Unit<Vector3<f64>>,
+    ) -> Result<Option<Unit<Vector3<f64>>>, TaskError> {
+        let Some(given) = self.given(key) else { return Ok(None) };
+        if given.dot(&to).abs() > TOLERANCE {
+            let (given, to) = (given.into_inner().into(), to.into_inner().into());
+            return Err(TaskError::Frame { key, problem: FrameProblem::NotSquare { given, to } });
+        }
+        Ok(Some(Unit::new_normalize(given.into_inner() - to.into_inner() * to.dot(&given))))
+    }
+}
