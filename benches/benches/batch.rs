@@ -1,7 +1,7 @@
 //! Inverse kinematics of many poses at once against one pose at a time.
 
 use opm_benches::{Contender, compare, example};
-use opm_core::manipulator::Answers;
+use opm_core::manipulator::BatchOutput;
 use std::hint::black_box;
 
 fn main() {
@@ -24,7 +24,7 @@ fn main() {
             }
         }),
         Contender::new("many at once", count as u64, || {
-            let mut out = Answers {
+            let mut out = BatchOutput {
                 joints: &mut joints,
                 imaginary: &mut imaginary,
                 reachable: &mut reachable,

@@ -12,9 +12,9 @@ fn main() {
     let (mut poses, mut joints, mut assemblies) = (Vec::new(), Vec::new(), 0);
     while poses.len() < 200 {
         let pose = [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));
-        if manipulator.inverse(&pose, mode, &mut solution).unwrap() {
+        if manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some() {
             poses.push(pose);
-            let actuated = manipulator.actuated().iter().map(|&i| solution.joints[i]);
+            let actuated = manipulator.actuated().iter().map(|&i| solution.joints()[i]);
             joints.push(actuated.collect::<Vec<f64>>());
             assemblies += manipulator.forward(joints.last().unwrap()).unwrap().list.len();
         }

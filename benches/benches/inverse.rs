@@ -20,7 +20,7 @@ fn main() {
     }
     let n = poses.len() as u64;
     let (mut drives, mut solution, mut all) =
-        (manipulator.drives(), manipulator.solution(), manipulator.all_modes());
+        (manipulator.actuated_joints(), manipulator.solution(), manipulator.all_modes());
     let timings = compare(vec![
         Contender::new("the paper's formulas, plain code", n, || {
             for pose in &poses {
@@ -29,7 +29,8 @@ fn main() {
         }),
         Contender::new("actuated and imaginary joints", n, || {
             for pose in &poses {
-                black_box(manipulator.inverse_drives(black_box(pose), mode, &mut drives)).unwrap();
+                black_box(manipulator.inverse_actuated(black_box(pose), mode, &mut drives))
+                    .unwrap();
             }
         }),
         Contender::new("all joints", n, || {

@@ -9,7 +9,7 @@ use opm_benches::{
     Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_passive_angles,
 };
 use opm_core::chain::region::{Convex, Region};
-use opm_core::manipulator::{Follow, Manipulator};
+use opm_core::manipulator::{ActuatedJoints, Follow, Manipulator};
 use opm_workspace::{Grid, Modes, Progress, Sweep};
 use rayon::ThreadPool;
 
@@ -48,12 +48,12 @@ fn by_rows(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> u64 {
 }
 
 fn per_pose(manipulator: &Manipulator, grid: &Grid) -> u64 {
-    let (mode, mut drives) = (manipulator.home_mode(), manipulator.drives());
+    let (mode, mut drives) = (manipulator.home_mode(), manipulator.actuated_joints());
     let mut pose = [0.0; 5];
     let reached = (0..grid.poses()).filter(|&index| {
         grid.pose_into(index, &mut pose);
-        let reached = manipulator.inverse_drives(&pose, mode, &mut drives);
-        reached.expect("a finite pose") && drives.within_limits
+        let reached = manipulator.inverse_actuated(&pose, mode, &mut drives);
+        reached.expect("a finite pose").is_some_and(ActuatedJoints::within_limits)
     });
     reached.count() as u64
 }

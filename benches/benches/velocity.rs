@@ -14,7 +14,7 @@ fn main() {
     let (mut poses, mut solutions) = (Vec::new(), Vec::new());
     while poses.len() < 100 {
         let pose = [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));
-        if manipulator.inverse(&pose, mode, &mut solution) == Ok(true) {
+        if manipulator.inverse(&pose, mode, &mut solution).is_ok_and(|reached| reached.is_some()) {
             poses.push(pose);
             solutions.push(solution.clone());
         }

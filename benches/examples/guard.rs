@@ -62,7 +62,7 @@ fn sweep(manipulator: &Manipulator) {
 
 fn solve(work: &str, manipulator: &Manipulator) {
     let mode = manipulator.home_mode();
-    let (mut drives, mut solution) = (manipulator.drives(), manipulator.solution());
+    let (mut drives, mut solution) = (manipulator.actuated_joints(), manipulator.solution());
     let poses = reached(manipulator, 100);
     let solutions: Vec<_> = poses
         .iter()
@@ -73,7 +73,7 @@ fn solve(work: &str, manipulator: &Manipulator) {
         .collect();
     let actuated: Vec<Vec<f64>> = solutions
         .iter()
-        .map(|solution| manipulator.actuated().iter().map(|&i| solution.joints[i]).collect())
+        .map(|solution| manipulator.actuated().iter().map(|&i| solution.joints()[i]).collect())
         .collect();
     let mut motion = manipulator.motion();
     let rates = [0.1, -0.2, 0.5, 0.3, -0.4];
@@ -84,7 +84,7 @@ fn solve(work: &str, manipulator: &Manipulator) {
                     let _ = black_box(manipulator.inverse(&poses[i], mode, &mut solution));
                 }
                 "inverse-drives" => {
-                    let _ = black_box(manipulator.inverse_drives(&poses[i], mode, &mut drives));
+                    let _ = black_box(manipulator.inverse_actuated(&poses[i], mode, &mut drives));
                 }
                 "forward" => drop(black_box(manipulator.forward(&actuated[i]))),
                 "velocity" => {

@@ -127,7 +127,7 @@ pub fn reached(manipulator: &Manipulator, count: usize) -> Vec<[f64; 5]> {
     let draw = || [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));
     let mode = manipulator.home_mode();
     std::iter::repeat_with(draw)
-        .filter(|pose| manipulator.inverse(pose, mode, &mut solution).expect("a pose"))
+        .filter(|pose| manipulator.inverse(pose, mode, &mut solution).expect("a pose").is_some())
         .take(count)
         .collect()
 }

@@ -27,10 +27,11 @@ pub fn by_predicate(
             if modes != Modes::Any && modes != Modes::One(mode) {
                 continue;
             }
-            assert!(manipulator.pick(&all, mode, &mut solution));
-            if solution.within_limits && admits(&solution) {
+            let solution = manipulator.solution_in_mode(&all, mode, &mut solution);
+            let solution = solution.expect("a mode of the list reaches the pose");
+            if solution.within_limits() && admits(solution) {
                 inside = true;
-                for (range, &value) in imaginary.iter_mut().zip(&solution.imaginary) {
+                for (range, &value) in imaginary.iter_mut().zip(solution.imaginary()) {
                     let [low, high] = range.unwrap_or([value; 2]);
                     *range = Some([low.min(value), high.max(value)]);
                 }

@@ -20,19 +20,21 @@ fn inverse_kinematics_does_not_allocate() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
-            let mut drives = manipulator.drives();
+            let mut drives = manipulator.actuated_joints();
             let mut all = manipulator.all_modes();
             let mode = manipulator.home_mode();
             for _ in 0..50 {
                 let mut pose = manipulator.task().home();
                 pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
                 let info = measure(|| {
-                    reached += u32::from(manipulator.inverse(&pose, mode, &mut solution).unwrap());
+                    reached += u32::from(
+                        manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some(),
+                    );
                     manipulator.inverse_near(&pose, mode, &mut solution).unwrap();
-                    manipulator.inverse_drives(&pose, mode, &mut drives).unwrap();
+                    manipulator.inverse_actuated(&pose, mode, &mut drives).unwrap();
                     manipulator.inverse_all(&pose, &mut all).unwrap();
                     for mode in all.modes(&manipulator) {
-                        manipulator.pick(&all, mode, &mut solution);
+                        manipulator.solution_in_mode(&all, mode, &mut solution);
                     }
                 });
                 assert_eq!(info.count_total, 0, "{pair:?}");
@@ -61,7 +63,7 @@ fn velocities_do_not_allocate() {
                 let mut pose = manipulator.task().home();
                 pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
                 let info = measure(|| {
-                    if manipulator.inverse(&pose, mode, &mut solution).unwrap() {
+                    if manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some() {
                         manipulator.velocity(&solution, &rates, &rates, &mut motion).unwrap();
                         manipulator.differentiate(&solution, &mut jacobians).unwrap();
                         manipulator.conditioning(&jacobians, length);

@@ -1,7 +1,7 @@
 //! Inverse kinematics of many poses at once, held against one at a time: the same to the bit.
 
 use fastrand::Rng;
-use opm_core::manipulator::{Answers, Manipulator, Mode, PoseError};
+use opm_core::manipulator::{BatchError, BatchOutput, Manipulator, Mode, PoseError};
 use opm_core::mechanism::{examples, file};
 use opm_tests::random::{Options, PAIRS, mechanism};
 
@@ -22,7 +22,7 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
     let mut joints = vec![1e99; poses.len() * widths[0]];
     let mut imaginary = vec![1e99; poses.len() * widths[1]];
     let (mut reachable, mut within) = (vec![false; poses.len()], vec![true; poses.len()]);
-    let mut out = Answers {
+    let mut out = BatchOutput {
         joints: &mut joints,
         imaginary: &mut imaginary,
         reachable: &mut reachable,
@@ -31,23 +31,23 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
     manipulator.inverse_many(&poses.concat(), mode, &mut manipulator.batch(), &mut out).unwrap();
     let mut solution = manipulator.solution();
     for (row, pose) in poses.iter().enumerate() {
-        let reached = manipulator.inverse(pose, mode, &mut solution).unwrap();
+        let reached = manipulator.inverse(pose, mode, &mut solution).unwrap().is_some();
         let name = &manipulator.mechanism().name;
         assert_eq!(reachable[row], reached, "{name}: {pose:?}");
-        assert_eq!(within[row], reached && solution.within_limits, "{name}: {pose:?}");
+        assert_eq!(within[row], reached && solution.within_limits(), "{name}: {pose:?}");
         let joints = &joints[row * widths[0]..][..widths[0]];
         let imaginary = &imaginary[row * widths[1]..][..widths[1]];
         if reached {
             // No tolerance: it is the same arithmetic.
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(joints), bits(&solution.joints), "{name}: {pose:?}");
-            assert_eq!(bits(imaginary), bits(&solution.imaginary), "{name}: {pose:?}");
+            assert_eq!(bits(joints), bits(solution.joints()), "{name}: {pose:?}");
+            assert_eq!(bits(imaginary), bits(solution.imaginary()), "{name}: {pose:?}");
         } else {
             assert!(joints.iter().chain(imaginary).all(|v| v.is_nan()), "{name}: {pose:?}");
         }
         tally.reached += usize::from(reached);
         tally.beyond += usize::from(!reached);
-        tally.outside += usize::from(reached && !solution.within_limits);
+        tally.outside += usize::from(reached && !solution.within_limits());
     }
 }
 
@@ -128,7 +128,7 @@ fn a_wrong_pose_is_told() {
     poses[77][3] = f64::NAN;
     let (mut joints, mut imaginary) = (vec![0.0; 2000], vec![0.0; 300]);
     let (mut reachable, mut within_limits) = ([false; 100], [false; 100]);
-    let mut out = Answers {
+    let mut out = BatchOutput {
         joints: &mut joints,
         imaginary: &mut imaginary,
         reachable: &mut reachable,
@@ -137,6 +137,47 @@ fn a_wrong_pose_is_told() {
     let mode = manipulator.home_mode();
     let error = manipulator.inverse_many(&poses.concat(), mode, &mut manipulator.batch(), &mut out);
     let error = error.unwrap_err();
-    assert_eq!(error.row, 77);
-    assert!(matches!(error.error, PoseError::NotFinite { name: "xi", .. }), "{error}");
+    let expected = PoseError::NotFinite { name: "xi", value: f64::NAN };
+    // NaN is not itself, so that messages are compared.
+    assert_eq!(error.to_string(), format!("pose 77: {expected}"));
+}
+
+/// Slices of a wrong length are refused, and said by name; nothing is written.
+#[test]
+fn slices_of_a_wrong_length_are_refused() {
+    let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
+    let (joints, imaginary) = (manipulator.coordinates().len(), manipulator.imaginary().len());
+    let lengths = [2 * joints, 2 * imaginary, 2, 2];
+    let poses = [manipulator.task().home(), manipulator.task().home()].concat();
+    for (number, slice) in
+        ["joints", "imaginary", "reachable", "within_limits"].into_iter().enumerate()
+    {
+        for off in [-1_isize, 1] {
+            let mut given = lengths;
+            given[number] = given[number].strict_add_signed(off);
+            let (mut values, mut cuts) = (vec![0.0; given[0]], vec![0.0; given[1]]);
+            let (mut reachable, mut within_limits) = (vec![false; given[2]], vec![false; given[3]]);
+            let mut out = BatchOutput {
+                joints: &mut values,
+                imaginary: &mut cuts,
+                reachable: &mut reachable,
+                within_limits: &mut within_limits,
+            };
+            let mode = manipulator.home_mode();
+            let error = manipulator.inverse_many(&poses, mode, &mut manipulator.batch(), &mut out);
+            let expected =
+                BatchError::Output { slice, given: given[number], expected: lengths[number] };
+            assert_eq!(error, Err(expected));
+            assert!(!reachable.contains(&true));
+        }
+    }
+    let mut out = BatchOutput {
+        joints: &mut [],
+        imaginary: &mut [],
+        reachable: &mut [],
+        within_limits: &mut [],
+    };
+    let mode = manipulator.home_mode();
+    let error = manipulator.inverse_many(&poses[1..], mode, &mut manipulator.batch(), &mut out);
+    assert_eq!(error, Err(BatchError::Poses { given: poses.len() - 1, width: 5 }));
 }

@@ -105,9 +105,9 @@ impl Alone {
         let modes: Vec<_> = all.modes(&self.manipulator).collect();
         let mut found = Vec::new();
         for mode in modes {
-            assert!(self.manipulator.pick(&all, mode, &mut solution));
+            assert!(self.manipulator.solution_in_mode(&all, mode, &mut solution).is_some());
             let coordinates = self.manipulator.coordinates();
-            let q = solution.joints.iter().zip(coordinates).map(|(q, c)| q - c.home);
+            let q = solution.joints().iter().zip(coordinates).map(|(q, c)| q - c.home);
             found.push(DVector::from_iterator(coordinates.len(), q));
         }
         found

@@ -40,11 +40,11 @@ fn every_branch_closes_every_original_leg() {
             let mut all = manipulator.all_modes();
             let mut solution = manipulator.solution();
             let mut same = manipulator.solution();
-            let mut drives = manipulator.drives();
+            let mut drives = manipulator.actuated_joints();
             for _ in 0..20 {
                 let pose = pose(&mut rng, &manipulator);
                 poses += 1;
-                let any = manipulator.inverse_all(&pose, &mut all).unwrap();
+                let any = manipulator.inverse_all(&pose, &mut all).unwrap().is_some();
                 assert_eq!(any, all.modes(&manipulator).next().is_some());
                 reached += usize::from(any);
                 if any {
@@ -53,8 +53,8 @@ fn every_branch_closes_every_original_leg() {
                 let target = manipulator.task().displacement(&pose);
                 for mode in all.modes(&manipulator) {
                     solutions += 1;
-                    assert!(manipulator.pick(&all, mode, &mut solution));
-                    let mut joints = &solution.joints[..];
+                    assert!(manipulator.solution_in_mode(&all, mode, &mut solution).is_some());
+                    let mut joints = solution.joints();
                     for leg in &manipulator.mechanism().legs {
                         let (own, rest) = joints.split_at(leg.coordinates().count());
                         joints = rest;
@@ -64,21 +64,23 @@ fn every_branch_closes_every_original_leg() {
                         worst = worst.max(off);
                         assert!(off < CLOSURE, "{pair:?} {}: off by {off:e}", leg.name);
                     }
-                    assert!(manipulator.inverse(&pose, mode, &mut same).unwrap());
+                    assert!(manipulator.inverse(&pose, mode, &mut same).unwrap().is_some());
                     assert_eq!(solution, same);
-                    assert!(manipulator.inverse_drives(&pose, mode, &mut drives).unwrap());
-                    for (&coordinate, drive) in manipulator.actuated().iter().zip(&drives.actuated)
+                    assert!(
+                        manipulator.inverse_actuated(&pose, mode, &mut drives).unwrap().is_some()
+                    );
+                    for (&coordinate, drive) in manipulator.actuated().iter().zip(drives.actuated())
                     {
-                        assert!((solution.joints[coordinate] - drive).abs() < 1e-12);
+                        assert!((solution.joints()[coordinate] - drive).abs() < 1e-12);
                     }
-                    assert_eq!(solution.imaginary, drives.imaginary);
-                    assert_eq!(solution.within_limits, drives.within_limits);
+                    assert_eq!(solution.imaginary(), drives.imaginary());
+                    assert_eq!(solution.within_limits(), drives.within_limits());
                     let within =
-                        manipulator.coordinates().iter().zip(&solution.joints).all(|(c, q)| {
+                        manipulator.coordinates().iter().zip(solution.joints()).all(|(c, q)| {
                             c.limits
                                 .is_none_or(|[low, high]| (low - 1e-9..=high + 1e-9).contains(q))
                         });
-                    assert_eq!(solution.within_limits, within, "{pair:?}");
+                    assert_eq!(solution.within_limits(), within, "{pair:?}");
                 }
             }
         }
@@ -109,11 +111,13 @@ fn home_is_where_the_joints_are() {
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
             let home = manipulator.task().home();
-            let reached =
-                manipulator.inverse(&home, manipulator.home_mode(), &mut solution).unwrap();
-            assert!(reached, "{pair:?}: {:?}", solution.unreachable);
-            assert!(solution.within_limits);
-            for (coordinate, q) in manipulator.coordinates().iter().zip(&solution.joints) {
+            let reached = manipulator
+                .inverse(&home, manipulator.home_mode(), &mut solution)
+                .unwrap()
+                .is_some();
+            assert!(reached, "{pair:?}: {:?}", solution.unreachable());
+            assert!(solution.within_limits());
+            for (coordinate, q) in manipulator.coordinates().iter().zip(solution.joints()) {
                 // A home near the rim of a chain's reach loses half of the digits.
                 let off = (coordinate.home - q).abs();
                 assert!(off < 1e-6, "{pair:?} {}: off by {off:e}", coordinate.name);
@@ -145,14 +149,14 @@ fn angles_stay_on_their_branch_along_a_path() {
             let mut solution = manipulator.solution();
             let mut pose = manipulator.task().home();
             let direction: Vec<f64> = pose.iter().map(|_| rng.f64() * 2.0 - 1.0).collect();
-            assert!(manipulator.inverse(&pose, mode, &mut solution).unwrap());
+            assert!(manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some());
             for _ in 0..4_000 {
-                let before = solution.joints.clone();
+                let before = solution.joints().to_vec();
                 pose.iter_mut().zip(&direction).for_each(|(q, d)| *q += 0.002 * d);
-                if !manipulator.inverse_near(&pose, mode, &mut solution).unwrap() {
+                if manipulator.inverse_near(&pose, mode, &mut solution).unwrap().is_none() {
                     break;
                 }
-                let pairs = solution.joints.iter().zip(&before);
+                let pairs = solution.joints().iter().zip(&before);
                 for ((after, before), c) in pairs.zip(manipulator.coordinates()) {
                     let angle = c.quantity.unit() == "rad" && !screws.contains(&c.name.as_str());
                     assert!(
@@ -161,7 +165,7 @@ fn angles_stay_on_their_branch_along_a_path() {
                         c.name
                     );
                 }
-                turned += usize::from(solution.joints.iter().zip(manipulator.coordinates()).any(
+                turned += usize::from(solution.joints().iter().zip(manipulator.coordinates()).any(
                     |(q, c)| {
                         (q - c.home).abs() > std::f64::consts::PI && c.quantity.unit() == "rad"
                     },
@@ -184,7 +188,9 @@ fn picked_modes_are_those_of_inverse() {
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut all = manipulator.all_modes();
             let (mut one, mut picked) = (manipulator.solution(), manipulator.solution());
-            assert!(!manipulator.pick(&all, manipulator.home_mode(), &mut picked));
+            assert!(
+                manipulator.solution_in_mode(&all, manipulator.home_mode(), &mut picked).is_none()
+            );
             assert_eq!(all.modes(&manipulator).count(), 0);
             for _ in 0..10 {
                 let pose = pose(&mut rng, &manipulator);
@@ -193,9 +199,12 @@ fn picked_modes_are_those_of_inverse() {
                     let sign = |i| if signs >> i & 1 == 1 { '-' } else { '+' };
                     let text: String = (0..manipulator.choices()).map(sign).collect();
                     let mode = manipulator.parse_mode(&text).unwrap();
-                    let inside = manipulator.inverse(&pose, mode, &mut one).unwrap();
-                    assert_eq!(manipulator.pick(&all, mode, &mut picked), inside);
-                    assert_eq!(picked.unreachable, one.unreachable, "{pair:?} {text}");
+                    let inside = manipulator.inverse(&pose, mode, &mut one).unwrap().is_some();
+                    assert_eq!(
+                        manipulator.solution_in_mode(&all, mode, &mut picked).is_some(),
+                        inside
+                    );
+                    assert_eq!(picked.unreachable(), one.unreachable(), "{pair:?} {text}");
                     if inside {
                         assert_eq!(picked, one);
                     }
@@ -222,8 +231,8 @@ fn a_path_starts_at_home() {
             let mut solution = manipulator.solution();
             let home = manipulator.task().home();
             let mode = manipulator.home_mode();
-            assert!(manipulator.inverse_near(&home, mode, &mut solution).unwrap());
-            for (coordinate, q) in manipulator.coordinates().iter().zip(&solution.joints) {
+            assert!(manipulator.inverse_near(&home, mode, &mut solution).unwrap().is_some());
+            for (coordinate, q) in manipulator.coordinates().iter().zip(solution.joints()) {
                 let off = (coordinate.home - q).abs();
                 assert!(off < 1e-6, "{pair:?} {}: off by {off:e}", coordinate.name);
             }
@@ -249,10 +258,10 @@ fn enormous_poses_are_answered_or_refused() {
                 };
                 let pose: Vec<f64> = manipulator.task_coordinates().iter().map(far).collect();
                 let mode = manipulator.home_mode();
-                let Ok(true) = manipulator.inverse(&pose, mode, &mut solution) else { continue };
+                let Ok(Some(_)) = manipulator.inverse(&pose, mode, &mut solution) else { continue };
                 answered += 1;
                 let target = manipulator.task().displacement(&pose);
-                let mut joints = &solution.joints[..];
+                let mut joints = solution.joints();
                 for leg in &manipulator.mechanism().legs {
                     let (own, rest) = joints.split_at(leg.coordinates().count());
                     joints = rest;
@@ -291,14 +300,14 @@ fn a_path_beyond_limits_does_not_jump() {
             let direction: Vec<f64> = pose.iter().map(|_| rng.f64() * 2.0 - 1.0).collect();
             let screws = screws(&manipulator);
             for _ in 0..1_000 {
-                let before = solution.joints.clone();
+                let before = solution.joints().to_vec();
                 pose.iter_mut().zip(&direction).for_each(|(q, d)| *q += STEP * d);
-                if !manipulator.inverse_near(&pose, mode, &mut solution).unwrap() {
+                if manipulator.inverse_near(&pose, mode, &mut solution).unwrap().is_none() {
                     break;
                 }
                 let mut within = true;
                 for ((q, before), c) in
-                    solution.joints.iter().zip(&before).zip(manipulator.coordinates())
+                    solution.joints().iter().zip(&before).zip(manipulator.coordinates())
                 {
                     let [low, high] = c.limits.unwrap();
                     within &= (low - 1e-9..=high + 1e-9).contains(q);
@@ -306,7 +315,7 @@ fn a_path_beyond_limits_does_not_jump() {
                     let turn = angle && (q - before).abs() > 6.0;
                     assert!(!turn, "{pair:?} {} from {before} to {q}", c.name);
                 }
-                assert_eq!(solution.within_limits, within, "{pair:?}");
+                assert_eq!(solution.within_limits(), within, "{pair:?}");
                 inside += u32::from(within);
                 beyond += u32::from(!within);
             }

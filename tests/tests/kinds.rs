@@ -80,8 +80,8 @@ fn the_whole_is_what_both_sections_reach() {
                 manipulator.inverse_all(&pose, &mut all).unwrap();
                 let mut any = false;
                 for &mode in &modes {
-                    let reached =
-                        manipulator.pick(&all, mode, &mut solution) && solution.within_limits;
+                    let reached = manipulator.solution_in_mode(&all, mode, &mut solution).is_some()
+                        && solution.within_limits();
                     let meet = sections_meet(&manipulator, &pose, Some(mode));
                     any |= reached;
                     assert!(meet || !reached, "{pair:?} {pose:?} {mode:?}");
@@ -518,7 +518,7 @@ fn the_global_index_is_the_mean_of_the_local_ones() {
     let local: Vec<f64> = reached
         .iter()
         .map(|pose| {
-            assert!(manipulator.inverse(pose, mode, &mut solution).unwrap());
+            assert!(manipulator.inverse(pose, mode, &mut solution).unwrap().is_some());
             manipulator.differentiate(&solution, &mut jacobians).unwrap();
             manipulator.conditioning(&jacobians, length).condition.recip()
         })

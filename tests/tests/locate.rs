@@ -81,7 +81,7 @@ fn the_platforms_place_is_its_point_and_its_orientation() {
     for _ in 0..20 {
         let home = manipulator.task().home();
         let pose: Vec<f64> = home.iter().map(|q| q + rng.f64() - 0.5).collect();
-        let place = manipulator.platform_pose(&pose);
+        let place = manipulator.platform_pose(&pose).unwrap();
         let [z, y] = [Vector3::z_axis(), Vector3::y_axis()];
         let turn = UnitQuaternion::from_axis_angle(&z, pose[2])
             * UnitQuaternion::from_axis_angle(&y, pose[3])
@@ -89,12 +89,12 @@ fn the_platforms_place_is_its_point_and_its_orientation() {
         assert!(place.rotation.angle_to(&turn) < 1e-12);
         assert!((place.translation.vector - Vector3::new(pose[0], pose[1], 0.0)).norm() < 1e-12);
         let back = manipulator.locate_platform(&place).unwrap();
-        assert!(off(&manipulator.platform_pose(&back), &place) < 1e-8);
+        assert!(off(&manipulator.platform_pose(&back).unwrap(), &place) < 1e-8);
     }
     for pair in PAIRS {
         let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        let home = manipulator.platform_pose(&manipulator.task().home());
+        let home = manipulator.platform_pose(&manipulator.task().home()).unwrap();
         assert!(home.rotation.angle() < 1e-12);
         assert!((home.translation.vector - manipulator.mechanism().platform.coords).norm() < 1e-12);
     }

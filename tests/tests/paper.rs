@@ -46,30 +46,30 @@ fn golden_vectors_of_the_plano_spherical_manipulator() {
         for row in &rows {
             let pose = ["x", "y", "zeta", "xi", "psi"].map(|name| row[name].parse().unwrap());
             let mode = manipulator.parse_mode(&row["mode"]).unwrap();
-            let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap();
+            let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some();
             assert_eq!(reached, row["closes"] == "1", "{name} {row:?}");
             if !reached {
                 continue;
             }
             closed += 1;
-            within += u32::from(solution.within_limits);
-            assert_eq!(solution.within_limits, row["within_limits"] == "1", "{name} {row:?}");
+            within += u32::from(solution.within_limits());
+            assert_eq!(solution.within_limits(), row["within_limits"] == "1", "{name} {row:?}");
             for (number, theta) in ["theta11", "theta12", "theta13"].iter().enumerate() {
                 // A joint list reports the imaginary joint from home on.
                 let found = if name.ends_with("joints") {
                     let home = paper_home().theta[number];
-                    home + solution.imaginary[number]
+                    home + solution.imaginary()[number]
                 } else {
-                    solution.imaginary[number]
+                    solution.imaginary()[number]
                 };
                 assert!(close_angle(found, row[*theta].parse().unwrap()), "{name} {theta} {row:?}");
             }
             for slider in ["S1", "S2", "S3"] {
-                let found = value_of(&manipulator, &solution.joints, slider);
+                let found = value_of(&manipulator, solution.joints(), slider);
                 assert!((found - row[slider].parse::<f64>().unwrap()).abs() < AGREE, "{row:?}");
             }
             for arm in ["phi14", "phi24"] {
-                let found = value_of(&manipulator, &solution.joints, arm);
+                let found = value_of(&manipulator, solution.joints(), arm);
                 assert!(close_angle(found, row[arm].parse().unwrap()), "{name} {arm} {row:?}");
             }
         }
@@ -95,18 +95,18 @@ fn golden_vectors_of_the_translational_helical_manipulator() {
         let rows = rows("translational_helical_ik.csv");
         for row in &rows {
             let pose = ["x", "y", "phi"].map(|name| row[name].parse().unwrap());
-            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap());
-            assert_eq!(solution.within_limits, row["within_limits"] == "1", "{name} {row:?}");
+            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap().is_some());
+            assert_eq!(solution.within_limits(), row["within_limits"] == "1", "{name} {row:?}");
             for slider in ["S1", "S2", "S3"] {
-                let found = value_of(&manipulator, &solution.joints, slider);
+                let found = value_of(&manipulator, solution.joints(), slider);
                 let expected: f64 = row[slider].parse().unwrap();
                 assert!((found - expected).abs() < AGREE, "{name} {slider} {found} {expected}");
             }
             let imaginary: f64 = row["S"].parse().unwrap();
-            assert!((solution.imaginary[0].abs() - imaginary.abs()).abs() < AGREE, "{name}");
+            assert!((solution.imaginary()[0].abs() - imaginary.abs()).abs() < AGREE, "{name}");
             if !name.ends_with("joints") {
                 assert_eq!(manipulator.imaginary()[0].name, "S");
-                assert!((solution.imaginary[0] - imaginary).abs() < AGREE, "{name}");
+                assert!((solution.imaginary()[0] - imaginary).abs() < AGREE, "{name}");
             }
         }
         assert_eq!(rows.len(), 100);
@@ -134,12 +134,12 @@ fn published_imaginary_joints() {
         {
             manipulator.inverse_all(&[x, y, zeta, xi, psi], &mut all).unwrap();
             for mode in all.modes(&manipulator) {
-                assert!(manipulator.pick(&all, mode, &mut solution));
+                assert!(manipulator.solution_in_mode(&all, mode, &mut solution).is_some());
                 let signs = manipulator.format_mode(mode);
                 for leg in 0..3 {
                     let upper = signs.split(' ').nth(leg).unwrap().starts_with('+');
                     let expected: f64 = if upper { plus[leg] } else { minus[leg] };
-                    let apart = (solution.imaginary[leg] - expected).rem_euclid(TAU);
+                    let apart = (solution.imaginary()[leg] - expected).rem_euclid(TAU);
                     assert!(apart.min(TAU - apart) < 1e-6, "{degrees:?} leg {leg} {signs}");
                     seen[leg][usize::from(upper)] = true;
                 }
@@ -186,14 +186,14 @@ fn the_papers_formulas_on_random_geometries() {
                 near(0.0, 1.0),
                 near(0.0, PI),
             ];
-            let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap();
+            let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some();
             let Some(expected) = oracle.inverse(&pose, &signs) else {
                 outside += 1;
                 let gap = |u: &opm_core::manipulator::Unreachable| u.gap.excess < RIM;
-                assert!(!reached || solution.unreachable.iter().all(gap));
+                assert!(!reached || solution.unreachable().iter().all(gap));
                 continue;
             };
-            assert!(reached, "{:?}", solution.unreachable);
+            assert!(reached, "{:?}", solution.unreachable());
             compared += 1;
             // Derivatives grow like one over the root of the distance to the rim.
             let near_rim = oracle.legs.iter().zip(expected.theta).any(|(leg, theta)| {
@@ -202,13 +202,13 @@ fn the_papers_formulas_on_random_geometries() {
             }) || expected.arm[1].sin().abs() < 1e-3;
             let agree = if near_rim { 1e-5 } else { 1e-9 };
             for i in 0..3 {
-                let slider = value_of(&manipulator, &solution.joints, &format!("S{}", i + 1));
+                let slider = value_of(&manipulator, solution.joints(), &format!("S{}", i + 1));
                 assert!((slider - expected.slider[i]).abs() < agree, "{pose:?} {signs:?} S{i}");
-                let apart = (solution.imaginary[i] - expected.theta[i]).rem_euclid(TAU);
+                let apart = (solution.imaginary()[i] - expected.theta[i]).rem_euclid(TAU);
                 assert!(apart.min(TAU - apart) < 1e-6, "{pose:?} {signs:?} theta{i}");
             }
             for (i, name) in ["phi14", "phi24"].iter().enumerate() {
-                let found = value_of(&manipulator, &solution.joints, name);
+                let found = value_of(&manipulator, solution.joints(), name);
                 let apart = (found - expected.arm[i]).rem_euclid(TAU);
                 assert!(apart.min(TAU - apart) < agree, "{pose:?} {signs:?} {name}");
             }
@@ -237,14 +237,14 @@ fn the_helical_formulas_on_random_geometries() {
         let mut solution = manipulator.solution();
         for _ in 0..50 {
             let pose = [rng.f64() - 0.5, rng.f64() - 0.5, 30.0 * (rng.f64() - 0.5)];
-            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap());
+            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap().is_some());
             for (i, leg) in legs.iter().enumerate() {
-                let found = value_of(&manipulator, &solution.joints, &format!("S{}", i + 1));
+                let found = value_of(&manipulator, solution.joints(), &format!("S{}", i + 1));
                 let expected = leg.slider([pose[0], pose[1]], pose[2]);
                 assert!((found - expected).abs() < 1e-11, "{legs:?} {pose:?} S{i}");
             }
             let expected = legs[pitched].pitch * pose[2];
-            assert!((solution.imaginary[0] - expected).abs() < 1e-11);
+            assert!((solution.imaginary()[0] - expected).abs() < 1e-11);
         }
     }
 }
@@ -277,9 +277,12 @@ fn family_and_joint_list_agree() {
             let modes: Vec<Mode> = all.modes(&family).collect();
             assert_eq!(modes, other.modes(&list).collect::<Vec<_>>(), "{pose:?}");
             for mode in modes {
-                assert!(family.pick(&all, mode, &mut a) && list.pick(&other, mode, &mut b));
-                assert_eq!(a.within_limits, b.within_limits);
-                for ((p, q), c) in a.joints.iter().zip(&b.joints).zip(family.coordinates()) {
+                assert!(
+                    family.solution_in_mode(&all, mode, &mut a).is_some()
+                        && list.solution_in_mode(&other, mode, &mut b).is_some()
+                );
+                assert_eq!(a.within_limits(), b.within_limits());
+                for ((p, q), c) in a.joints().iter().zip(b.joints()).zip(family.coordinates()) {
                     // The list's coordinates are written with twelve digits or more.
                     assert!((p - q).abs() < 1e-8 || close_angle(*p, *q), "{} {p} {q}", c.name);
                 }

@@ -158,8 +158,9 @@ fn limits_that_lie_on_poses_are_no_exception() {
         let reached: Vec<Vec<f64>> = (0..200)
             .filter_map(|_| {
                 let pose = grid.pose(rng.u64(..grid.poses()));
-                let reached = free.inverse(&pose, free.home_mode(), &mut solution).unwrap();
-                reached.then(|| solution.joints.clone())
+                let reached =
+                    free.inverse(&pose, free.home_mode(), &mut solution).unwrap().is_some();
+                reached.then(|| solution.joints().to_vec())
             })
             .take(2)
             .collect();
@@ -273,8 +274,8 @@ fn fine_grids_are_no_exception() {
         let mut solution = manipulator.solution();
         let mut reached = |x: f64| {
             pose[0] = x;
-            manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap()
-                && solution.within_limits
+            manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap().is_some()
+                && solution.within_limits()
         };
         let home = manipulator.task_coordinates()[0].home;
         let [mut within, mut out] = [home + rng.f64() - 0.5, home + 3.0 * (rng.f64() - 0.5)];

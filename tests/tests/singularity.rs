@@ -31,7 +31,7 @@ struct Found {
 
 fn look(manipulator: &Manipulator, pose: &[f64], mode: Mode) -> Option<Found> {
     let mut at = manipulator.solution();
-    manipulator.inverse(pose, mode, &mut at).unwrap().then(|| measure(manipulator, at))
+    manipulator.inverse(pose, mode, &mut at).unwrap().is_some().then(|| measure(manipulator, at))
 }
 
 fn measure(manipulator: &Manipulator, at: Solution) -> Found {
@@ -436,7 +436,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
                 manipulator.inverse_all(&pose, &mut all).unwrap();
                 for mode in all.modes(&manipulator) {
                     let mut at = manipulator.solution();
-                    assert!(manipulator.pick(&all, mode, &mut at));
+                    assert!(manipulator.solution_in_mode(&all, mode, &mut at).is_some());
                     let found = measure(&manipulator, at);
                     let rows = manipulator.actuated();
                     let jacobian = DMatrix::from_fn(freedoms, freedoms, |i, j| {
@@ -522,7 +522,7 @@ fn measures_do_not_depend_on_place_and_size() {
             let mut all = there.all_modes();
             there.inverse_all(&other, &mut all).unwrap();
             let off = |at: &Solution| -> f64 {
-                let each = here.coordinates().iter().zip(&found.at.joints).zip(&at.joints);
+                let each = here.coordinates().iter().zip(found.at.joints()).zip(at.joints());
                 let off = |((c, a), b): ((&opm_core::joint::JointCoordinate, &f64), &f64)| {
                     match c.quantity {
                         Quantity::Length => (a - b / size).abs(),
@@ -538,7 +538,7 @@ fn measures_do_not_depend_on_place_and_size() {
             };
             let mut at = there.solution();
             let nearest = all.modes(&there).map(|mode| {
-                assert!(there.pick(&all, mode, &mut at));
+                assert!(there.solution_in_mode(&all, mode, &mut at).is_some());
                 (off(&at), at.clone())
             });
             let (off, at) = nearest.min_by(|(a, _), (b, _)| a.total_cmp(b)).unwrap();

@@ -89,19 +89,19 @@ fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
             0 => manipulator.inverse(&instant.pose, mode, &mut solution),
             _ => manipulator.inverse_near(&instant.pose, mode, &mut solution),
         };
-        let reached = reached.unwrap();
+        let reached = reached.unwrap().is_some();
         let mut violated = Vec::new();
         let mut known = Vec::new();
         for (leg, lost) in lost.iter_mut().enumerate() {
             known.push(Gauge::Reach { leg });
-            if let Some(u) = solution.unreachable.iter().find(|u| u.leg == leg) {
+            if let Some(u) = solution.unreachable().iter().find(|u| u.leg == leg) {
                 violated.push((Gauge::Reach { leg }, u.gap.excess));
                 *lost = true;
             }
         }
         for (coordinate, c) in manipulator.coordinates().iter().enumerate() {
             let Some([low, high]) = c.limits else { continue };
-            if solution.unreachable.iter().any(|u| u.leg == leg_of[coordinate]) {
+            if solution.unreachable().iter().any(|u| u.leg == leg_of[coordinate]) {
                 continue;
             }
             // Back in reach, an angle is at the turn nearest to where it was lost: half a turn away, that
@@ -109,7 +109,7 @@ fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
             if lost[leg_of[coordinate]] && c.quantity == Quantity::Angle {
                 continue;
             }
-            let value = solution.joints[coordinate];
+            let value = solution.joints()[coordinate];
             for (bound, past) in [(Bound::Lowest, low - value), (Bound::Highest, value - high)] {
                 known.push(Gauge::Limit { coordinate, bound });
                 if past > 1e-9 {
@@ -290,7 +290,7 @@ fn joints_move_on_as_their_rates_say() {
             );
             let sample = trajectory.sample();
             assert!(sample.valid() && sample.regular && sample.condition < 100.0);
-            held.push((sample.solution.joints.clone(), sample.motion.joint_rates.clone()));
+            held.push((sample.solution.joints().to_vec(), sample.motion.joint_rates.clone()));
             if held.len() == 3 {
                 for (i, c) in manipulator.coordinates().iter().enumerate() {
                     let difference = (held[2].0[i] - held[0].0[i]) * 0.5 * rate;

@@ -6,21 +6,22 @@
 //! `I`, and both halves have closed forms. The decomposition is found from the joint screws.
 //!
 //! ```
-//! use opm_core::manipulator::Manipulator;
-//! use opm_core::mechanism::{examples, file};
+//! use opm_core::Manipulator;
 //!
-//! let text = examples::find("plano-spherical-5dof").unwrap().text;
-//! let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
 //! assert_eq!(manipulator.decomposition().upper.name(), "spherical");
 //!
-//! let mut solution = manipulator.solution();
-//! let pose = [0.01, 0.0, 0.0, 15_f64.to_radians(), 0.0]; // x y zeta xi psi
-//! let reached = manipulator.inverse(&pose, manipulator.home_mode(), &mut solution)?;
-//! assert!(reached && solution.within_limits);
-//! assert!((solution.joints[0] - 0.168806).abs() < 1e-6); // S1
+//! // Every joint at a pose, in the working mode that the mechanism is assembled in.
+//! let mut buffer = manipulator.solution();
+//! let pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+//! let mode = manipulator.home_mode();
+//! let solution = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
+//! assert!(solution.within_limits());
+//! assert!((solution.joints()[0] - 0.168806).abs() < 1e-6); // S1
 //!
 //! // The other way round: every pose that these actuated joints allow.
-//! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| solution.joints[i]).collect();
+//! let joints = solution.joints();
+//! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| joints[i]).collect();
 //! let found = manipulator.forward(&actuated)?;
 //! assert!(found.list.iter().any(|assembly| {
 //!     assembly.pose.iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-9)
@@ -55,6 +56,13 @@ pub mod skeleton;
 pub mod task;
 pub mod trajectory;
 pub mod velocity;
+
+pub use manipulator::{
+    ActuatedJoints, AllModes, Batch, BatchError, BatchOutput, CompileError, Manipulator, Mode,
+    PoseError, ReadError, Solution, Unreachable,
+};
+pub use mechanism::Mechanism;
+pub use nalgebra;
 
 // Paths as they were before the modules were layered.
 pub use chain::limits;

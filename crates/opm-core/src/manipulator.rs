@@ -20,15 +20,17 @@ mod locate;
 mod mode;
 pub(crate) mod plan;
 mod reach;
+mod read;
 
-pub use batch::{Answers, Batch, RowError};
+pub use batch::{Batch, BatchError, BatchOutput};
 pub use breaks::Breaks;
-pub use inverse::{AllModes, Drives, LARGEST, PoseError, Solution, Unreachable};
+pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
 pub use reach::Follow;
+pub use read::ReadError;
 
 use crate::chain::Chain;
 use crate::chain::limits::Limits;
@@ -66,6 +68,7 @@ pub struct ImaginaryJoint {
 
 /// Why a mechanism cannot be compiled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompileError {
     /// It does not decompose.
     #[error(transparent)]
@@ -189,7 +192,7 @@ impl Manipulator {
         &self.limits
     }
 
-    /// Numbers of the actuated coordinates, ascending: the order of [`Drives::actuated`].
+    /// Numbers of the actuated coordinates, ascending: the order of [`ActuatedJoints::actuated`].
     pub fn actuated(&self) -> &[usize] {
         &self.actuated
     }

@@ -320,7 +320,8 @@ impl Solver<'_> {
             Turns::Home => manipulator.inverse(pose, self.mode, solution),
             Turns::Held => manipulator.inverse_near(pose, self.mode, solution),
         };
-        out.reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
+        let reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
+        out.reached = reached.is_some();
         if out.reached {
             let differentiated = manipulator.differentiate(&out.solution, &mut self.jacobians);
             differentiated.map_err(|source| TrajectoryError::Velocity { time, source })?;

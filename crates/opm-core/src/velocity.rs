@@ -28,20 +28,19 @@
 //! first column for the leg with the helical joint alone (Eq. 29, without the divisor that the print has).
 //!
 //! ```
-//! use opm_core::manipulator::Manipulator;
-//! use opm_core::mechanism::{examples, file};
+//! use opm_core::Manipulator;
 //!
-//! let text = examples::find("plano-spherical-5dof").unwrap().text;
-//! let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
-//! let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
+//! let (mut buffer, mut motion) = (manipulator.solution(), manipulator.motion());
 //! let pose = [0.01, 0.0, 0.0, 0.26, 0.0]; // x y zeta xi psi
-//! assert!(manipulator.inverse(&pose, manipulator.home_mode(), &mut at)?);
+//! let mode = manipulator.home_mode();
+//! let at = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
 //! // x at 10 mm/s, zeta at 1 rad/s, everything at constant speed.
-//! let regular = manipulator.velocity(&at, &[0.01, 0.0, 1.0, 0.0, 0.0], &[0.0; 5], &mut motion)?;
+//! let regular = manipulator.velocity(at, &[0.01, 0.0, 1.0, 0.0, 0.0], &[0.0; 5], &mut motion)?;
 //! assert!(regular && (motion.imaginary_rates[0] - 1.0).abs() < 1e-12); // theta11 follows zeta
 //!
 //! let (mut jacobians, mut measured) = (manipulator.jacobians(), manipulator.singularities());
-//! manipulator.differentiate(&at, &mut jacobians)?;
+//! manipulator.differentiate(at, &mut jacobians)?;
 //! manipulator.measure_singularities(&jacobians, &mut measured);
 //! assert!(measured.whole.serial.abs() > 0.1 && measured.whole.parallel.unwrap().abs() > 0.1);
 //! let length = manipulator.characteristic_length();

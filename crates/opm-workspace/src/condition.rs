@@ -26,7 +26,7 @@ impl ConditionLimit {
         solution: &Solution,
         jacobians: &mut Jacobians,
     ) -> Option<f64> {
-        if !solution.within_limits || manipulator.differentiate(solution, jacobians).is_err() {
+        if !solution.within_limits() || manipulator.differentiate(solution, jacobians).is_err() {
             return None;
         }
         let condition = manipulator.conditioning(jacobians, self.length).condition;
@@ -85,21 +85,22 @@ impl<'a> Conditioned<'a> {
         match modes {
             Modes::One(mode) => {
                 let Self { solution, jacobians, limit, condition, .. } = self;
-                let reached = manipulator.inverse(pose, mode, solution) == Ok(true);
-                let admit = || limit.admits(manipulator, solution, jacobians);
-                if let Some(admitted) = reached.then(admit).flatten() {
+                if let Ok(Some(solution)) = manipulator.inverse(pose, mode, solution)
+                    && let Some(admitted) = limit.admits(manipulator, solution, jacobians)
+                {
                     (found, *condition) = (true, admitted);
                     go_on(solution);
                 }
             }
             Modes::Any => {
-                if manipulator.inverse_all(pose, &mut self.all) != Ok(true) {
-                    return false;
-                }
                 let Self { all, solution, jacobians, limit, condition, .. } = self;
+                let Ok(Some(all)) = manipulator.inverse_all(pose, all) else {
+                    return false;
+                };
                 for mode in all.modes(manipulator) {
-                    manipulator.pick(all, mode, solution);
-                    if let Some(admitted) = limit.admits(manipulator, solution, jacobians) {
+                    if let Some(solution) = manipulator.solution_in_mode(all, mode, solution)
+                        && let Some(admitted) = limit.admits(manipulator, solution, jacobians)
+                    {
                         (found, *condition) = (true, admitted);
                         if !go_on(solution) {
                             break;

@@ -109,12 +109,12 @@ fn regular(paper: &PlanoSpherical, pose: &[f64; 5], joints: &Joints) -> bool {
 }
 
 fn inverse(manipulator: &Manipulator, signs: &Signs, pose: &[f64; 5]) -> Option<Joints> {
-    let mut drives = manipulator.drives();
+    let mut drives = manipulator.actuated_joints();
     let mode = manipulator.parse_mode(&signs.written()).unwrap();
-    manipulator.inverse_drives(pose, mode, &mut drives).unwrap().then(|| Joints {
-        theta: drives.imaginary[..].try_into().unwrap(),
-        slider: drives.actuated[..3].try_into().unwrap(),
-        arm: drives.actuated[3..].try_into().unwrap(),
+    manipulator.inverse_actuated(pose, mode, &mut drives).unwrap().is_some().then(|| Joints {
+        theta: drives.imaginary()[..].try_into().unwrap(),
+        slider: drives.actuated()[..3].try_into().unwrap(),
+        arm: drives.actuated()[3..].try_into().unwrap(),
     })
 }
 

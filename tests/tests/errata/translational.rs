@@ -23,7 +23,7 @@ fn translational_legs(mut visit: impl FnMut(&TranslationalLeg, f64, [f64; 2], [f
         let manipulator = Manipulator::new(mechanism).unwrap();
         let at = |pose: [f64; 3]| {
             let mut solution = manipulator.solution();
-            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap());
+            assert!(manipulator.inverse(&pose, Mode::default(), &mut solution).unwrap().is_some());
             solution
         };
         let [x, y, phi] = [rng.f64() - 0.5, rng.f64() - 0.5, 10.0 * (rng.f64() - 0.5)];
@@ -34,8 +34,8 @@ fn translational_legs(mut visit: impl FnMut(&TranslationalLeg, f64, [f64; 2], [f
         let moved = steps.map(|[dx, dy, dphi]| at([x + dx, y + dy, phi + dphi]));
         for (i, leg) in legs.iter().enumerate() {
             let k = leg.k + if i == pitched { imaginary } else { 0.0 };
-            let [slider, foot] = [found.joints[3 * i], found.joints[3 * i + 1]];
-            let derivatives = [0, 1, 2].map(|d: usize| moved[d].joints[3 * i] - slider);
+            let [slider, foot] = [found.joints()[3 * i], found.joints()[3 * i + 1]];
+            let derivatives = [0, 1, 2].map(|d: usize| moved[d].joints()[3 * i] - slider);
             visit(leg, k, [x, y], [slider, foot], derivatives);
         }
     }

@@ -35,9 +35,7 @@ fn home_is_an_assembly() {
 /// Determinant of the actuated joints' rates by the section twist, in the home mode; `None` out of reach.
 fn determinant(m: &Manipulator, pose: &[f64]) -> Option<f64> {
     let mut solution = m.solution();
-    if !m.inverse(pose, m.home_mode(), &mut solution).unwrap() {
-        return None;
-    }
+    m.inverse(pose, m.home_mode(), &mut solution).unwrap()?;
     let mut jacobians = m.jacobians();
     m.differentiate(&solution, &mut jacobians).unwrap().then(|| {
         let n = m.actuated().len();

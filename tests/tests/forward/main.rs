@@ -45,10 +45,8 @@ struct Reached {
 impl Reached {
     fn at(m: &Manipulator, pose: Vec<f64>, mode: Mode) -> Option<Self> {
         let mut solution = m.solution();
-        if !m.inverse(&pose, mode, &mut solution).unwrap() {
-            return None;
-        }
-        let actuated = m.actuated().iter().map(|&i| solution.joints[i]).collect();
+        m.inverse(&pose, mode, &mut solution).unwrap()?;
+        let actuated = m.actuated().iter().map(|&i| solution.joints()[i]).collect();
         Some(Self { pose, mode, actuated })
     }
 
@@ -62,7 +60,7 @@ impl Reached {
                     c.home + reach * (2.0 * rng.f64() - 1.0)
                 })
                 .collect();
-            if m.inverse_all(&pose, &mut all).unwrap() {
+            if m.inverse_all(&pose, &mut all).unwrap().is_some() {
                 let modes: Vec<Mode> = all.modes(m).collect();
                 return Self::at(m, pose, modes[rng.usize(..modes.len())]).unwrap();
             }
@@ -113,11 +111,11 @@ fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
         );
     }
     let mut solution = m.solution();
-    assert!(m.inverse(&a.pose, a.mode, &mut solution).unwrap());
+    assert!(m.inverse(&a.pose, a.mode, &mut solution).unwrap().is_some());
     for (&i, &given) in m.actuated().iter().zip(actuated) {
         let name = &m.coordinates()[i].name;
         assert!(off(m, i, a.joints[i], given) < 1e-12, "{name} {} {given}", a.joints[i]);
-        assert!(off(m, i, solution.joints[i], given) < BACK, "{name} {}", solution.joints[i]);
+        assert!(off(m, i, solution.joints()[i], given) < BACK, "{name} {}", solution.joints()[i]);
     }
 }
 

@@ -116,8 +116,7 @@ impl Manipulator {
             solution: self.solution(),
         };
         let mut jacobians = self.jacobians();
-        let reached = self.inverse(start, mode, &mut newton.solution)?;
-        if !reached {
+        if self.inverse(start, mode, &mut newton.solution)?.is_none() {
             let why = Stop::OutOfReach(newton.solution.unreachable[0]);
             return Err(newton.ended(why, 0, f64::INFINITY).into());
         }
@@ -239,7 +238,7 @@ impl Newton<'_> {
             let moved_v = v.after(&lower.first_order(&low));
             let pose = m.task().pose(&moved_v, &moved_b);
             match m.inverse(&pose, self.mode, &mut tried) {
-                Ok(true) => {
+                Ok(Some(_)) => {
                     std::mem::swap(&mut self.solution, &mut tried);
                     let after = self.off();
                     if after.norm() < off.norm() {
@@ -250,7 +249,7 @@ impl Newton<'_> {
                     std::mem::swap(&mut self.solution, &mut tried);
                     stop = Stop::Stalled;
                 }
-                Ok(false) => stop = Stop::OutOfReach(tried.unreachable[0]),
+                Ok(None) => stop = Stop::OutOfReach(tried.unreachable[0]),
                 Err(_) => stop = Stop::Stalled,
             }
             if off.amax() <= ARRIVED {
@@ -277,9 +276,9 @@ mod tests {
             for sign in [-1.0, 1.0] {
                 let aim: Vec<f64> = home.iter().map(|q| q + 0.02 * sign).collect();
                 let mut solution = m.solution();
-                assert!(m.inverse(&aim, m.home_mode(), &mut solution).unwrap());
+                assert!(m.inverse(&aim, m.home_mode(), &mut solution).unwrap().is_some());
                 let wanted: Vec<f64> = m.actuated().iter().map(|&i| solution.joints[i]).collect();
-                assert!(m.inverse(&home, m.home_mode(), &mut solution).unwrap());
+                assert!(m.inverse(&home, m.home_mode(), &mut solution).unwrap().is_some());
                 let mut newton = Newton {
                     manipulator: &m,
                     wanted: &wanted,

@@ -21,7 +21,7 @@ use section::{Found, Side};
 
 /// Where [`Manipulator::inverse_many`] puts what it finds: a row for every pose.
 #[derive(Debug)]
-pub struct Answers<'a> {
+pub struct BatchOutput<'a> {
     /// Every joint coordinate, in the order of [`Manipulator::coordinates`], row after row; radians and
     /// metres, NaN in the rows of poses that are out of reach.
     pub joints: &'a mut [f64],
@@ -33,14 +33,55 @@ pub struct Answers<'a> {
     pub within_limits: &'a mut [bool],
 }
 
-/// One of many poses that cannot be computed with.
+/// Why many poses cannot be computed with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("pose {row}: {error}")]
-pub struct RowError {
-    /// Its number, from zero.
-    pub row: usize,
-    /// Why.
-    pub error: PoseError,
+#[non_exhaustive]
+pub enum BatchError {
+    /// One of the poses cannot be computed with.
+    #[error("pose {row}: {error}")]
+    Pose {
+        /// The number of its row, from zero.
+        row: usize,
+        /// What is wrong with it.
+        error: PoseError,
+    },
+    /// The numbers given are not whole poses.
+    #[error("{given} numbers, expected a multiple of {width}, the number of task coordinates")]
+    Poses {
+        /// How many numbers were given.
+        given: usize,
+        /// How many a pose has.
+        width: usize,
+    },
+    /// A slice of the output has not one row for every pose.
+    #[error("{given} elements in {slice} of the output, expected {expected}")]
+    Output {
+        /// The field of [`BatchOutput`].
+        slice: &'static str,
+        /// How many elements it has.
+        given: usize,
+        /// How many it needs.
+        expected: usize,
+    },
+}
+
+impl BatchOutput<'_> {
+    /// Refuses slices that have not one row for every pose.
+    fn check(&self, count: usize, [joints, imaginary]: [usize; 2]) -> Result<(), BatchError> {
+        let slices = [
+            ("joints", self.joints.len(), count * joints),
+            ("imaginary", self.imaginary.len(), count * imaginary),
+            ("reachable", self.reachable.len(), count),
+            ("within_limits", self.within_limits.len(), count),
+        ];
+        slices.into_iter().try_for_each(|(slice, given, expected)| {
+            if given == expected {
+                Ok(())
+            } else {
+                Err(BatchError::Output { slice, given, expected })
+            }
+        })
+    }
 }
 
 /// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`].
@@ -103,43 +144,61 @@ impl Manipulator {
     /// [`Manipulator::inverse`] of many poses, row after row, to the bit, several times as fast.
     ///
     /// # Errors
-    /// The first pose with a coordinate that is not a finite number. What `out` then holds is not to be
-    /// read.
+    /// The first pose with a coordinate that is not a finite number (what `out` then holds means
+    /// nothing), numbers that are not whole poses, or a slice of `out` that has not one row for every
+    /// pose.
     ///
-    /// # Panics
-    /// If a slice of `out` has not a row for every pose.
+    /// ```
+    /// use opm_core::{BatchOutput, Manipulator};
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let poses = [0.0, 0.0, 0.0, 0.2, 0.0, /* the second one: */ 0.01, 0.0, 0.0, 0.26, 0.0];
+    /// let (joints, imaginary) = (manipulator.coordinates().len(), manipulator.imaginary().len());
+    /// let (mut values, mut cuts) = (vec![0.0; 2 * joints], vec![0.0; 2 * imaginary]);
+    /// let (mut reachable, mut within_limits) = ([false; 2], [false; 2]);
+    /// let mut output = BatchOutput {
+    ///     joints: &mut values,
+    ///     imaginary: &mut cuts,
+    ///     reachable: &mut reachable,
+    ///     within_limits: &mut within_limits,
+    /// };
+    /// let mut batch = manipulator.batch();
+    /// manipulator.inverse_many(&poses, manipulator.home_mode(), &mut batch, &mut output)?;
+    /// assert_eq!(reachable, [true, true]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn inverse_many(
         &self,
         poses: &[f64],
         mode: Mode,
         batch: &mut Batch,
-        out: &mut Answers<'_>,
-    ) -> Result<(), RowError> {
+        out: &mut BatchOutput<'_>,
+    ) -> Result<(), BatchError> {
         let width = self.task.coordinates.len();
         let widths = [self.coordinates.len(), self.imaginary.len()];
         let count = poses.len() / width;
-        assert_eq!(poses.len(), count * width, "whole poses");
-        assert_eq!(out.joints.len(), count * widths[0], "a row of joints for every pose");
-        assert_eq!(out.imaginary.len(), count * widths[1], "a row of imaginary joints a pose");
-        assert_eq!(out.reachable.len(), count, "an answer for every pose");
-        assert_eq!(out.within_limits.len(), count, "an answer for every pose");
+        if !poses.len().is_multiple_of(width) {
+            return Err(BatchError::Poses { given: poses.len(), width });
+        }
+        out.check(count, widths)?;
         for (number, poses) in poses.chunks(LANES * width).enumerate() {
             let first = number * LANES;
             let rows = poses.len() / width;
             batch.block.take(poses, width);
-            let refused = |(row, error): (usize, PoseError)| RowError { row: first + row, error };
+            let refused =
+                |(row, error): (usize, PoseError)| BatchError::Pose { row: first + row, error };
             self.check(poses, &batch.block).map_err(refused)?;
             batch.arch.dispatch(Solve { manipulator: self, mode, block: &mut batch.block });
-            let mut answers = Answers {
+            let mut block_output = BatchOutput {
                 joints: &mut out.joints[first * widths[0]..][..rows * widths[0]],
                 imaginary: &mut out.imaginary[first * widths[1]..][..rows * widths[1]],
                 reachable: &mut out.reachable[first..][..rows],
                 within_limits: &mut out.within_limits[first..][..rows],
             };
-            batch.block.give(widths, &mut answers);
+            batch.block.give(widths, &mut block_output);
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
-                self.inverse_row(pose, mode, &mut batch.solution, row, &mut answers)
+                self.inverse_row(pose, mode, &mut batch.solution, row, &mut block_output)
                     .map_err(|error| refused((row, error)))?;
             }
         }
@@ -165,19 +224,23 @@ impl Manipulator {
         mode: Mode,
         solution: &mut Solution,
         row: usize,
-        out: &mut Answers<'_>,
+        out: &mut BatchOutput<'_>,
     ) -> Result<(), PoseError> {
         let joints = &mut out.joints[row * self.coordinates.len()..][..self.coordinates.len()];
         let imaginary = &mut out.imaginary[row * self.imaginary.len()..][..self.imaginary.len()];
-        out.reachable[row] = self.inverse(pose, mode, solution)?;
-        if out.reachable[row] {
-            joints.copy_from_slice(&solution.joints);
-            imaginary.copy_from_slice(&solution.imaginary);
-        } else {
-            joints.fill(f64::NAN);
-            imaginary.fill(f64::NAN);
+        let solution = self.inverse(pose, mode, solution)?;
+        match solution {
+            Some(solution) => {
+                joints.copy_from_slice(&solution.joints);
+                imaginary.copy_from_slice(&solution.imaginary);
+            }
+            None => {
+                joints.fill(f64::NAN);
+                imaginary.fill(f64::NAN);
+            }
         }
-        out.within_limits[row] = out.reachable[row] && solution.within_limits;
+        out.reachable[row] = solution.is_some();
+        out.within_limits[row] = solution.is_some_and(Solution::within_limits);
         Ok(())
     }
 }
@@ -217,7 +280,7 @@ impl Block {
     }
 
     /// Gives rows away, open ones too.
-    fn give(&self, widths: [usize; 2], out: &mut Answers<'_>) {
+    fn give(&self, widths: [usize; 2], out: &mut BatchOutput<'_>) {
         let mut tables = [
             (&mut *out.joints, &self.joints, widths[0]),
             (&mut *out.imaginary, &self.imaginary, widths[1]),

@@ -1,6 +1,8 @@
-//! Inverse kinematics: one working mode, all of them, or just what drives the platform.
+//! Inverse kinematics: one working mode, all of them, or the actuated joints alone.
 //!
-//! None of it allocates: results go into buffers that [`Manipulator`] makes once.
+//! Every function here is called alike. It takes a pose and a buffer that [`Manipulator`] made before,
+//! and returns what it wrote there: `Ok(Some(solution))`. A pose out of reach is an answer, `Ok(None)`;
+//! the buffer then says which legs are. An error means that the pose is no pose. Nothing allocates.
 
 use super::leg::{CompiledSection, LegSolution, Section, Slot};
 use super::{Manipulator, Mode};
@@ -15,6 +17,7 @@ pub const LARGEST: f64 = 1e75;
 
 /// A pose that cannot be computed with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PoseError {
     /// Another number of coordinates than the manipulator has.
     #[error("{given} coordinates, expected {expected}")]
@@ -32,6 +35,14 @@ pub enum PoseError {
         /// Its value.
         value: f64,
     },
+    /// A name that is not a task coordinate's.
+    #[error("no task coordinate is called {name}, expected {expected}")]
+    Unknown {
+        /// The name that was given.
+        name: String,
+        /// The names that there are.
+        expected: String,
+    },
 }
 
 /// A leg that a pose is out of reach of.
@@ -45,23 +56,21 @@ pub struct Unreachable {
     pub gap: ReachDeficit,
 }
 
-/// Every joint of one working mode; made by [`Manipulator::solution`].
+/// Every joint in one working mode at one pose. [`Manipulator::solution`] makes one, to be written to.
+///
+/// Its numbers can be read and not changed: velocities and Jacobians start from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// Every joint coordinate, in the order of [`Manipulator::coordinates`]; radians and metres.
-    pub joints: Vec<f64>,
-    /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
-    pub imaginary: Vec<f64>,
+    pub(crate) joints: Vec<f64>,
+    pub(crate) imaginary: Vec<f64>,
     /// Every leg's displacement along the intersection motion, reported or not.
     cuts: Vec<f64>,
     /// Where it is a solution: what velocities start from.
     pub(crate) place: Place,
     /// Every leg's displacements from home, as its chains find them.
     pub(crate) legs: Vec<LegSolution>,
-    /// All joint coordinates are within their limits.
-    pub within_limits: bool,
-    /// The legs that are out of reach. Where there are any, the rest is not to be read.
-    pub unreachable: Vec<Unreachable>,
+    pub(crate) within_limits: bool,
+    pub(crate) unreachable: Vec<Unreachable>,
 }
 
 /// A pose, and its two displacements `g = v · b`.
@@ -73,6 +82,43 @@ pub(crate) struct Place {
 }
 
 impl Solution {
+    /// The value of every joint coordinate, in the order of [`Manipulator::coordinates`]; radians and
+    /// metres.
+    #[inline]
+    pub fn joints(&self) -> &[f64] {
+        &self.joints
+    }
+
+    /// The value of every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
+    #[inline]
+    pub fn imaginary(&self) -> &[f64] {
+        &self.imaginary
+    }
+
+    /// Whether all joint coordinates are within their limits.
+    #[inline]
+    pub fn within_limits(&self) -> bool {
+        self.within_limits
+    }
+
+    /// The legs that the last pose is out of reach of; empty where it was reached.
+    #[inline]
+    pub fn unreachable(&self) -> &[Unreachable] {
+        &self.unreachable
+    }
+
+    /// The pose that this is the solution of, in the order of [`Manipulator::task_coordinates`].
+    #[inline]
+    pub fn pose(&self) -> &[f64] {
+        &self.place.pose
+    }
+
+    /// Itself, where every leg closes.
+    #[inline]
+    fn reached(&self) -> Option<&Self> {
+        self.unreachable.is_empty().then_some(self)
+    }
+
     /// Takes over what another solution of the same manipulator holds, without allocating.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
@@ -86,15 +132,34 @@ impl Solution {
     }
 }
 
-/// The actuated and the imaginary joints of one working mode; made by [`Manipulator::drives`].
+/// The actuated and the imaginary joints in one working mode at one pose.
+/// [`Manipulator::actuated_joints`] makes one, to be written to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drives {
-    /// Actuated coordinates, in the order of [`Manipulator::actuated`]; radians and metres.
-    pub actuated: Vec<f64>,
-    /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
-    pub imaginary: Vec<f64>,
-    /// All joint coordinates, passive ones too, are within their limits.
-    pub within_limits: bool,
+pub struct ActuatedJoints {
+    actuated: Vec<f64>,
+    imaginary: Vec<f64>,
+    within_limits: bool,
+}
+
+impl ActuatedJoints {
+    /// The values of the actuated coordinates, in the order of [`Manipulator::actuated`]; radians and
+    /// metres.
+    #[inline]
+    pub fn actuated(&self) -> &[f64] {
+        &self.actuated
+    }
+
+    /// The value of every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
+    #[inline]
+    pub fn imaginary(&self) -> &[f64] {
+        &self.imaginary
+    }
+
+    /// Whether all joint coordinates, passive ones too, are within their limits.
+    #[inline]
+    pub fn within_limits(&self) -> bool {
+        self.within_limits
+    }
 }
 
 /// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
@@ -123,9 +188,9 @@ impl Manipulator {
         }
     }
 
-    /// A buffer for [`Manipulator::inverse_drives`].
-    pub fn drives(&self) -> Drives {
-        Drives {
+    /// A buffer for [`Manipulator::inverse_actuated`].
+    pub fn actuated_joints(&self) -> ActuatedJoints {
+        ActuatedJoints {
             actuated: vec![0.0; self.actuated.len()],
             imaginary: vec![0.0; self.imaginary.len()],
             within_limits: false,
@@ -143,81 +208,140 @@ impl Manipulator {
         Place { pose, v, b }
     }
 
-    /// Every joint at a pose in one working mode, angles within half a turn of home; `false` where
-    /// the pose is out of reach in that mode (`out.unreachable` says of which legs).
+    /// The pose with these values of task coordinates by name (radians and metres); the others have
+    /// their values at home.
+    ///
+    /// # Errors
+    /// A name that is not a task coordinate's, or a value that is not a finite number.
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+    /// assert_eq!(pose, [0.01, 0.0, 0.0, 15_f64.to_radians(), 0.0]); // x y zeta xi psi
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn pose<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a str, f64)>,
+    ) -> Result<Vec<f64>, PoseError> {
+        let coordinates = &self.task.coordinates;
+        let mut pose = self.task.home();
+        for (name, value) in values {
+            let Some(number) = coordinates.iter().position(|c| c.name == name) else {
+                let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+                return Err(PoseError::Unknown {
+                    name: name.to_owned(),
+                    expected: names.join(", "),
+                });
+            };
+            pose[number] = value;
+        }
+        self.check_pose(&pose)?;
+        Ok(pose)
+    }
+
+    /// Every joint at a pose in one working mode, angles within half a revolution of home; `None` where
+    /// the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says of which legs).
     ///
     /// # Errors
     /// A pose of the wrong length, or with a coordinate that is not a finite number.
-    pub fn inverse(&self, pose: &[f64], mode: Mode, out: &mut Solution) -> Result<bool, PoseError> {
-        self.displace(pose, &mut out.place)?;
-        self.solve_legs(mode, out, Turns::NearHome);
-        Ok(out.unreachable.is_empty())
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let mut buffer = manipulator.solution();
+    /// let pose = [0.01, 0.0, 0.0, 0.26, 0.0]; // x y zeta xi psi
+    /// match manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)? {
+    ///     Some(solution) => assert!(solution.within_limits()),
+    ///     None => println!("out of reach: {:?}", buffer.unreachable()),
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn inverse<'a>(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        buffer: &'a mut Solution,
+    ) -> Result<Option<&'a Solution>, PoseError> {
+        self.displace(pose, &mut buffer.place)?;
+        self.solve_legs(mode, buffer, Turns::NearHome);
+        Ok(buffer.reached())
     }
 
-    /// As [`Manipulator::inverse`], but each angle is the one nearest to what `out` held before:
-    /// along a trajectory no joint jumps by a turn, not even to stay within its limits, and
-    /// `out.within_limits` says whether it is at that turn. Out of reach, `out` keeps the last good
+    /// As [`Manipulator::inverse`], but each angle is the one nearest to what the buffer held before:
+    /// along a trajectory no joint jumps by a revolution, not even to stay within its limits, and
+    /// [`Solution::within_limits`] is said of that angle. Out of reach, the buffer keeps the last good
     /// values.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
-    pub fn inverse_near(
+    #[inline]
+    pub fn inverse_near<'a>(
         &self,
         pose: &[f64],
         mode: Mode,
-        out: &mut Solution,
-    ) -> Result<bool, PoseError> {
-        self.displace(pose, &mut out.place)?;
-        self.solve_legs(mode, out, Turns::NearHeld);
-        Ok(out.unreachable.is_empty())
+        buffer: &'a mut Solution,
+    ) -> Result<Option<&'a Solution>, PoseError> {
+        self.displace(pose, &mut buffer.place)?;
+        self.solve_legs(mode, buffer, Turns::NearHeld);
+        Ok(buffer.reached())
     }
 
-    /// The actuated and the imaginary joints at a pose in one working mode, and nothing else;
-    /// `false` where the pose is out of reach. Angles are within half a turn of home.
+    /// The actuated and the imaginary joints at a pose in one working mode, and nothing else; `None`
+    /// where the pose is out of reach. Angles are within half a revolution of home.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
-    pub fn inverse_drives(
+    pub fn inverse_actuated<'a>(
         &self,
         pose: &[f64],
         mode: Mode,
-        out: &mut Drives,
-    ) -> Result<bool, PoseError> {
+        buffer: &'a mut ActuatedJoints,
+    ) -> Result<Option<&'a ActuatedJoints>, PoseError> {
         let (v, b) = self.displacements(pose)?;
-        out.within_limits = true;
+        buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
             let tau = if leg.upper_decides {
                 let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
-                    return Ok(false);
+                    return Ok(None);
                 };
-                self.write_drives(&leg.upper, &solution.upper, out);
-                self.write_drives(&leg.lower, &solution.lower, out);
+                self.write_actuated(&leg.upper, &solution.upper, buffer);
+                self.write_actuated(&leg.lower, &solution.lower, buffer);
                 solution.tau
             } else {
-                let Ok((lower, tau)) = leg.solve_drives(&self.task, [&v, &b], branches) else {
-                    return Ok(false);
+                let Ok((lower, tau)) = leg.solve_actuated(&self.task, [&v, &b], branches) else {
+                    return Ok(None);
                 };
-                self.write_drives(&leg.lower, &lower, out);
+                self.write_actuated(&leg.lower, &lower, buffer);
                 tau
             };
             if let Some(imaginary) = leg.imaginary {
                 let joint = &self.imaginary[imaginary];
-                out.imaginary[imaginary] = joint.value(tau, joint.home);
+                buffer.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
-        Ok(true)
+        Ok(Some(buffer))
     }
 
-    /// Every working mode at a pose: fills `out`, and returns whether there is any that reaches.
-    /// Then [`AllModes::modes`] lists them and [`Manipulator::pick`] gives the joints of one.
+    /// Every working mode at a pose; `None` where it is out of reach in all of them. Then
+    /// [`AllModes::modes`] lists those that reach it, and [`Manipulator::solution_in_mode`] gives the
+    /// joints in one.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
-    pub fn inverse_all(&self, pose: &[f64], out: &mut AllModes) -> Result<bool, PoseError> {
-        self.displace(pose, &mut out.place)?;
-        let Place { v, b, .. } = out.place;
-        for (number, (leg, modes)) in self.legs.iter().zip(&mut out.legs).enumerate() {
+    pub fn inverse_all<'a>(
+        &self,
+        pose: &[f64],
+        buffer: &'a mut AllModes,
+    ) -> Result<Option<&'a AllModes>, PoseError> {
+        self.displace(pose, &mut buffer.place)?;
+        let Place { v, b, .. } = buffer.place;
+        for (number, (leg, modes)) in self.legs.iter().zip(&mut buffer.legs).enumerate() {
             *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
                 let branches = self.modes.branches(mode, number);
@@ -229,32 +353,41 @@ impl Manipulator {
                 }));
             }
         }
-        Ok(out.unreachable().next().is_none())
+        Ok(buffer.unreachable().next().is_none().then_some(buffer))
     }
 
-    /// The joints of one working mode out of `all`, angles within half a turn of home; `false` where
-    /// the pose is out of reach in that mode (`out.unreachable` says of which legs), or where `all`
-    /// has not seen a pose yet.
-    pub fn pick(&self, all: &AllModes, mode: Mode, out: &mut Solution) -> bool {
-        out.unreachable.clear();
-        out.within_limits = true;
+    /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
+    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says
+    /// of which legs), or where `all` has not seen a pose yet.
+    pub fn solution_in_mode<'a>(
+        &self,
+        all: &AllModes,
+        mode: Mode,
+        buffer: &'a mut Solution,
+    ) -> Option<&'a Solution> {
+        buffer.unreachable.clear();
+        buffer.within_limits = true;
         for (number, modes) in all.legs.iter().enumerate() {
             match &modes[self.modes.of_leg(mode, number)] {
-                Some(Ok(solution)) => self.write(number, solution, out, Turns::NearHome),
-                Some(Err(unreachable)) => out.unreachable.push(*unreachable),
-                None => return false,
+                Some(Ok(solution)) => self.write(number, solution, buffer, Turns::NearHome),
+                Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
+                None => return None,
             }
         }
         let Place { pose, v, b } = &all.place;
-        out.place.pose.copy_from_slice(pose);
-        (out.place.v, out.place.b) = (*v, *b);
-        out.unreachable.is_empty()
+        buffer.place.pose.copy_from_slice(pose);
+        (buffer.place.v, buffer.place.b) = (*v, *b);
+        buffer.reached()
     }
 
     /// The first working mode, all-plus first, that reaches the pose of `all` within the limits, and
-    /// its joints; `None` where there is none.
-    pub fn pick_within_limits(&self, all: &AllModes, out: &mut Solution) -> Option<Mode> {
-        let mut picked = Mode::default();
+    /// the joints in it; `None` where there is none.
+    pub fn solution_within_limits<'a>(
+        &self,
+        all: &AllModes,
+        buffer: &'a mut Solution,
+    ) -> Option<(Mode, &'a Solution)> {
+        let mut first = Mode::default();
         for (number, (leg, modes)) in self.legs.iter().zip(&all.legs).enumerate() {
             let within = |solution: &LegSolution| {
                 leg.lower.admits(&self.limits, &solution.lower)
@@ -264,9 +397,9 @@ impl Manipulator {
             let mode = (self.modes.leg_modes(number).zip(modes))
                 .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
                 .0;
-            picked.0 |= mode.0;
+            first.0 |= mode.0;
         }
-        self.pick(all, picked, out).then_some(picked)
+        self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
 
     /// `v` and `b` of a pose, which must have finite coordinates.
@@ -274,6 +407,13 @@ impl Manipulator {
         &self,
         pose: &[f64],
     ) -> Result<(Displacement, Displacement), PoseError> {
+        self.check_pose(pose)?;
+        Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
+    }
+
+    /// Refuses a pose with a wrong number of coordinates, or one that is not a finite number.
+    #[inline]
+    pub(crate) fn check_pose(&self, pose: &[f64]) -> Result<(), PoseError> {
         let coordinates = &self.task.coordinates;
         if pose.len() != coordinates.len() {
             return Err(PoseError::Length { given: pose.len(), expected: coordinates.len() });
@@ -283,7 +423,7 @@ impl Manipulator {
                 return Err(PoseError::NotFinite { name: coordinate.name, value });
             }
         }
-        Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
+        Ok(())
     }
 
     /// Keeps a pose and its displacements, which must have finite coordinates.
@@ -295,11 +435,11 @@ impl Manipulator {
     }
 
     #[inline]
-    fn write_drives(
+    fn write_actuated(
         &self,
         section: &CompiledSection,
         amounts: &[JointDisplacement; 3],
-        out: &mut Drives,
+        out: &mut ActuatedJoints,
     ) {
         out.within_limits &= section.admits(&self.limits, amounts);
         if !section.driven {

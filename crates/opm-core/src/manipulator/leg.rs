@@ -191,7 +191,7 @@ impl CompiledLeg {
     /// The lower joints and the cut, near zero where whole turns count: all that matters where the
     /// upper section does not decide.
     #[inline(always)]
-    pub fn solve_drives(
+    pub fn solve_actuated(
         &self,
         task: &Task,
         [v, b]: [&Displacement; 2],

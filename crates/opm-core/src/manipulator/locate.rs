@@ -5,7 +5,7 @@
 //! reference point's position. One way for all pairs, and where the displacement is outside the
 //! motion it ends at the nearest pose, which is what one wants to be told.
 
-use super::Manipulator;
+use super::{Manipulator, PoseError};
 use crate::decomposition::mobility::frame;
 use crate::numeric::Quantity;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
@@ -74,8 +74,20 @@ impl Manipulator {
     ///
     /// The orientation is the turn from the base's directions that the platform has made, which at home
     /// is none; where `zeta xi psi` measure it, it is theirs, and home's values are home's orientation.
-    pub fn platform_pose(&self, pose: &[f64]) -> Isometry3<f64> {
-        self.task.displacement(pose) * self.home_placement()
+    ///
+    /// # Errors
+    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    pub fn platform_pose(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
+        Ok(self.displacement(pose)? * self.home_placement())
+    }
+
+    /// The platform's displacement from home at a pose, `g = v · b`, in base coordinates.
+    ///
+    /// # Errors
+    /// As [`Manipulator::platform_pose`].
+    pub fn displacement(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
+        self.check_pose(pose)?;
+        Ok(self.task.displacement(pose))
     }
 
     /// The task coordinates at which the platform is there: the inverse of
@@ -93,7 +105,7 @@ impl Manipulator {
     }
 
     /// The pose whose displacement of the platform from home is `displacement` (base coordinates);
-    /// angles within half a turn of home. The inverse of `task().displacement(pose)`.
+    /// angles within half a turn of home. The inverse of [`Manipulator::displacement`].
     ///
     /// # Errors
     /// A displacement outside the motion `A · B`: how far, in which direction, and the nearest pose.

@@ -74,7 +74,8 @@ fn what_shares_a_joint_stays_together() {
                     crate::mechanism::joint::Quantity::Length => c.home + 0.08 * size * step(i),
                 })
                 .collect();
-            if !manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap() {
+            if manipulator.inverse(&pose, manipulator.home_mode(), &mut solution).unwrap().is_none()
+            {
                 continue;
             }
             reached += 1;

@@ -416,7 +416,7 @@ impl<'a> Scratch<'a> {
             self.pose[0] = axis.value(number);
             let admitted = limit.any(&self.pose, self.sweep.modes, |solution| {
                 if ranges {
-                    let values = solution.imaginary.iter().enumerate();
+                    let values = solution.imaginary().iter().enumerate();
                     values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
                 }
                 ranges
