@@ -60,7 +60,7 @@ impl From<SetError> for Failure {
     fn from(error: SetError) -> Self {
         match error {
             SetError::Cancelled(cancelled) => cancelled.into(),
-            SetError::Size { .. } => Self::Work(error.to_string()),
+            other => Self::Work(other.to_string()),
         }
     }
 }

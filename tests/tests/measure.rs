@@ -47,7 +47,7 @@ fn hits(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>, dra
     let mut shares = vec![0.0; domain.dimension()];
     let mut hit = || {
         shares.fill_with(|| rng.f64());
-        counts(m, domain, mode, &domain.pose(&shares))
+        counts(m, domain, mode, &domain.pose(&shares).unwrap())
     };
     (0..draws).map(|_| u32::from(hit())).sum()
 }
@@ -177,7 +177,7 @@ fn at_the_boundary(
     let mut ends = [None, None];
     for _ in 0..20 {
         let shares: Vec<f64> = (0..domain.dimension()).map(|_| rng.f64()).collect();
-        let pose = domain.pose(&shares);
+        let pose = domain.pose(&shares).unwrap();
         let end = usize::from(counts(m, domain, mode, &pose));
         ends[end] = Some(pose);
     }

@@ -1,34 +1,44 @@
 //! A motion of the platform, followed by the joints: sampled at a rate, and watched in between.
 //!
-//! Along a motion no joint jumps by a turn: every angle is the one nearest to its last value
+//! Along a motion no joint jumps by a whole turn: every angle is the one nearest to its last value
 //! ([`Manipulator::inverse_near`]), and the working mode stays the same. What the mechanism cannot
-//! follow is a [`Violation`]: a leg that does not reach, a joint past a limit (a passive one just as
-//! well), a singularity that is passed through.
+//! follow is a [`Violation`]: a leg that does not reach, a joint past a limit (actuated or passive), a
+//! singularity that is passed through. [`ViolationReport`] puts it into words.
 //!
 //! # What is found between the samples
 //!
-//! Each of these is watched by a [`Gauge`], a continuous function of time: how far a joint is from
-//! its limit; how far a leg is from the end of its reach, which is its serial singularity measure,
-//! or, out of reach, the gap; the signed parallel singularity measure of a section. A gauge and its
-//! slope are known at every sample. Then
+//! Each of these is watched by a [`Gauge`], a continuous function of time:
+//!
+//! * how far a joint is from its limit;
+//! * how far a leg is from the end of its reach: its serial singularity measure, or, out of reach, the
+//!   gap;
+//! * the signed parallel singularity measure of a section.
+//!
+//! A gauge and its slope are known at every sample. Then
 //!
 //! * where a gauge changes sign from one sample to the next, the time is found by bisection;
 //! * where it does not, but falls towards zero at the one sample and rises from it at the next, its
-//!   lowest value in between is found by a golden-section search; where that is past zero, both
-//!   crossings are found by bisection. However short the dip, these are all its crossings if the gauge
-//!   falls and rises but once between the two samples.
+//!   lowest value in between is found by a golden-section search. Where that is past zero, both
+//!   crossings are found by bisection. However short the dip is, these are all of its crossings if the
+//!   gauge falls and rises only once between the two samples.
 //!
-//! What a gauge does more than once between two samples is not promised to be found: a rate that is
-//! several times the motion's highest frequency leaves nothing out. Times are good to
-//! [`RESOLUTION`] of the step from sample to sample; lowest values come with about 1e-8 of it.
+//! A gauge that falls and rises several times between two samples may be missed. A sampling rate of
+//! several times the motion's highest frequency leaves nothing out. Times are accurate to
+//! [`RESOLUTION`] of the step between samples, the times of lowest values to about 1e-8 of it.
 
 mod gauge;
-mod told;
+mod report;
+mod search;
+mod violations;
 mod watch;
 
 pub use gauge::{Bound, Gauge, Part, Violation};
-pub use told::Told;
-pub use watch::Change;
+pub use report::ViolationReport;
+pub use violations::Change;
+
+// Old names, for the crates above.
+#[doc(hidden)]
+pub use report::ViolationReport as Told;
 
 use crate::chain::limits::Limits;
 use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
@@ -36,7 +46,7 @@ use crate::motion::{Instant, Motion};
 use crate::numeric::Quantity;
 use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
 
-/// Times are found to this share of the step between two samples.
+/// The accuracy of the times that are found, as a share of the step between two samples.
 pub const RESOLUTION: f64 = 1e-10;
 
 /// Gauges are differenced over this share of the step: the sign of a slope is all that is asked, and
@@ -48,59 +58,60 @@ const MOST_SAMPLES: f64 = 9e15;
 
 /// Why a motion cannot be sampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TrajectoryError {
-    /// A rate that is no rate.
+    /// The sampling rate is not a positive number, or gives too many samples.
     #[error(
         "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
     )]
     Rate {
         /// Samples a second.
         rate: f64,
-        /// Of the motion, seconds.
+        /// The duration of the motion, seconds.
         duration: f64,
     },
-    /// A pose that cannot be computed with.
+    /// A pose of the motion cannot be computed with.
     #[error("at t = {time} s: {source}")]
     Pose {
-        /// When, seconds.
+        /// The time, seconds.
         time: f64,
-        /// Why.
+        /// The reason.
         source: PoseError,
     },
-    /// A velocity or acceleration that cannot be computed with.
+    /// A velocity or acceleration of the motion cannot be computed with.
     #[error("at t = {time} s: {source}")]
     Velocity {
-        /// When, seconds.
+        /// The time, seconds.
         time: f64,
-        /// Why.
+        /// The reason.
         source: VelocityError,
     },
 }
 
-/// Everything at one instant.
+/// The mechanism at one instant of a motion.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// Seconds.
+    /// The time, seconds.
     pub time: f64,
-    /// The pose and its derivatives.
+    /// The pose of the platform and its derivatives by time.
     pub instant: Instant,
-    /// Every leg reaches the pose. Otherwise what follows is not to be read.
+    /// Whether every leg reaches the pose. If not, the fields below have no meaning.
     pub reached: bool,
-    /// The joints.
+    /// The joint values, actuated, passive and imaginary.
     pub solution: Solution,
-    /// No leg is singular: the joints have rates.
+    /// Whether no leg is singular, so that the joints have rates.
     pub regular: bool,
-    /// Rates and accelerations of the joints.
+    /// The rates and accelerations of the joints; they have a meaning where `regular` is true.
     pub motion: velocity::Motion,
-    /// Condition number of the actuated joints' Jacobian; infinite in a singularity and out of reach.
+    /// The condition number of the actuated joints' Jacobian; infinite at a singularity and out of reach.
     pub condition: f64,
-    /// Singularity measures of the upper section.
+    /// The singularity measures of the upper section.
     pub upper: Measures,
-    /// Singularity measures of the lower section.
+    /// The singularity measures of the lower section.
     pub lower: Measures,
-    /// Of every gauge; `None` where it says nothing.
+    /// The level of every gauge; `None` where it has none.
     levels: Vec<Option<f64>>,
-    /// Their derivatives by time, of which the signs are to be relied on.
+    /// The derivatives of the levels by time; only their signs are reliable.
     slopes: Vec<Option<f64>>,
 }
 
@@ -122,7 +133,7 @@ impl Sample {
         }
     }
 
-    /// Takes over what another sample of the same manipulator holds, without allocating.
+    /// Copies another sample of the same manipulator into this one, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         let Instant { pose, velocity, acceleration } = &other.instant;
         self.time = other.time;
@@ -142,26 +153,29 @@ impl Sample {
         self.slopes.clone_from(&other.slopes);
     }
 
-    /// The pose is in reach and within all limits.
+    /// Whether the pose is in reach and within all joint limits.
     pub fn valid(&self) -> bool {
         self.reached && self.solution.within_limits
     }
 }
 
 /// A motion as a manipulator follows it, sample by sample.
+///
+/// Call [`advance`](Self::advance) until it returns `false`; after each call, read
+/// [`sample`](Self::sample) and [`changes`](Self::changes).
 pub struct Trajectory<'a> {
     solver: Solver<'a>,
     samples: u64,
     next: u64,
     previous: Sample,
     current: Sample,
-    /// Room for what is looked at beside a sample.
+    /// Working memory for the solutions beside a sample that slopes are taken from.
     probe: Sample,
     open: Vec<Option<Violation>>,
     changes: Vec<Change>,
 }
 
-/// What solves one instant.
+/// Solves one instant of the motion.
 struct Solver<'a> {
     manipulator: &'a Manipulator,
     motion: &'a Motion,
@@ -170,13 +184,13 @@ struct Solver<'a> {
     gauges: Vec<Gauge>,
     /// The leg of every joint coordinate.
     legs: Vec<usize>,
-    /// For the condition number, metres.
+    /// The characteristic length for the condition number, metres.
     length: f64,
     jacobians: Jacobians,
     measured: Singularities,
 }
 
-/// Which way a slope is looked for: a motion has nothing beyond its ends.
+/// The side on which a slope is taken: a motion has nothing beyond its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Look {
     Ahead,
@@ -202,7 +216,7 @@ impl<'a> Trajectory<'a> {
     /// A rate that is not a positive number, or too high.
     ///
     /// # Panics
-    /// If the motion is for another number of task coordinates.
+    /// The motion is for another number of task coordinates.
     pub fn new(
         manipulator: &'a Manipulator,
         motion: &'a Motion,
@@ -242,28 +256,28 @@ impl<'a> Trajectory<'a> {
         })
     }
 
-    /// Number of samples.
+    /// The number of samples.
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// What is watched.
+    /// The gauges that are watched.
     pub fn gauges(&self) -> &[Gauge] {
         &self.solver.gauges
     }
 
-    /// When the sample of this number is, seconds.
+    /// The time of the sample of this number, seconds.
     pub fn time(&self, number: u64) -> f64 {
         let motion = self.solver.motion;
         let time = motion.start + number as f64 / self.solver.rate;
         if number + 1 >= self.samples { motion.end() } else { time }
     }
 
-    /// Goes on to the next sample, [`Trajectory::sample`]; `false` after the last. What happened since
-    /// the one before it, and at it, is in [`Trajectory::changes`].
+    /// Goes on to the next sample, which [`Trajectory::sample`] gives; returns `false` after the last one.
+    /// What happened since the sample before, and at this one, is in [`Trajectory::changes`].
     ///
     /// # Errors
-    /// Poses or velocities that cannot be computed with.
+    /// A pose or a velocity of the motion that cannot be computed with.
     pub fn advance(&mut self) -> Result<bool, TrajectoryError> {
         self.changes.clear();
         if self.next >= self.samples {
@@ -282,8 +296,7 @@ impl<'a> Trajectory<'a> {
         if number == 0 {
             self.begin();
         } else if self.eventful() {
-            let (from, to) = (self.previous.clone(), self.current.clone());
-            self.current = self.watch(&from, to)?;
+            self.current = self.watch(self.previous.clone(), self.current.clone())?;
         }
         if last && number > 0 {
             self.end();
@@ -303,7 +316,7 @@ impl<'a> Trajectory<'a> {
         &self.changes
     }
 
-    /// Violations that have not ended yet; after the last sample: they last to the end.
+    /// The violations that have not ended yet. After the last sample these last to the end of the motion.
     pub fn open(&self) -> impl Iterator<Item = &Violation> {
         self.open.iter().flatten()
     }
@@ -351,7 +364,7 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// What a gauge says of a solution, whose measures are there if it is in reach.
+    /// The level of a gauge for a solution, the last one that was measured if it is in reach.
     fn level(&self, gauge: Gauge, solution: &Solution) -> Option<f64> {
         let gap = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
         let reached = solution.unreachable.is_empty();
@@ -387,7 +400,7 @@ impl Solver<'_> {
         }
     }
 
-    /// A gap without a unit.
+    /// A gap without a unit: lengths are divided by the characteristic length.
     fn depth(&self, unreachable: &Unreachable) -> f64 {
         let scale = match unreachable.gap.quantity {
             Quantity::Angle => 1.0,

@@ -7,38 +7,52 @@ use foxglove::messages::{PackedElementField, PointCloud, Pose, Quaternion, Times
 
 use crate::RecordError;
 
-/// Names of the position fields, in order.
+/// The names of the position fields of every cloud, in order.
 pub const POSITION_FIELDS: [&str; 3] = ["x", "y", "z"];
-/// Names of the colour fields, in order.
+/// The names of the colour fields of every cloud, in order.
 pub const COLOR_FIELDS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// Protobuf key of the points in a `foxglove.PointCloud`: field 6, length-delimited.
 pub(crate) const DATA_KEY: u8 = 6 << 3 | 2;
 /// Bytes that the timestamp and the key and length of the points can take at most.
 const STAMP_BYTES: usize = 32;
-/// Colours in the table: as many as a byte a channel can tell apart along this map.
+/// The number of colours in the table: as many as bytes can tell apart along this colour map.
 const SHADES: usize = 256;
 
-/// What the points of a cloud are made of.
+/// The values of a point of a cloud.
 ///
-/// A point is handed over as a row of [`columns`](Self::columns): the three coordinates, the
-/// scalars, and the value to colour by where that is none of them. SI units and radians.
+/// A point is given as a row of [`columns`](Self::columns), SI and radians: the three coordinates, the
+/// scalars, and the value that decides the colour, unless that is one of them.
+///
+/// ```
+/// use opm_mcap::CloudLayout;
+///
+/// let layout = CloudLayout {
+///     axes: ["x", "y", "xi"].map(String::from),
+///     scalars: vec!["S1".into()],
+///     color: "condition".into(),
+///     color_range: [1.0, 20.0],
+///     frame_id: "base".into(),
+/// };
+/// assert_eq!(layout.columns(), ["x", "y", "xi", "S1", "condition"]);
+/// assert_eq!(layout.stride(), 4 * 4 + 4); // four float32 and four bytes of colour
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CloudLayout {
-    /// What the cloud's x, y and z are, for example `x`, `y`, `xi`.
+    /// The names of the values that are the cloud's x, y and z, for example `x`, `y`, `xi`.
     pub axes: [String; 3],
-    /// Further values stored with every point, each a field of its own name.
+    /// The names of further values that are stored with every point, each as a field.
     pub scalars: Vec<String>,
-    /// The value that decides the colour: one of the axes or scalars, or one given for this alone.
+    /// The name of the value that decides the colour: an axis, a scalar, or a value for this purpose alone.
     pub color: String,
-    /// The values of `color` at the two ends of the colour map; what is outside is clamped.
+    /// The values of `color` at the two ends of the colour map, ascending. Values outside are clamped.
     pub color_range: [f64; 2],
-    /// The frame that the points are in.
+    /// The name of the frame that the points are in.
     pub frame_id: String,
 }
 
 impl CloudLayout {
-    /// The values of a row, in order.
+    /// The names of the values of a row, in order.
     pub fn columns(&self) -> Vec<&str> {
         let mut columns: Vec<&str> = self.axes.iter().chain(&self.scalars).map(|n| &**n).collect();
         if !columns.contains(&&*self.color) {
@@ -47,7 +61,7 @@ impl CloudLayout {
         columns
     }
 
-    /// Bytes of an encoded point.
+    /// The number of bytes of a packed point.
     pub fn stride(&self) -> usize {
         4 * (3 + self.scalars.len()) + COLOR_FIELDS.len()
     }
@@ -93,8 +107,30 @@ impl CloudLayout {
     }
 }
 
-/// Packs points as they stand in a cloud. Recorders do it themselves; this is for who makes points on
-/// many threads, and has them packed there.
+/// Packs points as they are stored in a cloud. Recorders do this themselves; a packer is for points that are
+/// made on many threads, to pack them there.
+///
+/// ```
+/// use opm_mcap::{CloudLayout, Packer};
+///
+/// # fn main() -> Result<(), opm_mcap::RecordError> {
+/// let layout = CloudLayout {
+///     axes: ["x", "y", "z"].map(String::from),
+///     scalars: vec![],
+///     color: "z".into(),
+///     color_range: [0.0, 1.0],
+///     frame_id: "base".into(),
+/// };
+/// let packer = Packer::new(&layout)?;
+/// let (mut points, mut line) = (vec![], vec![]);
+/// packer.pack(&[0.0, 2.0, 3.0, 0.1, 2.0, 3.0], &mut points)?;
+/// // The same two points, which differ in x alone.
+/// packer.pack_line(&[0.0, 2.0, 3.0], Some(0), &[0.0, 0.1], &mut line)?;
+/// assert_eq!(points, line);
+/// assert_eq!(points.len(), 2 * packer.stride());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Packer {
     columns: Vec<String>,
@@ -107,10 +143,10 @@ pub struct Packer {
 }
 
 impl Packer {
-    /// For the points of this layout.
+    /// A packer for the points of this layout.
     ///
     /// # Errors
-    /// A layout that contradicts itself.
+    /// [`RecordError::Layout`] if the layout contradicts itself.
     pub fn new(layout: &CloudLayout) -> Result<Self, RecordError> {
         layout.check()?;
         let columns: Vec<String> = layout.columns().into_iter().map(String::from).collect();
@@ -129,20 +165,21 @@ impl Packer {
         })
     }
 
-    /// Values that a row has.
+    /// The number of values in a row.
     pub fn columns(&self) -> usize {
         self.columns.len()
     }
 
-    /// Bytes of a point.
+    /// The number of bytes of a packed point.
     pub fn stride(&self) -> usize {
         self.stride
     }
 
-    /// Adds points, as rows of [`CloudLayout::columns`], to those in `points`.
+    /// Packs points, given as rows of [`CloudLayout::columns`], and adds them to `points`.
     ///
     /// # Errors
-    /// No whole number of rows, or a value that is no finite float32.
+    /// [`RecordError::Row`] if `rows` is not a whole number of rows, [`RecordError::NonFinite`] if a value is
+    /// not a finite float32.
     pub fn pack(&self, rows: &[f64], points: &mut Vec<u8>) -> Result<(), RecordError> {
         let columns = self.columns.len();
         if !rows.len().is_multiple_of(columns) {
@@ -168,11 +205,11 @@ impl Packer {
         if finite { Ok(()) } else { Err(self.non_finite(rows, first / self.stride)) }
     }
 
-    /// Adds a point for each of `values`: all of them as `row` has it, but for the value of one column,
-    /// if of any. The same as packing them row by row, and faster.
+    /// Packs one point for each of `values`: the point of `row`, with the value put into one column, if
+    /// there is a `column`. It is faster than packing the points row by row, with the same result.
     ///
     /// # Errors
-    /// As [`Packer::pack`].
+    /// As [`Packer::pack`]; [`RecordError::Row`] also if `row` is not one row, or has no such column.
     pub fn pack_line(
         &self,
         row: &[f64],
@@ -180,6 +217,10 @@ impl Packer {
         values: &[f64],
         points: &mut Vec<u8>,
     ) -> Result<(), RecordError> {
+        let columns = self.columns.len();
+        if row.len() != columns || column.is_some_and(|column| column >= columns) {
+            return Err(RecordError::Row { values: row.len(), columns });
+        }
         if column == Some(self.color_column) {
             let mut row = row.to_vec();
             return values.iter().try_for_each(|&value| {
@@ -191,7 +232,7 @@ impl Packer {
         let (start, end) = (points.len(), points.len() + values.len() * self.stride);
         points.reserve(end - start);
         self.pack(row, points)?;
-        // What is there is copied behind itself, twice as much every time.
+        // The points so far are copied behind themselves, twice as many every time.
         let mut there = 1;
         while there <= count {
             let more = there.min(count + 1 - there);
@@ -214,7 +255,7 @@ impl Packer {
         Err(self.non_finite(&row, start / self.stride))
     }
 
-    /// Names the first value that is not a finite float32, in rows behind so many points.
+    /// The error for the first value that is not a finite float32, in rows behind `before` points.
     fn non_finite(&self, rows: &[f64], before: usize) -> RecordError {
         let columns = self.columns.len();
         let bad = |value: &f64| !(*value as f32).is_finite();
@@ -234,7 +275,7 @@ impl Packer {
 /// them once their length is known.
 pub(crate) struct CloudEncoder {
     packer: Packer,
-    /// Everything but timestamp and points.
+    /// The message without timestamp and points.
     template: PointCloud,
     /// Where the points start in `buffer`.
     head_room: usize,
@@ -242,7 +283,7 @@ pub(crate) struct CloudEncoder {
 }
 
 impl CloudEncoder {
-    /// `capacity`: points of the largest cloud to come.
+    /// `capacity` is the number of points of the largest cloud to come.
     pub fn new(layout: &CloudLayout, capacity: usize) -> Result<Self, RecordError> {
         let packer = Packer::new(layout)?;
         let template = PointCloud {
@@ -259,12 +300,12 @@ impl CloudEncoder {
         Ok(Self { packer, template, head_room, buffer })
     }
 
-    /// What packs its points.
+    /// The packer of its points.
     pub fn packer(&self) -> &Packer {
         &self.packer
     }
 
-    /// Points in the cloud so far.
+    /// The number of points in the cloud so far.
     pub fn len(&self) -> usize {
         (self.buffer.len() - self.head_room) / self.packer.stride
     }
@@ -313,9 +354,9 @@ impl CloudEncoder {
 
 /// A point with a colour of its own.
 pub(crate) struct ColoredPoint {
-    /// Metres.
+    /// The position, metres.
     pub at: [f64; 3],
-    /// Red, green, blue, opacity.
+    /// The colour: red, green, blue, opacity.
     pub rgba: [u8; 4],
 }
 

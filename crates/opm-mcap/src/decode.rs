@@ -1,4 +1,4 @@
-//! Reading a `foxglove.PointCloud` in place: its points are never copied.
+//! Reads a `foxglove.PointCloud` in place: its points are never copied.
 
 use foxglove::Decode;
 use foxglove::messages::PointCloud;
@@ -6,12 +6,13 @@ use foxglove::messages::packed_element_field::NumericType;
 
 use crate::cloud::DATA_KEY;
 
-/// A point cloud whose points stay where the message is.
+/// A point cloud that is read in place, without copying its points. [`Message::cloud`](crate::Message::cloud)
+/// gives one; the example there reads its columns.
 #[derive(Debug, Clone)]
 pub struct Cloud<'a> {
     /// The frame that the points are in.
     pub frame_id: String,
-    /// The cloud's own time stamp, in nanoseconds.
+    /// The time stamp of the cloud itself, nanoseconds.
     pub time: Option<u64>,
     fields: Vec<Field>,
     stride: usize,
@@ -26,7 +27,7 @@ struct Field {
 }
 
 impl<'a> Cloud<'a> {
-    /// The schema that this reads.
+    /// The name of the schema that this type reads.
     pub const SCHEMA: &'static str = "foxglove.PointCloud";
 
     /// Reads an encoded message; the error says what is wrong with it.
@@ -54,7 +55,7 @@ impl<'a> Cloud<'a> {
         })
     }
 
-    /// Number of points.
+    /// The number of points.
     pub fn len(&self) -> usize {
         self.data.len().checked_div(self.stride).unwrap_or(0)
     }
@@ -64,12 +65,12 @@ impl<'a> Cloud<'a> {
         self.data.is_empty()
     }
 
-    /// Names of the fields, in order.
+    /// The names of the fields, in order.
     pub fn fields(&self) -> impl Iterator<Item = &str> {
         self.fields.iter().map(|field| &*field.name)
     }
 
-    /// One field of every point; None where there is no such field.
+    /// The values of one field, point by point; `None` if there is no such field.
     pub fn column(&self, field: &str) -> Option<Column<'a>> {
         let Field { offset, kind, .. } = self.fields.iter().find(|found| found.name == field)?;
         let points = self.data.chunks_exact(self.stride.max(1));
@@ -77,7 +78,7 @@ impl<'a> Cloud<'a> {
     }
 }
 
-/// The values of one field, point by point.
+/// The values of one field of a cloud, point by point.
 #[derive(Debug, Clone)]
 pub struct Column<'a> {
     points: std::slice::ChunksExact<'a, u8>,
@@ -113,7 +114,7 @@ impl Iterator for Column<'_> {
 
 impl ExactSizeIterator for Column<'_> {}
 
-/// Bytes of a value.
+/// The number of bytes of a value.
 fn size(kind: NumericType) -> Option<usize> {
     match kind {
         NumericType::Unknown => None,
@@ -124,7 +125,7 @@ fn size(kind: NumericType) -> Option<usize> {
     }
 }
 
-/// Parts the points from a message's other fields. None where it is not protobuf.
+/// Separates the points from a message's other fields. `None` if the message is not protobuf.
 fn split(message: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let (mut head, mut data) = (Vec::new(), &[][..]);
     let mut rest = message;
@@ -153,7 +154,7 @@ fn split(message: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     Some((head, data))
 }
 
-/// A base-128 number, the least significant digit first.
+/// Reads a base-128 number, the least significant digit first.
 pub(crate) fn varint(rest: &mut &[u8]) -> Option<u64> {
     let mut value = 0;
     for shift in (0..64).step_by(7) {

@@ -1,10 +1,11 @@
-//! What can go wrong with a recording, with what was measured and what was expected.
+//! The errors of writing and reading recordings, with what was found and what was expected.
 
 use std::path::PathBuf;
 
-/// Why a recording could not be written. Every one of them is final: the recorder that returned it
-/// refuses all further work, and nothing appears under the name that was asked for.
+/// Why a recording could not be written. Every error is final: the recorder that returned it refuses all
+/// further work, and nothing appears under the name of the recording.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordError {
     /// The file could not be opened for writing.
     #[error("cannot create {}", path.display())]
@@ -14,13 +15,13 @@ pub enum RecordError {
         /// The operating system's reason.
         source: std::io::Error,
     },
-    /// A directory or a device has the name that the recording should get.
+    /// A directory or a device already has the name of the recording.
     #[error("{} exists and is not a regular file", path.display())]
     NotAFile {
-        /// The name that was asked for.
+        /// The name of the recording.
         path: PathBuf,
     },
-    /// Another recording to the same name is under way.
+    /// Another process writes a recording of the same name.
     #[error("{} is being written by another process", path.display())]
     Busy {
         /// The `.partial` file.
@@ -29,7 +30,7 @@ pub enum RecordError {
     /// Writing failed: a full disk, a vanished mount.
     #[error("cannot write the recording")]
     Io(#[source] std::io::Error),
-    /// The recording could not be put together as an MCAP file.
+    /// The MCAP file could not be put together.
     #[error("cannot assemble the recording")]
     Mcap(#[source] mcap::McapError),
     /// An earlier error ended this recording.
@@ -41,25 +42,25 @@ pub enum RecordError {
     /// A row does not have the layout's number of values.
     #[error("{values} values are not a whole number of rows of {columns}")]
     Row {
-        /// Values handed over.
+        /// The number of values that were given.
         values: usize,
-        /// Values a row has.
+        /// The number of values in a row.
         columns: usize,
     },
     /// Messages came out of order.
     #[error("a message at {time} ns after one at {last} ns")]
     Time {
-        /// Time of the message.
+        /// The time of the message, nanoseconds.
         time: u64,
-        /// Time of the one before it.
+        /// The time of the message before it, nanoseconds.
         last: u64,
     },
     /// A value that a float32 cannot hold as a finite number.
     #[error("{column} of point {point} is {value}, expected a finite float32")]
     NonFinite {
-        /// Name of the column.
+        /// The name of the column.
         column: String,
-        /// The point's number in the message that it was bound for.
+        /// The number of the point in its message.
         point: usize,
         /// The value.
         value: f64,
@@ -67,9 +68,9 @@ pub enum RecordError {
     /// Slices came out of order, or past the last one.
     #[error("slice {slice} is not in {first}..{end}")]
     Slice {
-        /// The slice that was pushed.
+        /// The number of the slice that was given.
         slice: u64,
-        /// The slice that is open: the earliest that may still be pushed to.
+        /// The number of the first slice that may still get points.
         first: u64,
         /// One past the last slice.
         end: u64,
@@ -77,40 +78,40 @@ pub enum RecordError {
     /// More slices than a recording may have.
     #[error("{slices} slices, expected at most {limit}")]
     TooManySlices {
-        /// Slices announced.
+        /// The number of slices that was announced.
         slices: u64,
-        /// [`crate::MAX_SLICES`].
+        /// The largest number, [`crate::MAX_SLICES`].
         limit: u64,
     },
     /// A slice has more points than its 100 ms have room for messages.
     #[error("slice {slice} needs more than {limit} messages")]
     SliceTooLarge {
-        /// The slice.
+        /// The number of the slice.
         slice: u64,
-        /// Messages that fit in one slice's time.
+        /// The number of messages that fit in the time of one slice.
         limit: u64,
     },
     /// The number of points is not the one that was announced.
     #[error("{what}: {found} points, expected {expected}")]
     Count {
-        /// `overview` or `slices`.
+        /// What has the wrong number of points: `overview`, `slices` or `table`.
         what: &'static str,
-        /// Points pushed.
+        /// The number of points that were given.
         found: u64,
-        /// Points that the announced total asks for.
+        /// The number of points that follows from the announced total.
         expected: u64,
     },
-    /// Runs of poses came out of order, or empty.
+    /// A run of poses is out of order, or empty.
     #[error("poses {from}..{to}, expected some from {end} on")]
     Run {
-        /// The first pose.
+        /// The number of the first pose.
         from: u64,
-        /// One more than the last.
+        /// One more than the number of the last pose.
         to: u64,
-        /// The earliest that may still be pushed.
+        /// The number of the first pose that may still be given.
         end: u64,
     },
-    /// Overview points came after the first slice.
+    /// Points of the overview came after the first slice.
     #[error("overview points after the first slice")]
     OverviewClosed,
 }
@@ -128,6 +129,7 @@ impl From<mcap::McapError> for RecordError {
 
 /// Why a recording could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file could not be opened or read.
     #[error("cannot read {}", path.display())]
@@ -143,20 +145,20 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
-    /// The file is damaged: not merely cut short, but wrong.
+    /// The file is damaged. (A file that was only cut short is read up to there.)
     #[error("{} is damaged near byte {offset}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// Bytes read when it was noticed.
+        /// The number of bytes that had been read.
         offset: u64,
-        /// What the MCAP reader found.
+        /// The MCAP reader's reason.
         source: mcap::McapError,
     },
-    /// A record or message does not decode as what it claims to be.
+    /// A record or message cannot be decoded as what it claims to be.
     #[error("{what}: {reason}")]
     Malformed {
-        /// Which record or topic.
+        /// The record or topic.
         what: String,
         /// What is wrong with it.
         reason: String,

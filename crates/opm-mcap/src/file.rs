@@ -1,4 +1,4 @@
-//! A file that appears under its name only once it is whole.
+//! Files that appear under their name only once they are whole.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -6,16 +6,23 @@ use std::path::{Path, PathBuf};
 
 use crate::RecordError;
 
-/// Where a recording goes.
+/// A place that a recording is written to: a file ([`PartialFile`]) or memory (`Cursor<&mut Vec<u8>>`).
 ///
 /// Dropping a sink that was not committed must leave nothing that looks finished.
+///
+/// ```
+/// use opm_mcap::{Sink, Trajectory, TrajectoryRecorder};
+/// # fn record(sink: impl Sink, trajectory: &Trajectory<'_>) -> Result<(), opm_mcap::RecordError> {
+/// let recorder = TrajectoryRecorder::new(sink, trajectory)?;
+/// # recorder.finish(&opm_mcap::Metadata::new())
+/// # }
+/// ```
 pub trait Sink: Write + Seek {
-    /// Makes what was written final. Called once, after the last byte.
+    /// Makes final what was written. It is called once, after the last byte.
     fn commit(self) -> io::Result<()>;
 }
 
-/// In memory there is nothing to make final. Lend a buffer to keep what is written:
-/// `Cursor::new(&mut bytes)`.
+/// A recording in memory. Lend a buffer to keep what is written: `Cursor::new(&mut bytes)`.
 impl Sink for io::Cursor<&mut Vec<u8>> {
     fn commit(self) -> io::Result<()> {
         Ok(())
@@ -24,15 +31,30 @@ impl Sink for io::Cursor<&mut Vec<u8>> {
 
 /// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
 ///
-/// Until then whatever stands under `NAME` stays as it is; afterwards it is replaced. A run that
-/// ends early, however it ends, leaves the `.partial` file, which the next run overwrites, unless that is
-/// [discarded](Self::discard).
+/// Until then a file `NAME` stays as it is; then it is replaced. A run that ends early, for whatever
+/// reason, leaves the `.partial` file, unless it [discards](Self::discard) it. The next run overwrites it.
+///
+/// ```
+/// use opm_mcap::{PartialFile, Sink};
+/// use std::io::Write;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("table.csv");
+/// let mut file = PartialFile::create(&path)?;
+/// file.write_all(b"x,y\n")?;
+/// assert!(!path.exists());
+/// file.commit()?;
+/// assert!(path.exists());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct PartialFile {
     file: BufWriter<File>,
     partial: PathBuf,
     target: PathBuf,
-    /// Something was written.
+    /// Whether something was written that may be of use.
     begun: bool,
 }
 
@@ -75,7 +97,7 @@ impl PartialFile {
         Ok(Self { file, partial, target: target.into(), begun: false })
     }
 
-    /// Ends it without a trace: what was written is of no use to anybody.
+    /// Ends the file and removes it.
     pub fn discard(mut self) {
         self.begun = false;
     }

@@ -1,4 +1,4 @@
-//! Messages that are nothing but named doubles, read by the schema that comes with them.
+//! Messages that are nothing but named doubles, which are read by the schema that comes with them.
 
 use crate::decode::varint;
 
@@ -8,17 +8,17 @@ const DOUBLE: u64 = 1;
 const LENGTH: u64 = 2;
 const SINGLE: u64 = 5;
 
-/// The type of a message whose fields are doubles, each at most once: what [`crate::joints`] writes,
-/// and whatever else is made like it.
+/// The type of messages whose fields are doubles, each at most once. [`crate::joints`] writes such messages;
+/// those of other programs are read, too. [`Message::values`](crate::Message::values) gives their values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Flat {
-    /// Names of the fields, in the order of the type's description.
+    /// The names of the fields, in the order of the type's description.
     pub names: Vec<String>,
     numbers: Vec<u64>,
 }
 
 impl Flat {
-    /// The encoding of the schemas that this understands.
+    /// The encoding of schemas that can be read.
     pub(crate) const ENCODING: &'static str = "protobuf";
 
     /// The type `name` in a `google.protobuf.FileDescriptorSet`; `None` if it is not there, or has

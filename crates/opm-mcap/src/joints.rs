@@ -1,10 +1,10 @@
-//! Named values on a topic: one flat protobuf message, with a double a joint, or whatever else has a
-//! name.
+//! Named values on a topic: flat protobuf messages, with one double for each joint or other value.
 //!
-//! The message type is made for the joints at hand, `opm.Joints` for instance, so that viewers offer
-//! every joint by its name to be plotted: `/joints.S1`. A protobuf name has letters, digits and
-//! underscores only; whatever else a joint's name has becomes an underscore (`tau.leg1` is the field
-//! `tau_leg1`), and the metadata record `joints` says which joint a field is.
+//! The message type, for instance `opm.Joints`, is made for the joints of the mechanism, so that viewers
+//! can plot every joint by its name: `/joints.S1`. A protobuf name has letters, digits and underscores
+//! only. Every other character of a joint's name becomes an underscore (`tau.leg1` is the field
+//! `tau_leg1`), and the metadata record `joints` says which joint a field is. [`crate::trajectory`] writes
+//! such topics, and [`Message::values`](crate::Message::values) reads them.
 
 use crate::log::{Log, Topic};
 use crate::{RecordError, Sink};
@@ -40,7 +40,7 @@ impl JointsTopic {
         Ok(Self { topic, joints: joints.len(), message: Vec::new() })
     }
 
-    /// Writes a value a joint: SI, in the order of the joints.
+    /// Writes one value for each joint, SI, in the order of the joints.
     pub fn write<W: Sink>(
         &mut self,
         log: &mut Log<W>,
@@ -87,7 +87,7 @@ pub(crate) fn fields(joints: &[String]) -> Result<Vec<String>, RecordError> {
     Ok(fields)
 }
 
-/// A field of a message type: its number is its place, from 1 on.
+/// A field of a message type. Its number is its place, from 1 on.
 pub(crate) struct Field<'a> {
     name: &'a str,
     /// `FieldDescriptorProto.Label` and `FieldDescriptorProto.Type`.
@@ -96,17 +96,17 @@ pub(crate) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// A double.
+    /// A field with a double.
     pub fn double(name: &'a str) -> Self {
         Self { name, label: 1, kind: 1 }
     }
 
-    /// A `uint64`.
+    /// A field with a `uint64`.
     pub fn number(name: &'a str) -> Self {
         Self { name, label: 1, kind: 4 }
     }
 
-    /// Any number of `uint64`.
+    /// A field with any number of `uint64`.
     pub fn numbers(name: &'a str) -> Self {
         Self { name, label: 3, kind: 4 }
     }
@@ -147,7 +147,7 @@ fn integer(out: &mut Vec<u8>, field: u64, value: u64) {
     varint(out, value);
 }
 
-/// A number in base 128, the least significant digit first.
+/// Writes a number in base 128, the least significant digit first.
 pub(crate) fn varint(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);

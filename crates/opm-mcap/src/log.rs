@@ -9,13 +9,14 @@ use mcap::{Attachment, Compression, WriteOptions, Writer};
 
 use crate::{RecordError, Sink};
 
-/// Key and value pairs of a metadata record, in the order of their keys.
+/// A metadata record: pairs of keys and values, in the order of their keys.
 pub type Metadata = BTreeMap<String, String>;
 
-/// Uncompressed bytes after which a chunk is closed, where nothing else is said: what a process that is killed
-/// may lose.
+/// The number of uncompressed bytes after which a chunk is closed, unless a recording says otherwise. A process
+/// that is killed may lose as much.
 pub(crate) const CHUNK_BYTES: u64 = 1 << 20;
-/// zstd's default: what takes the time is the number of matches, and it finds longer ones than level 1.
+/// The level of zstd, which is its default. The number of matches takes the time, and this level finds longer
+/// ones than level 1.
 pub const COMPRESSION_LEVEL: u32 = 3;
 
 /// A topic of an open log.

@@ -1,4 +1,4 @@
-//! Reading recordings back, whole or cut short, in the memory of one message.
+//! Reads recordings, whole or cut short, in the memory of one message.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -16,27 +16,27 @@ use crate::flat::Flat;
 use crate::shard::{self, RUNS_SCHEMA};
 use crate::{Metadata, ReadError};
 
-/// Longest record or chunk that is taken for real. Ours are a quarter of it; a length beyond it
-/// in a damaged file must not become an allocation.
+/// The longest record or chunk that is read. Those of recordings are a quarter of it; a longer one in a
+/// damaged file must not become an allocation.
 const RECORD_LIMIT: usize = 512 << 20;
-/// How much of the attachments is kept, in the order of the file: more than any mechanism file.
+/// The number of bytes of attachments that are kept, in the order of the file: more than any mechanism file has.
 const ATTACHMENT_LIMIT: usize = 16 << 20;
 
-/// What a recording holds.
+/// The content of a recording, without its messages.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Topics in the order of their names.
+    /// The topics, in the order of their names.
     pub topics: Vec<TopicInfo>,
-    /// Time of the first and of the last message, in nanoseconds. None without messages.
+    /// The times of the first and the last message, nanoseconds; `None` without messages.
     pub time_range: Option<[u64; 2]>,
-    /// Range of every field of the clouds (colours left out), in the order of the fields.
+    /// The range of every field of the clouds except the colours, in the order of the fields.
     pub extents: Vec<Extent>,
-    /// Metadata records in the order of the file.
+    /// The metadata records with their names, in the order of the file.
     pub metadata: Vec<(String, Metadata)>,
-    /// Attachments in the order of the file.
+    /// The attachments, in the order of the file.
     pub attachments: Vec<AttachmentInfo>,
-    /// The file has its end, and a metadata record in it says `complete = "true"`. Otherwise the
-    /// run that wrote it was cut short, and this is what reached the file.
+    /// Whether the file has its end, and a metadata record in it says `complete = "true"`. If not, the run
+    /// that wrote it was cut short, and this is what reached the file.
     pub complete: bool,
 }
 
@@ -55,60 +55,76 @@ impl Recording {
 /// A topic of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TopicInfo {
-    /// Its name.
+    /// The name of the topic.
     pub name: String,
-    /// Name of its messages' schema, for example `foxglove.PointCloud`; empty without one.
+    /// The name of its messages' schema, for example `foxglove.PointCloud`; empty without one.
     pub schema: String,
-    /// Its messages.
+    /// The number of messages.
     pub messages: u64,
-    /// Points in these messages; None where they are not point clouds.
+    /// The number of points in these messages; `None` if they are not point clouds.
     pub points: Option<u64>,
 }
 
-/// The range of one field.
+/// The range of one field of the clouds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
-    /// Name of the field.
+    /// The name of the field.
     pub field: String,
-    /// Smallest value.
+    /// The smallest value.
     pub min: f64,
-    /// Largest value.
+    /// The largest value.
     pub max: f64,
 }
 
 /// An attached file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttachmentInfo {
-    /// Its name.
+    /// The name of the file.
     pub name: String,
-    /// Its media type.
+    /// The media type, for instance `application/toml`.
     pub media_type: String,
-    /// Its size in bytes.
+    /// The size in bytes.
     pub size: u64,
-    /// The file itself; `None` where it and the ones before it are more than 16 MiB.
+    /// The file itself; `None` if it and the attachments before it are more than 16 MiB.
     pub content: Option<Vec<u8>>,
 }
 
-/// A message of a recording.
+/// A message of a recording, as [`read`] shows it.
 #[derive(Debug, Clone, Copy)]
 pub struct Message<'a> {
-    /// The topic's name.
+    /// The name of the topic.
     pub topic: &'a str,
-    /// The name of the topic's schema; empty without one.
+    /// The name of the topic's schema; empty if it has none.
     pub schema: &'a str,
-    /// When it was logged, in nanoseconds.
+    /// The time of the message, nanoseconds.
     pub time: u64,
-    /// The message, encoded.
+    /// The encoded message.
     pub data: &'a [u8],
-    /// The names of its values, where its schema says that it is nothing but doubles.
+    /// The names of its values, if its schema says that it has nothing but doubles.
     pub flat: Option<&'a Flat>,
 }
 
 impl<'a> Message<'a> {
-    /// The point cloud in this message; None when it is of another schema.
+    /// The point cloud in this message; `None` if the message is of another schema.
     ///
     /// # Errors
-    /// A message that claims the schema and does not decode.
+    /// [`ReadError::Malformed`] if the message claims the schema and cannot be decoded.
+    ///
+    /// ```
+    /// use opm_mcap::{Message, ReadError};
+    ///
+    /// /// Adds the values of one field to `values`.
+    /// fn collect(
+    ///     message: &Message<'_>,
+    ///     field: &str,
+    ///     values: &mut Vec<f64>,
+    /// ) -> Result<(), ReadError> {
+    ///     if let Some(cloud) = message.cloud()? {
+    ///         values.extend(cloud.column(field).into_iter().flatten());
+    ///     }
+    ///     Ok(())
+    /// }
+    /// ```
     pub fn cloud(&self) -> Result<Option<Cloud<'a>>, ReadError> {
         if self.schema != Cloud::SCHEMA {
             return Ok(None);
@@ -116,11 +132,11 @@ impl<'a> Message<'a> {
         Cloud::decode(self.data).map(Some).map_err(|reason| self.malformed(reason))
     }
 
-    /// Puts the values of a message that is nothing but doubles into `values`, in the order of the
-    /// names of [`Self::flat`]; false, and no values, for any other message.
+    /// Puts the values of a message that has nothing but doubles into `values`, in the order of the names of
+    /// [`Self::flat`]. Returns false, with no values, for any other message.
     ///
     /// # Errors
-    /// A message that is not what its schema says.
+    /// [`ReadError::Malformed`] if the message is not what its schema says.
     pub fn values(&self, values: &mut Vec<f64>) -> Result<bool, ReadError> {
         values.clear();
         let Some(flat) = self.flat else { return Ok(false) };
@@ -128,11 +144,11 @@ impl<'a> Message<'a> {
         Ok(true)
     }
 
-    /// The runs of poses, `[from, to)`, in a message of [`crate::shard`]; None when it is of another
+    /// The runs of poses, `[from, to)`, in a message of [`crate::shard`]; `None` if the message is of another
     /// schema.
     ///
     /// # Errors
-    /// A message that claims the schema and does not decode.
+    /// [`ReadError::Malformed`] if the message claims the schema and cannot be decoded.
     pub fn runs(&self) -> Result<Option<Vec<[u64; 2]>>, ReadError> {
         if self.schema != RUNS_SCHEMA {
             return Ok(None);
@@ -145,14 +161,16 @@ impl<'a> Message<'a> {
     }
 }
 
-/// Reads a recording from front to back, showing every message to `visit`, and says what is in it.
+/// Reads a recording from front to back, shows every message to `visit`, and returns what is in it.
 ///
-/// A file that ends early is read as far as it is whole. Checksums are verified before anything is
-/// shown. Memory: about one message, at most half a GiB.
+/// A file that ends early is read as far as it is whole. Checksums are verified before a message is shown.
+/// It takes the memory of about one message, at most half a GiB.
 ///
 /// # Errors
-/// A file that cannot be read, is not MCAP, is damaged before its end, or whose clouds do not decode;
-/// and whatever `visit` returns.
+/// [`ReadError`]: the file cannot be read, is not MCAP, is damaged before its end, or has clouds that cannot
+/// be decoded. The first error of `visit` ends the reading, too.
+///
+/// The example of the [crate](crate) reads a recording.
 pub fn read<E: From<ReadError>>(
     path: &Path,
     mut visit: impl FnMut(&Message<'_>) -> Result<(), E>,
@@ -194,7 +212,7 @@ pub fn read<E: From<ReadError>>(
     Ok(contents.finish(ended))
 }
 
-/// What was found so far.
+/// The content that was found so far.
 #[derive(Default)]
 struct Contents {
     schemas: BTreeMap<u16, Schema>,
@@ -336,10 +354,10 @@ fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
     })
 }
 
-/// What an attachment record holds, and its content if that is no longer than `room`. (The parser of `mcap` takes for granted that the record is long
-/// enough.)
+/// What an attachment record holds, with its content if that is no longer than `room`. (The parser of `mcap`
+/// takes for granted that the record is long enough.)
 fn attachment(record: &[u8], room: usize) -> Result<AttachmentInfo, ReadError> {
-    /// Log time and creation time.
+    /// The bytes of log time and creation time.
     const TIMES: usize = 16;
     fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
         let (length, tail) = rest.split_first_chunk()?;

@@ -1,5 +1,5 @@
-//! Bodies made of simple solids: what a scene shows, and points on their surfaces for viewers that
-//! show points only.
+//! Bodies made of simple solids: a scene shows them, and points on their surfaces for viewers that show
+//! points only.
 
 use foxglove::messages::line_primitive::Type as LineType;
 use foxglove::messages::{
@@ -10,68 +10,78 @@ use foxglove::messages::{
 use crate::RecordError;
 use crate::cloud::{ColoredPoint, encode_colored};
 
-/// A body in its own frame.
+/// A body of a mechanism, drawn in its own frame.
+///
+/// ```
+/// use opm_mcap::{Body, Shape, Solid};
+///
+/// let shape = Shape::Cylinder { from: [0.0; 3], to: [0.0, 0.0, 0.2], radius: 0.01 };
+/// let solids = vec![Solid { shape, color: [0.2, 0.4, 0.8, 1.0] }];
+/// let base = Body { frame: "base".into(), parent: None, solids: vec![], notes: vec![] };
+/// let crank = Body { frame: "crank".into(), parent: Some(0), solids, notes: vec![] };
+/// # let _ = [base, crank];
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Name of the body and of its frame, unique.
+    /// The name of the body and of its frame, which no other body has.
     pub frame: String,
-    /// The number of the body whose frame this one's is placed in; `None` for the one at rest.
+    /// The number of the body in whose frame this one is placed; `None` for the first body, which is at rest.
     pub parent: Option<usize>,
-    /// What it looks like.
+    /// The solids that it is drawn as.
     pub solids: Vec<Solid>,
-    /// What else there is to know of it: keys and values, shown when it is picked.
+    /// Further keys and values, which viewers show when the body is picked.
     pub notes: Vec<(String, String)>,
 }
 
 /// A solid of one colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
-    /// Shape and place in the body's frame, metres.
+    /// The shape with its place in the body's frame.
     pub shape: Shape,
-    /// Red, green, blue, opacity, 0 to 1.
+    /// The colour: red, green, blue, opacity, from 0 to 1.
     pub color: [f64; 4],
 }
 
-/// Shapes that viewers draw.
+/// A shape that viewers draw, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// A round rod.
     Cylinder {
-        /// Middle of one end.
+        /// The middle of one end, metres.
         from: [f64; 3],
-        /// Middle of the other end.
+        /// The middle of the other end, metres.
         to: [f64; 3],
-        /// Metres.
+        /// The radius, metres.
         radius: f64,
     },
     /// A ball.
     Ball {
-        /// Middle.
+        /// The middle, metres.
         centre: [f64; 3],
-        /// Metres.
+        /// The radius, metres.
         radius: f64,
     },
-    /// A square block.
+    /// A block with a square cross-section.
     Block {
-        /// Middle.
+        /// The middle, metres.
         centre: [f64; 3],
-        /// Direction of its length, a unit vector.
+        /// The direction of its length, a unit vector.
         axis: [f64; 3],
-        /// Metres.
+        /// The length, metres.
         length: f64,
-        /// Of its other two sides, metres.
+        /// The length of its other two sides, metres.
         width: f64,
     },
 }
 
-/// Points on a surface are this far apart, as a share of the thinnest solid's radius: near enough for
-/// a rod to look like one.
+/// The distance between points on a surface, as a share of the thinnest solid's radius: near enough for a rod
+/// to look like one.
 const SPACING: f64 = 0.8;
 
-/// Points of one body at most: a rod that is a million times longer than thick stays readable.
+/// Most points of one body, so that a rod that is a million times longer than thick can still be shown.
 const MOST_POINTS: usize = 200_000;
 
-/// Every body must have a name of its own, and a parent that comes before it.
+/// Checks that every body has a name of its own, and a parent that comes before it.
 pub(crate) fn check(bodies: &[Body]) -> Result<(), RecordError> {
     for (i, body) in bodies.iter().enumerate() {
         let frame = &body.frame;
@@ -137,15 +147,15 @@ pub(crate) fn update(bodies: &[Body], time: Timestamp) -> SceneUpdate {
     SceneUpdate { deletions: Vec::new(), entities: entities.collect() }
 }
 
-/// A line whose last point is joined to its first.
+/// The points of a line, whose last point is joined to its first.
 pub type ClosedLine = Vec<[f64; 3]>;
 
-/// Width of a line, in pixels of a screen.
+/// The width of a line, in pixels of a screen.
 const LINE_PIXELS: f64 = 2.5;
-/// Seen on the dark ground of viewers, and on every colour of points.
+/// The colour of lines: it is seen on the dark background of viewers, and on every colour of points.
 const LINE_COLOR: [f64; 4] = [1.0, 1.0, 1.0, 1.0];
 
-/// The boundary of a set, which takes the place of the one before.
+/// The boundary of a set, which replaces the one before.
 pub(crate) fn lines(frame_id: &str, time: Timestamp, rings: &[ClosedLine]) -> SceneUpdate {
     let ring = |ring: &ClosedLine| LinePrimitive {
         r#type: LineType::LineLoop as i32,
@@ -203,7 +213,7 @@ fn cover(shape: &Shape, spacing: f64, point: &mut impl FnMut([f64; 3])) {
             for ring in 0..=rings {
                 let s = length * ring as f64 / rings as f64;
                 for i in 0..around {
-                    // Every other ring is turned by half a step.
+                    // Every other ring is rotated by half a step.
                     let angle = std::f64::consts::TAU * (i as f64 + 0.5 * (ring % 2) as f64)
                         / around as f64;
                     let (sin, cos) = angle.sin_cos();
@@ -250,14 +260,14 @@ fn color([r, g, b, a]: [f64; 4]) -> Option<Color> {
     Some(Color { r, g, b, a })
 }
 
-/// Unit vector and distance.
+/// The unit vector from one point to another, and their distance.
 fn direction(from: [f64; 3], to: [f64; 3]) -> ([f64; 3], f64) {
     let way: [f64; 3] = std::array::from_fn(|i| to[i] - from[i]);
     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length > 0.0 { (way.map(|x| x / length), length) } else { ([0.0, 0.0, 1.0], 0.0) }
 }
 
-/// Two unit vectors that are square to a unit vector and to each other.
+/// Two unit vectors that are perpendicular to a unit vector and to each other.
 fn beside(axis: [f64; 3]) -> [[f64; 3]; 2] {
     let Quaternion { x, y, z, w } = upright(axis);
     // The first two columns of the rotation that takes z to the axis.
@@ -286,7 +296,7 @@ fn upright([x, y, z]: [f64; 3]) -> Quaternion {
 mod tests {
     use super::*;
 
-    /// A unit vector is turned to by the quaternion `v' = v + 2 w (q × v) + 2 q × (q × v)`.
+    /// The quaternion rotates z onto the unit vector: `v' = v + 2 w (q × v) + 2 q × (q × v)`.
     #[test]
     fn a_rod_points_from_end_to_end() {
         for axis in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [0.48, 0.64, 0.6]] {

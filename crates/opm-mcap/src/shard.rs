@@ -3,64 +3,91 @@
 //! | record | content |
 //! |---|---|
 //! | attachment | the mechanism file |
-//! | metadata `run` | what the caller tells of the whole run: the same in all of its shards |
+//! | metadata `run` | the caller's description of the whole run, which is the same in all of its shards |
 //! | metadata `shard` | which part this is |
 //! | topic [`RUNS_TOPIC`] | the poses, as `opm.Runs` |
-//! | metadata `result` | what the caller tells of the outcome; last, with `complete = "true"` |
+//! | metadata `result` | the caller's description of the outcome; last, with `complete = "true"` |
 //!
-//! `opm.Runs` is `message Runs { uint64 start = 1; repeated uint64 lengths = 2; }`: from pose number
-//! `start` on, how many poses are out of reach, how many in reach, and so on by turns; the last of them
-//! is in reach. Messages follow each other in the order of their poses. The poses between the last run
-//! of one and the `start` of the next, and behind the last, are out of reach.
+//! `opm.Runs` is `message Runs { uint64 start = 1; repeated uint64 lengths = 2; }`. From pose number
+//! `start` on, `lengths` are in alternation the numbers of poses out of reach and in reach; the last of them
+//! are in reach. Messages follow each other in the order of their poses. The poses between the last run
+//! of one message and the `start` of the next, and behind the last message, are out of reach.
 
 use crate::decode::varint;
 use crate::joints::{self, Field};
 use crate::log::{CHUNK_BYTES, Log, Topic};
 use crate::{Metadata, PartialFile, RecordError, Sink};
 
-/// Topic of the runs.
+/// The topic of the runs.
 pub const RUNS_TOPIC: &str = "/shard/runs";
-/// Schema of its messages.
+/// The schema of its messages.
 pub const RUNS_SCHEMA: &str = "opm.Runs";
 
-/// Time of the first message, and between messages, in nanoseconds. They count messages, no time.
+/// The time of the first message, and between messages, nanoseconds. Messages are counted with it, not time.
 const START: u64 = 1_000_000_000;
 const STEP: u64 = 1_000_000;
-/// Bytes of lengths after which a message is closed.
+/// The number of bytes of lengths after which a message is closed.
 const MESSAGE_BYTES: usize = 1 << 18;
 
 /// Keys of the message's fields: number 1, an integer; number 2, packed integers.
 const START_KEY: u8 = 1 << 3;
 const LENGTHS_KEY: u8 = 2 << 3 | 2;
 
-/// What a shard's file is of.
+/// The head of a shard's file.
 #[derive(Debug, Clone)]
 pub struct Shard<'a> {
-    /// Name of the mechanism file.
+    /// The name of the mechanism file.
     pub mechanism_name: &'a str,
     /// The mechanism file itself (TOML).
     pub mechanism: &'a [u8],
-    /// The whole run.
+    /// The description of the whole run.
     pub run: Metadata,
-    /// Which part of it this is.
+    /// The description of this part of it.
     pub shard: Metadata,
 }
 
-/// Writes a shard's file. Any error is final. Memory: one message.
+/// Writes a shard's file. Any error is final. It takes the memory of one message.
+///
+/// ```
+/// use opm_mcap::{Metadata, PartialFile, ReadError, Shard, ShardRecorder, read};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("part.mcap");
+/// let shard = Shard {
+///     mechanism_name: "m.toml",
+///     mechanism: b"",
+///     run: Metadata::new(),
+///     shard: Metadata::from([("number".into(), "1".into())]),
+/// };
+/// let mut recorder = ShardRecorder::new(PartialFile::create(&path)?, &shard)?;
+/// recorder.push(3, 10)?;
+/// recorder.push(12, 13)?;
+/// recorder.finish(&Metadata::new())?;
+///
+/// let mut runs = Vec::new();
+/// read::<ReadError>(&path, |message| {
+///     runs.extend(message.runs()?.into_iter().flatten());
+///     Ok(())
+/// })?;
+/// assert_eq!(runs, [[3, 10], [12, 13]]);
+/// # Ok(())
+/// # }
+/// ```
 pub struct ShardRecorder<W: Sink = PartialFile> {
     log: Log<W>,
     topic: Topic,
     messages: u64,
-    /// Where the open message starts, and one more than its last pose.
+    /// The first pose of the open message, and one more than its last pose.
     open: [u64; 2],
     lengths: Vec<u8>,
 }
 
 impl<W: Sink> ShardRecorder<W> {
-    /// Starts a file that goes to `sink`.
+    /// Starts a file that is written to `sink`.
     ///
     /// # Errors
-    /// A failed write.
+    /// A failed write ([`RecordError::Io`]).
     pub fn new(sink: W, shard: &Shard<'_>) -> Result<Self, RecordError> {
         let mut log = Log::new(sink, CHUNK_BYTES)?;
         log.attach(shard.mechanism_name, "application/toml", START, shard.mechanism)?;
@@ -71,10 +98,11 @@ impl<W: Sink> ShardRecorder<W> {
         Ok(Self { log, topic, messages: 0, open: [0; 2], lengths: Vec::new() })
     }
 
-    /// Adds the poses with numbers from `from` on, before `to`: behind all before, and not none.
+    /// Adds the poses with numbers from `from` up to, not including, `to`. They have to come behind all poses
+    /// before, and to be at least one.
     ///
     /// # Errors
-    /// A run out of order, or a failed write.
+    /// [`RecordError::Run`] for a run that is empty or out of order, or a failed write.
     pub fn push(&mut self, from: u64, to: u64) -> Result<(), RecordError> {
         let [_, end] = self.open;
         if from < end || to <= from {
@@ -90,8 +118,8 @@ impl<W: Sink> ShardRecorder<W> {
         if self.lengths.len() >= MESSAGE_BYTES { self.write() } else { Ok(()) }
     }
 
-    /// Completes the file: `result` is the last metadata record, with `complete = "true"` added. Only
-    /// now does the file get its name.
+    /// Completes the file, which only now gets its name. `result` is the last metadata record, with
+    /// `complete = "true"` added.
     ///
     /// # Errors
     /// A failed write.

@@ -1,31 +1,56 @@
 //! Points as one flat table: NPY for NumPy, PLY for mesh tools.
 //!
-//! | ending | what it is | a point |
+//! | ending | format | point |
 //! |---|---|---|
-//! | `.npy` | a structured array of one axis, memory-mappable (`numpy.load(..., mmap_mode="r")`) | a float64 a column, by its name |
+//! | `.npy` | a structured array of one axis, which can be memory-mapped (`numpy.load(..., mmap_mode="r")`) | one float64 for each column, by its name |
 //! | `.ply` | binary, little-endian; one element, `vertex` | x y z and the scalars as float32, red green blue alpha as bytes |
 //!
-//! Values are SI and radians. The number of points is in front of them, so it has to be known first. As
-//! with recordings, a table has its name once it is whole.
+//! Values are SI and radians. The number of points is stored in front of them, so it has to be known first.
+//! As a recording, a table gets its name once it is whole.
 
 use std::fmt::Write as _;
 
 use crate::cloud::{COLOR_FIELDS, POSITION_FIELDS};
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
-/// Bytes that the array of an NPY file is aligned to.
+/// The number of bytes that the array of an NPY file is aligned to.
 const ALIGNMENT: usize = 64;
 
-/// A kind of table.
+/// A format of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableFormat {
-    /// NumPy's own.
+    /// NumPy's own format.
     Npy,
     /// Stanford's polygon file format.
     Ply,
 }
 
 /// Writes a table of points. Any error is final.
+///
+/// ```
+/// use opm_mcap::{CloudLayout, Metadata, PartialFile, TableFormat, TableRecorder, table_columns};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("points.npy");
+/// let layout = CloudLayout {
+///     axes: ["x", "y", "xi"].map(String::from),
+///     scalars: vec![],
+///     color: "xi".into(),
+///     color_range: [0.0, 1.0],
+///     frame_id: "base".into(),
+/// };
+/// let file = PartialFile::create(&path)?;
+/// let (points, run) = (1, Metadata::new());
+/// let mut table = TableRecorder::new(file, TableFormat::Npy, &layout, points, &run)?;
+/// assert_eq!(table_columns(&layout), ["x", "y", "xi"]);
+/// let point = [0.1_f64, 0.2, 0.3];
+/// table.push(&point.map(f64::to_le_bytes).concat())?;
+/// table.finish()?;
+/// assert!(std::fs::read(&path)?.starts_with(b"\x93NUMPY"));
+/// # Ok(())
+/// # }
+/// ```
 pub struct TableRecorder<W: Sink = PartialFile> {
     /// `None` after an error.
     sink: Option<W>,
@@ -35,8 +60,8 @@ pub struct TableRecorder<W: Sink = PartialFile> {
 }
 
 impl<W: Sink> TableRecorder<W> {
-    /// Starts a table of so many points that goes to `sink`. `run` is told in comments, where the format
-    /// has any.
+    /// Starts a table with the given number of points, which is written to `sink`. `run` is written as
+    /// comments, if the format has comments.
     ///
     /// # Errors
     /// A failed write.
@@ -58,11 +83,11 @@ impl<W: Sink> TableRecorder<W> {
         Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0 })
     }
 
-    /// Adds points, packed: rows of [`table_columns`] as little-endian doubles, or what a
-    /// [`Packer`](crate::Packer) makes.
+    /// Adds points as bytes. NPY has rows of [`table_columns`] as little-endian doubles; PLY has points of a
+    /// [`Packer`](crate::Packer).
     ///
     /// # Errors
-    /// No whole number of points, more than announced, or a failed write.
+    /// [`RecordError::Layout`] if `points` is not a whole number of points, or a failed write.
     pub fn push(&mut self, points: &[u8]) -> Result<(), RecordError> {
         let Some(mut sink) = self.sink.take() else { return Err(RecordError::AfterFailure) };
         if !points.len().is_multiple_of(self.stride) {
@@ -76,10 +101,10 @@ impl<W: Sink> TableRecorder<W> {
         Ok(())
     }
 
-    /// Completes the table. Only now does the file get its name.
+    /// Completes the table, which only now gets its name.
     ///
     /// # Errors
-    /// Fewer or more points than announced, or a failed write.
+    /// [`RecordError::Count`] if there were fewer or more points than announced, or a failed write.
     pub fn finish(self) -> Result<(), RecordError> {
         let (found, expected) = (self.pushed, self.announced);
         if found != expected {
@@ -90,7 +115,7 @@ impl<W: Sink> TableRecorder<W> {
     }
 }
 
-/// The columns of a layout, each of them once.
+/// The names of the columns of an NPY table: those of the layout, each once.
 pub fn table_columns(layout: &CloudLayout) -> Vec<&str> {
     let mut columns: Vec<&str> = Vec::new();
     for name in layout.columns() {

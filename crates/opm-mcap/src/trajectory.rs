@@ -1,26 +1,72 @@
-//! The recording of a motion: where everything is, as time goes on.
+//! The recording of a motion: joints, rates and bodies over time.
 //!
 //! | topic | messages |
 //! |---|---|
-//! | `/pose`, `/pose_velocities` | `opm.Pose`, `opm.PoseVelocities`: a double a task coordinate |
-//! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: a double a joint coordinate |
-//! | `/imaginary_joints`, `/imaginary_velocities` | a double an imaginary joint |
+//! | `/pose`, `/pose_velocities` | `opm.Pose`, `opm.PoseVelocities`: one double for each task coordinate |
+//! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: one double for each joint coordinate |
+//! | `/imaginary_joints`, `/imaginary_velocities` | one double for each imaginary joint |
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
-//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know it; at most 200 a second |
+//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 200 a second |
 //! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 200 a second |
 //! | `/scene` | one `foxglove.SceneUpdate`: what the bodies look like, each in its own frame |
-//! | `/bodies/NAME` | one `foxglove.PointCloud` a body, for viewers without scenes: its surface |
+//! | `/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
-//! Metres, radians and seconds; what has no values in a recording has no topic. Time starts at
-//! [`START`]; no clock is read. Where the mechanism cannot be, `/pose` and `/condition` (`valid` 0, the
-//! condition number infinite, the measures NaN) go on and the joints pause.
+//! Units are metres, radians and seconds. A topic without values is left out. Time starts at [`START`]; no
+//! clock is read. Where the mechanism cannot follow the motion, the joints pause, while `/pose` and
+//! `/condition` go on (`valid` is 0, the condition number infinite, and the measures are NaN).
 //!
-//! Metadata records: `run` (what the caller tells of the run), `joints` (which joint each field is, see
-//! [`crate::joints`]), `quantities` (what each field of a position measures, `rad` or `m`), `roles`
-//! (what each field is: `actuated`, `passive`, `imaginary` or `task`; a joint that has a task
-//! coordinate's name wins), whatever the caller adds, and last `result`, with `complete = "true"`.
-//! The mechanism file is an attachment, and so is the motion file where there is one.
+//! These are the metadata records:
+//!
+//! * `run`: the caller's description of the run;
+//! * `joints`: which joint each field is (see [`crate::joints`]);
+//! * `quantities`: the unit of each position field, `rad` or `m`;
+//! * `roles`: `actuated`, `passive`, `imaginary` or `task`, for each field; if a joint and a task coordinate
+//!   have the same name, the joint's role counts;
+//! * the records that the caller adds;
+//! * last `result`, with `complete = "true"`.
+//!
+//! The mechanism file is an attachment, and so is the motion file, if there is one.
+//!
+//! ```
+//! use opm_mcap::{
+//!     Coordinate, Metadata, Posture, ReadError, Role, Sample, Trajectory, TrajectoryRecorder, read,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("crank.mcap");
+//! // One joint, recorded at 100 samples a second.
+//! let crank = Coordinate { name: "crank".into(), unit: "rad", role: Role::Actuated };
+//! let trajectory = Trajectory {
+//!     pose: vec![],
+//!     joints: vec![crank],
+//!     imaginary: vec![],
+//!     rates: false,
+//!     measures: vec![],
+//!     bodies: vec![],
+//!     files: vec![],
+//!     run: Metadata::new(),
+//! };
+//! let mut recorder = TrajectoryRecorder::create(&path, &trajectory)?;
+//! for i in 0..100 {
+//!     let joints = [0.01 * i as f64];
+//!     let posture = Posture { joints: &joints, ..Posture::default() };
+//!     recorder.push(i * 10_000_000, &Sample { posture: Some(posture), ..Sample::default() })?;
+//! }
+//! recorder.finish(&Metadata::new())?;
+//!
+//! let (mut values, mut last) = (vec![], None);
+//! read::<ReadError>(&path, |message| {
+//!     if message.topic == "/joints" && message.values(&mut values)? {
+//!         last = values.first().copied();
+//!     }
+//!     Ok(())
+//! })?;
+//! assert_eq!(last, Some(0.99));
+//! # Ok(())
+//! # }
+//! ```
 
 use std::path::Path;
 
@@ -36,55 +82,55 @@ use crate::scene::{Body, check, surface, update};
 use crate::workspace::START;
 use crate::{Metadata, PartialFile, RecordError, Sink};
 
-/// Topic of the joints.
+/// The topic of the joints.
 pub const JOINTS_TOPIC: &str = "/joints";
-/// Topic of the imaginary joints.
+/// The topic of the imaginary joints.
 pub const IMAGINARY_TOPIC: &str = "/imaginary_joints";
-/// Topic of the task coordinates.
+/// The topic of the task coordinates.
 pub const POSE_TOPIC: &str = "/pose";
-/// Topic of the rates of the task coordinates.
+/// The topic of the rates of the task coordinates.
 pub const POSE_VELOCITIES_TOPIC: &str = "/pose_velocities";
-/// Topic of the joint rates.
+/// The topic of the joint rates.
 pub const VELOCITIES_TOPIC: &str = "/velocities";
-/// Topic of the joint accelerations.
+/// The topic of the joint accelerations.
 pub const ACCELERATIONS_TOPIC: &str = "/accelerations";
-/// Topic of the rates of the imaginary joints.
+/// The topic of the rates of the imaginary joints.
 pub const IMAGINARY_VELOCITIES_TOPIC: &str = "/imaginary_velocities";
-/// Topic of the condition number and the singularity measures.
+/// The topic of the condition number and the singularity measures.
 pub const CONDITION_TOPIC: &str = "/condition";
-/// Topic of the joints as viewers know them.
+/// The topic of the joints in the schema that viewers know.
 pub const JOINT_STATES_TOPIC: &str = "/joint_states";
-/// Topic of the bodies' frames.
+/// The topic of the bodies' frames.
 pub const FRAMES_TOPIC: &str = "/tf";
-/// Topic of the bodies' shapes.
+/// The topic of the bodies' shapes.
 pub const SCENE_TOPIC: &str = "/scene";
-/// Topic of the places where the motion cannot be followed.
+/// The topic of the times at which the motion cannot be followed.
 pub const VIOLATIONS_TOPIC: &str = "/violations";
-/// What the names of the bodies' clouds begin with.
+/// The beginning of the topics of the bodies' clouds.
 pub const BODIES_TOPIC: &str = "/bodies/";
 
-/// What is looked at, `/tf` and `/joint_states`, comes at most every so many nanoseconds: three times
-/// as often as screens show pictures. All values of all samples are on the other topics.
+/// The shortest time between messages on `/tf` and `/joint_states`, nanoseconds. Screens show a third as many
+/// pictures. The other topics have the values of all samples.
 pub const PICTURE_PERIOD: u64 = 5_000_000;
 
-/// The field of `/condition` that says whether the mechanism can be there.
+/// The field of `/condition` that says whether the pose is in reach and within all limits.
 pub const VALID: &str = "valid";
 
-/// What a value is.
+/// The role of a value in the mechanism.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// Of a joint with a motor.
+    /// The value of an actuated joint.
     Actuated,
-    /// Of a joint without one.
+    /// The value of a passive joint.
     Passive,
-    /// Of an imaginary joint.
+    /// The value of an imaginary joint.
     Imaginary,
-    /// Of the pose.
+    /// A task coordinate of the pose.
     Task,
 }
 
 impl Role {
-    /// `actuated`, `passive`, `imaginary` or `task`.
+    /// The word for the role: `actuated`, `passive`, `imaginary` or `task`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Actuated => "actuated",
@@ -98,85 +144,86 @@ impl Role {
 /// A coordinate that is recorded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Coordinate {
-    /// Name, unique on its topic.
+    /// The name, which no other coordinate on the same topic has.
     pub name: String,
-    /// SI unit of its position: `rad` or `m`.
+    /// The SI unit of its position: `rad` or `m`.
     pub unit: &'static str,
-    /// What it is.
+    /// The role of its values.
     pub role: Role,
 }
 
-/// What a recording of a motion is of.
+/// The head of a recording of a motion: which values and bodies it has.
 #[derive(Debug, Clone)]
 pub struct Trajectory<'a> {
-    /// Task coordinates; none for what has no pose.
+    /// The task coordinates; none for a mechanism without a platform.
     pub pose: Vec<Coordinate>,
-    /// Joint coordinates.
+    /// The joint coordinates.
     pub joints: Vec<Coordinate>,
-    /// Imaginary joints.
+    /// The imaginary joints.
     pub imaginary: Vec<Coordinate>,
     /// Whether rates and accelerations come with the positions.
     pub rates: bool,
-    /// Names of what `/condition` tells beside `valid`; none for no such topic.
+    /// The names of the values of `/condition` beside `valid`; without any there is no such topic.
     pub measures: Vec<String>,
-    /// The bodies, parents first; none for a recording without pictures.
+    /// The bodies, parents first; none for a recording without a scene.
     pub bodies: Vec<Body>,
-    /// Files to attach: name and text (TOML or CSV), the mechanism file first.
+    /// The files to attach: name and text (TOML or CSV), the mechanism file first.
     pub files: Vec<(&'a str, &'a [u8])>,
-    /// The run: what moves, from where to where, version.
+    /// The description of the run: what moves, from where to where, version.
     pub run: Metadata,
 }
 
-/// One instant. Every slice has the length of what [`Trajectory`] names, rates none where it has none.
+/// One instant of a motion. Every slice has one value for each name in the [`Trajectory`]; slices of rates are
+/// empty if it has no rates.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sample<'a> {
-    /// Task coordinates.
+    /// The task coordinates, radians and metres.
     pub pose: &'a [f64],
-    /// Their rates.
+    /// The rates of the task coordinates, per second.
     pub pose_velocities: &'a [f64],
-    /// The measures of `/condition`.
+    /// The values of `/condition`.
     pub measures: &'a [f64],
-    /// The mechanism can be there, within its limits.
+    /// Whether the pose is in reach and within all limits.
     pub valid: bool,
-    /// Where the joints are; `None` out of reach.
+    /// The joints and bodies; `None` out of reach.
     pub posture: Option<Posture<'a>>,
 }
 
-/// Where the joints and the bodies are.
+/// The joints and bodies at one instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Posture<'a> {
-    /// Joint coordinates.
+    /// The joint coordinates, radians and metres.
     pub joints: &'a [f64],
-    /// Imaginary joints.
+    /// The imaginary joints, radians and metres.
     pub imaginary: &'a [f64],
-    /// How they move; `None` in a singularity, where that is not known.
+    /// The rates of the joints; `None` at a singularity, where they are not known.
     pub rates: Option<Rates<'a>>,
-    /// The frame of every body in its parent's, the base's left out. Only read where
-    /// [`TrajectoryRecorder::shows`] says so.
+    /// The frame of every body except the base, in the frame of its parent. They are only read at times of
+    /// which [`TrajectoryRecorder::shows`] is true.
     pub frames: &'a [Frame],
 }
 
-/// How the joints move.
+/// The rates of the joints at one instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Rates<'a> {
-    /// Of the joint coordinates, a second.
+    /// The rates of the joint coordinates, per second.
     pub velocities: &'a [f64],
-    /// Of the imaginary joints, a second.
+    /// The rates of the imaginary joints, per second.
     pub imaginary: &'a [f64],
-    /// Of the joint coordinates, a second squared.
+    /// The accelerations of the joint coordinates, per second squared.
     pub accelerations: &'a [f64],
 }
 
-/// Where a frame is in its parent's.
+/// The place of a frame in the frame of its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Of its origin, metres.
+    /// The position of its origin, metres.
     pub translation: [f64; 3],
-    /// Unit quaternion x, y, z, w.
+    /// The rotation as a unit quaternion x, y, z, w.
     pub rotation: [f64; 4],
 }
 
-/// Writes a recording of a motion. Any error is final.
+/// Writes a recording of a motion. Any error is final. The [module](self) has an example.
 pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     log: Log<W>,
     pose: Option<JointsTopic>,
@@ -194,7 +241,7 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     judged: Vec<f64>,
     message: Vec<u8>,
     time: u64,
-    /// When the next picture is due.
+    /// The time of the next message on `/tf` and `/joint_states`.
     picture: u64,
 }
 
@@ -202,14 +249,15 @@ impl TrajectoryRecorder {
     /// Starts a recording that will appear as the file `path`; see [`PartialFile`].
     ///
     /// # Errors
-    /// Joints or bodies without a name of their own, or a file that cannot be written.
+    /// [`RecordError::Layout`] for joints or bodies without a name of their own, or a file that cannot be
+    /// written.
     pub fn create(path: &Path, trajectory: &Trajectory<'_>) -> Result<Self, RecordError> {
         Self::new(PartialFile::create(path)?, trajectory)
     }
 }
 
 impl<W: Sink> TrajectoryRecorder<W> {
-    /// Starts a recording that goes to `sink`.
+    /// Starts a recording that is written to `sink`.
     ///
     /// # Errors
     /// As [`create`](TrajectoryRecorder::create).
@@ -294,7 +342,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(recorder)
     }
 
-    /// Writes what the bodies look like, once.
+    /// Writes the shapes of the bodies, once.
     fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
         let mut scene = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
         put(&mut self.log, &mut self.message, &mut scene, START, &update(bodies, stamp(START)))?;
@@ -319,7 +367,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(())
     }
 
-    /// Whether an instant so many nanoseconds after the start will be on `/tf` and `/joint_states`.
+    /// Whether an instant `time` nanoseconds after the start will be on `/tf` and `/joint_states`.
     pub fn shows(&self, time: u64) -> bool {
         time >= self.picture
     }
@@ -327,7 +375,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
     /// Writes one instant, `time` nanoseconds after the start.
     ///
     /// # Errors
-    /// Another number of values than were named, a time before the last one, or a failed write.
+    /// [`RecordError::Row`] if there is not one value for each name, [`RecordError::Time`] for a time before
+    /// the last one, or a failed write.
     pub fn push(&mut self, time: u64, sample: &Sample<'_>) -> Result<(), RecordError> {
         let result = self.try_push(time, sample);
         if result.is_err() {
@@ -369,9 +418,10 @@ impl<W: Sink> TrajectoryRecorder<W> {
         if let Some((topic, states)) = &mut self.states {
             states.timestamp = Some(stamp(time));
             for (i, state) in states.joints.iter_mut().enumerate() {
-                state.position = Some(posture.joints[i]);
-                state.velocity = posture.rates.map(|rates| rates.velocities[i]);
-                state.acceleration = posture.rates.map(|rates| rates.accelerations[i]);
+                state.position = posture.joints.get(i).copied();
+                let rates = posture.rates;
+                state.velocity = rates.and_then(|rates| rates.velocities.get(i).copied());
+                state.acceleration = rates.and_then(|rates| rates.accelerations.get(i).copied());
             }
             put(&mut self.log, &mut self.message, topic, time, states)?;
         }
@@ -391,10 +441,10 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(())
     }
 
-    /// Marks that the motion cannot be followed from `time` nanoseconds after the start, in words.
+    /// Writes a line to `/violations`: the motion cannot be followed at `time` nanoseconds after the start.
     ///
     /// # Errors
-    /// A time before the last one, or a failed write.
+    /// [`RecordError::Time`] for a time before the last one, or a failed write.
     pub fn mark(&mut self, time: u64, message: &str) -> Result<(), RecordError> {
         let time = self.advance(time)?;
         let line = foxglove::messages::Log {
@@ -427,8 +477,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(START.saturating_add(time))
     }
 
-    /// Completes the recording: `result` is the last metadata record, with `complete = "true"`
-    /// added. Only now does the file get its name.
+    /// Completes the recording, which only now gets its name. `result` is the last metadata record, with
+    /// `complete = "true"` added.
     ///
     /// # Errors
     /// A failed write.

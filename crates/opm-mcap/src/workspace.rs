@@ -3,17 +3,19 @@
 //! | topic | messages |
 //! |---|---|
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
-//! | `/workspace/slices` | one a slice, [`SLICE_STEP`] apart; together they hold every point |
-//! | `/workspace/boundary` | `foxglove.SceneUpdate`, where the boundary is known: its closed lines, with the slice |
+//! | `/workspace/slices` | one for each slice, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/boundary` | `foxglove.SceneUpdate`, if the boundary is known: its closed lines, with their slice |
 //!
-//! A viewer shows the newest message of a topic. So the overview, which comes first, is always in
-//! view, and moving the playhead walks through the slices; a slice without points has its message
-//! too, an empty one, or the slice before it would stay in view. A slice with more points than
-//! [`MAX_MESSAGE_POINTS`] continues in further messages, each [`PART_STEP`] after the one before.
+//! A viewer shows the newest message of a topic. So the overview, which comes first, is always in view, and
+//! moving the playhead walks through the slices. A slice without points has an empty message: otherwise the
+//! slice before it would stay in view. A slice with more points than [`MAX_MESSAGE_POINTS`] continues in
+//! further messages, each [`PART_STEP`] after the one before.
 //!
-//! Time starts at [`START`] and counts slices; no clock is read. Metadata records: `run` (what the
-//! caller tells of the run), `clouds` (what x, y, z and the colour are, how the overview was
+//! Time starts at [`START`] and counts slices; no clock is read. The metadata records are `run` (the
+//! caller's description of the run), `clouds` (what x, y, z and the colour are, how the overview was
 //! decimated), and last `result`, with `complete = "true"`. The mechanism file is an attachment.
+//!
+//! The [crate] has an example.
 
 use std::path::Path;
 
@@ -25,59 +27,60 @@ use crate::log::{Log, Topic};
 use crate::scene::{ClosedLine, lines};
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
-/// Topic of the overview.
+/// The topic of the overview.
 pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
-/// Topic of the slices.
+/// The topic of the slices.
 pub const SLICES_TOPIC: &str = "/workspace/slices";
-/// Topic of the boundary.
+/// The topic of the boundary.
 pub const BOUNDARY_TOPIC: &str = "/workspace/boundary";
-/// Time of the first message, in nanoseconds: one second. Not zero, which viewers take for unset.
+/// The time of the first message, nanoseconds: one second, since viewers take zero for a time that is not set.
 pub const START: u64 = 1_000_000_000;
-/// Time between slices, in nanoseconds.
+/// The time between slices, nanoseconds.
 pub const SLICE_STEP: u64 = 100_000_000;
-/// Time between the messages of one slice, in nanoseconds.
+/// The time between the messages of one slice, nanoseconds.
 pub const PART_STEP: u64 = 100_000;
 /// Most points of the overview.
 pub const MAX_OVERVIEW_POINTS: u64 = 2_000_000;
 /// Most points of one message of a slice.
 pub const MAX_MESSAGE_POINTS: u64 = 4_000_000;
-/// Most bytes of the points of one message. Clouds of more than four scalars meet this limit before
-/// those in points; it bounds the recorder's memory.
+/// Most bytes of the points of one message, which bounds the recorder's memory. Clouds of more than four
+/// scalars reach this limit before those in points.
 pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
-/// Uncompressed bytes of points after which a chunk is closed: in chunks of this size zstd finds the slice before,
-/// which makes them smaller by a fifth than in chunks of 1 MiB.
+/// The number of uncompressed bytes of points after which a chunk is closed. In chunks of this size zstd finds
+/// the slice before, so that they are smaller by a fifth than chunks of 1 MiB.
 pub const CHUNK_BYTES: u64 = 4 << 20;
-/// Most slices. Each is a message, points or not; a million play for a day.
+/// Most slices. Each has a message, even without points; a million of them play for a day.
 pub const MAX_SLICES: u64 = 1_000_000;
 
-/// Parts into which the slices are divided by flushes: a recording that is cut short lacks at most
-/// one of them, or the last 4 MiB of points where that is less. Counted in slices, not in seconds, so
-/// that the bytes do not depend on the machine's speed.
+/// The number of parts into which flushes divide the slices. A recording that is cut short lacks at most one
+/// of them, or the last 4 MiB of points if that is less. They are counted in slices, not in seconds, so that
+/// the bytes do not depend on the machine's speed.
 const FLUSHES: u64 = 100;
 
-/// The slice that a message of [`SLICES_TOPIC`] belongs to, by its time in nanoseconds.
+/// The number of the slice that a message of [`SLICES_TOPIC`] belongs to, from its time in nanoseconds; `None`
+/// for a time before the first slice.
 pub fn slice_at(time: u64) -> Option<u64> {
     Some(time.checked_sub(START)? / SLICE_STEP)
 }
 
-/// What a workspace recording is of.
+/// The head of a workspace recording.
 #[derive(Debug, Clone)]
 pub struct Workspace<'a> {
-    /// What its points are made of.
+    /// The values of its points.
     pub layout: CloudLayout,
-    /// Name of the mechanism file.
+    /// The name of the mechanism file.
     pub mechanism_name: &'a str,
     /// The mechanism file itself (TOML).
     pub mechanism: &'a [u8],
-    /// The run: grid, mode, version.
+    /// The description of the run: grid, mode, version.
     pub run: Metadata,
-    /// Points that the slices will hold together.
+    /// The number of points of all slices together.
     pub points: u64,
-    /// Slices: combinations of the slowest grid axes.
+    /// The number of slices: combinations of values on the slowest grid axes.
     pub slices: u64,
 }
 
-/// How often, and how large: the numbers that the memory bound and the point count give.
+/// How messages are divided: the numbers that follow from the memory bound and the number of points.
 #[derive(Debug, Clone, Copy)]
 struct Plan {
     points: u64,
@@ -100,7 +103,7 @@ impl Plan {
         }
     }
 
-    /// Points of the largest cloud to come.
+    /// The number of points of the largest cloud to come.
     fn capacity(&self) -> usize {
         self.message_points.min(usize::try_from(self.points).unwrap_or(usize::MAX))
     }
@@ -116,16 +119,17 @@ struct Boundary {
 #[derive(Debug, Clone, Copy)]
 struct Open {
     slice: u64,
-    /// Messages of this slice already written.
+    /// The number of messages of this slice that are already written.
     parts: u64,
 }
 
 /// Writes a workspace recording.
 ///
-/// The points come twice, both times in the order of their grid index: first every k-th
-/// ([`overview_every`](Self::overview_every)) to [`overview`](Self::overview), then all, with the
-/// number of their slice, to [`push`](Self::push). In what portions they come makes no difference
-/// to the file. Any error is final. Memory: one message, at most [`MAX_MESSAGE_BYTES`].
+/// The points are given twice, both times in the order of their numbers in the grid: first every k-th point
+/// ([`overview_every`](Self::overview_every)) to [`overview`](Self::overview), then all points, with the
+/// number of their slice, to [`push`](Self::push). The portions in which they come make no difference to
+/// the file. Any error is final. It takes the memory of one message, at most [`MAX_MESSAGE_BYTES`]. The
+/// [crate] has an example.
 pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     log: Log<W>,
     encoder: CloudEncoder,
@@ -134,7 +138,7 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     slices: Topic,
     frame_id: String,
     boundary: Option<Boundary>,
-    /// None while the overview is being gathered.
+    /// `None` while the overview is being gathered.
     open: Option<Open>,
     pushed: u64,
 }
@@ -143,14 +147,15 @@ impl WorkspaceRecorder {
     /// Starts a recording that will appear as the file `path`; see [`PartialFile`].
     ///
     /// # Errors
-    /// A layout that contradicts itself, too many slices, or a file that cannot be written.
+    /// [`RecordError::Layout`] for a layout that contradicts itself, [`RecordError::TooManySlices`], or a file
+    /// that cannot be written.
     pub fn create(path: &Path, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
         Self::new(PartialFile::create(path)?, workspace)
     }
 }
 
 impl<W: Sink> WorkspaceRecorder<W> {
-    /// Starts a recording that goes to `sink`.
+    /// Starts a recording that is written to `sink`.
     ///
     /// # Errors
     /// As [`create`](WorkspaceRecorder::create).
@@ -173,16 +178,17 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(Self { log, encoder, plan, overview, slices, frame_id, boundary, open, pushed: 0 })
     }
 
-    /// The k of the overview's every k-th point: points number 0, k, 2k, ... belong to it.
+    /// The k of the overview, to which points number 0, k, 2k, ... belong.
     pub fn overview_every(&self) -> u64 {
         self.plan.overview_every
     }
 
-    /// Records the boundary, too, in the cloud's axes: closed lines, each with the number of the slice
-    /// that they are shown from, ascending. Before any points.
+    /// Records the boundary, too, in the axes of the cloud: closed lines, with the number of the slice from
+    /// which on they are shown, ascending. It has to come before the points of the slices.
     ///
     /// # Errors
-    /// After the first slice, lines out of order or beyond the last slice, or a failed write.
+    /// [`RecordError::OverviewClosed`] after the first slice, [`RecordError::Slice`] for lines out of order or
+    /// beyond the last slice, or a failed write.
     pub fn boundary(&mut self, lines: Vec<(u64, Vec<ClosedLine>)>) -> Result<(), RecordError> {
         let result = self.try_boundary(lines);
         self.settle(result)
@@ -191,7 +197,8 @@ impl<W: Sink> WorkspaceRecorder<W> {
     /// Adds points of the overview, as rows of [`CloudLayout::columns`].
     ///
     /// # Errors
-    /// Points that do not fit the layout, are not finite, too many, or after the first slice.
+    /// Points that do not fit the layout ([`RecordError::Row`]) or are not finite ([`RecordError::NonFinite`]),
+    /// are too many ([`RecordError::Count`]) or come after the first slice ([`RecordError::OverviewClosed`]).
     pub fn overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {
         let result = self.try_overview(rows);
         self.settle(result)
@@ -201,36 +208,37 @@ impl<W: Sink> WorkspaceRecorder<W> {
     /// returned to.
     ///
     /// # Errors
-    /// Points that do not fit the layout or are not finite, a slice out of order, an overview with
-    /// too few points, or a failed write.
+    /// Points that do not fit the layout ([`RecordError::Row`]) or are not finite ([`RecordError::NonFinite`]),
+    /// a slice out of order ([`RecordError::Slice`]), an overview with too few points
+    /// ([`RecordError::Count`]), or a failed write.
     pub fn push(&mut self, slice: u64, rows: &[f64]) -> Result<(), RecordError> {
         let result = self.try_push(slice, rows);
         self.settle(result)
     }
 
-    /// As [`overview`](Self::overview), of points that a [`Packer`](crate::Packer) of the layout packed.
+    /// Adds points of the overview that a [`Packer`](crate::Packer) of the layout has packed.
     ///
     /// # Errors
-    /// No whole number of points, too many, or after the first slice.
+    /// [`RecordError::Layout`] if `points` is not a whole number of points, and as [`overview`](Self::overview).
     pub fn overview_packed(&mut self, points: &[u8]) -> Result<(), RecordError> {
         let result = self.try_overview_packed(points);
         self.settle(result)
     }
 
-    /// As [`push`](Self::push), of points that a [`Packer`](crate::Packer) of the layout packed.
+    /// Adds points of a slice that a [`Packer`](crate::Packer) of the layout has packed.
     ///
     /// # Errors
-    /// No whole number of points, and as [`push`](Self::push).
+    /// [`RecordError::Layout`] if `points` is not a whole number of points, and as [`push`](Self::push).
     pub fn push_packed(&mut self, slice: u64, points: &[u8]) -> Result<(), RecordError> {
         let result = self.try_push_packed(slice, points);
         self.settle(result)
     }
 
-    /// Completes the recording: `result` is the last metadata record, with `complete = "true"`
-    /// added. Only now does the file get its name.
+    /// Completes the recording, which only now gets its name. `result` is the last metadata record, with
+    /// `complete = "true"` added.
     ///
     /// # Errors
-    /// Fewer or more points than announced, or a failed write.
+    /// [`RecordError::Count`] if there were fewer or more points than announced, or a failed write.
     pub fn finish(mut self, result: &Metadata) -> Result<(), RecordError> {
         let open = self.open_slices()?;
         self.close_until(open, self.plan.slices)?;
@@ -244,7 +252,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
         self.log.finish()
     }
 
-    /// After an error nothing more may be written, whatever the error was.
+    /// Ends the recording after an error, whatever the error was.
     fn settle(&mut self, result: Result<(), RecordError>) -> Result<(), RecordError> {
         if result.is_err() {
             self.log.give_up();
@@ -280,7 +288,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(())
     }
 
-    /// Checks that so many more points belong to the overview.
+    /// Checks that `more` points may be added to the overview.
     fn announce(&self, more: u64) -> Result<(), RecordError> {
         if self.open.is_some() {
             return Err(RecordError::OverviewClosed);
@@ -292,7 +300,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(())
     }
 
-    /// How many points are in so many bytes.
+    /// The number of points in some bytes.
     fn whole_points(&self, points: &[u8]) -> Result<u64, RecordError> {
         let stride = self.encoder.packer().stride();
         if points.len().is_multiple_of(stride) {
@@ -317,7 +325,8 @@ impl<W: Sink> WorkspaceRecorder<W> {
         })
     }
 
-    /// Adds so many points of a slice, of which each is `width` of `points`, as long as messages allow.
+    /// Adds `more` points of a slice, each of which is `width` elements of `points`, in as many messages as they
+    /// need.
     fn push_parts<T>(
         &mut self,
         slice: u64,
@@ -348,7 +357,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(())
     }
 
-    /// Writes the overview, unless that is done, and opens the first slice.
+    /// Writes the overview, unless that has been done, and opens the first slice.
     fn open_slices(&mut self) -> Result<Open, RecordError> {
         if let Some(open) = self.open {
             return Ok(open);
@@ -362,7 +371,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
         Ok(*self.open.insert(Open { slice: 0, parts: 0 }))
     }
 
-    /// Closes slices, those without points too, until `end` is open.
+    /// Closes slices, with or without points, until `end` is open.
     fn close_until(&mut self, mut open: Open, end: u64) -> Result<Open, RecordError> {
         while open.slice < end {
             let slice = open.slice;
@@ -402,7 +411,7 @@ impl<W: Sink> WorkspaceRecorder<W> {
 }
 
 impl Boundary {
-    /// The lines that are shown from this slice on, if they are others than before.
+    /// The lines that are shown from this slice on, if they differ from those before.
     fn at(&mut self, slice: u64) -> Option<Vec<ClosedLine>> {
         let next = self.left.as_slice().first()?;
         (next.0 <= slice).then(|| self.left.next())?.map(|(_, lines)| lines)

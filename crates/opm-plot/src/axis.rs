@@ -1,65 +1,73 @@
-//! Axes: ranges that show what matters, and ticks at numbers that people like.
+//! Axes: ranges that show what matters, and ticks at round numbers.
 
 use crate::font::Face;
 
-/// Which numbers are round.
+/// The steps between ticks: which numbers count as round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
-    /// One, two and five of every power of ten.
+    /// One, two and five times a power of ten.
     Decimal,
-    /// As decimal up to ten, then 15, 30, 45, 90, 180 and whole turns.
+    /// As decimal up to ten, then 15, 30, 45, 90, 180, and multiples of 360.
     Degrees,
 }
 
-/// What the values along an axis are.
+/// The unit of the values along an axis.
+///
+/// ```
+/// use opm_plot::{Steps, Unit};
+///
+/// let degrees = Unit { symbol: "deg".into(), steps: Steps::Degrees, resolution: 1e-6 };
+/// # let _ = degrees;
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// Its symbol; nothing for a pure number.
+    /// The symbol, for instance `mm`; empty for a pure number.
     pub symbol: String,
-    /// Which steps suit it.
+    /// The steps between ticks that suit it.
     pub steps: Steps,
-    /// Differences below this are noise: values that differ by less are drawn as one.
+    /// Values that differ by less than this are drawn as equal: the difference is noise.
     pub resolution: f64,
 }
 
 impl Unit {
-    /// A pure number, of which nothing is known.
+    /// The unit of a pure number, with decimal steps and a resolution of 1e-12.
     pub fn none() -> Self {
         Self { symbol: String::new(), steps: Steps::Decimal, resolution: 1e-12 }
     }
 }
 
-/// A place along an axis with its number.
+/// A tick of an axis with its number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Where it is.
+    /// The value at the tick.
     pub value: f64,
-    /// What is written there; of a logarithmic axis's smaller ticks, nothing.
+    /// The text at the tick; empty for the smaller ticks of a logarithmic axis.
     pub label: String,
 }
 
 /// The range of an axis, and its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Values at the two ends, the first one smaller.
+    /// The values at the two ends, ascending.
     pub range: [f64; 2],
-    /// In rising order.
+    /// The ticks, in ascending order.
     pub ticks: Vec<Tick>,
-    /// Labels are in units of this power of ten.
+    /// The power of ten that labels are divided by.
     exponent: i32,
     logarithmic: bool,
 }
 
-/// How much of a range is added on both sides, so that curves do not touch the frame.
+/// The share of a range that is added on both sides, so that curves do not touch the frame.
 const MARGIN: f64 = 0.06;
-/// Values differ at this share of their size, or not at all: double precision after some arithmetic.
+/// Values that differ by less than this share of their size are equal: it is double precision after some
+/// arithmetic.
 const RELATIVE_NOISE: f64 = 1e-9;
-/// Powers of ten beyond which labels would be long.
+/// Beyond these numbers labels would be long.
 const LONG_ABOVE: f64 = 1e5;
 const LONG_BELOW: f64 = 1e-3;
 
-/// The range that shows all of these values, with a margin. Of one value, or of noise about one, it
-/// is wide enough for the curve to look as level as it is.
+/// The range of an axis that shows values from `values[0]` to `values[1]`, with a margin; without values it is
+/// `[0, 1]`. For a single value, or noise about one, the range is so wide that the curve looks level.
 pub fn around(values: Option<[f64; 2]>, unit: &Unit) -> [f64; 2] {
     let Some([low, high]) = values else { return [0.0, 1.0] };
     let largest = low.abs().max(high.abs());
@@ -74,8 +82,8 @@ pub fn around(values: Option<[f64; 2]>, unit: &Unit) -> [f64; 2] {
 }
 
 impl Axis {
-    /// Over a range, with so many ticks at most, or fewer where `fits` says that their labels, so
-    /// many apart as a share of the axis, do not fit.
+    /// A linear axis over a range, with `most` ticks at most. There are fewer if `fits` rejects them: it gets
+    /// the ticks, and the distance between them as a share of the axis.
     pub fn linear(
         range: [f64; 2],
         steps: Steps,
@@ -85,7 +93,7 @@ impl Axis {
         let [low, high] = range;
         let span = high - low;
         let exponent = exponent(low.abs().max(high.abs()));
-        // So many steps have one tick more, at most.
+        // `most + 1` steps have at most one tick more than the axis may have.
         let mut step = first_step(span / (most.max(1) + 1) as f64, steps);
         loop {
             let ticks = ticks(range, step, exponent);
@@ -96,8 +104,8 @@ impl Axis {
         }
     }
 
-    /// A logarithmic one over positive values, with ticks at powers of ten, or at their twofold and
-    /// fivefold too where that leaves few.
+    /// A logarithmic axis over positive values, with about `most` labels at most. Ticks are at powers of ten,
+    /// and at two and five times these if there are few of them.
     pub fn logarithmic(values: [f64; 2], most: usize) -> Self {
         let [low, high] = values.map(f64::log10);
         let margin = (MARGIN * (high - low)).max(0.02);
@@ -120,7 +128,7 @@ impl Axis {
         Self { range, ticks, exponent: 0, logarithmic: true }
     }
 
-    /// Where a value is: 0 at the axis's start, 1 at its end.
+    /// The place of a value along the axis: 0 at its start, 1 at its end.
     pub fn share(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         if self.logarithmic {
@@ -130,12 +138,12 @@ impl Axis {
         }
     }
 
-    /// Whether a value can be drawn.
+    /// Whether a value has a place on the axis: it is finite, and positive on a logarithmic axis.
     pub fn holds(&self, value: f64) -> bool {
         value.is_finite() && (!self.logarithmic || value > 0.0)
     }
 
-    /// What the axis is called: a name, and the unit that the labels are in.
+    /// The title of the axis: a name, and the unit that the labels are in.
     pub fn title(&self, name: &str, unit: &Unit) -> String {
         let power = match self.exponent {
             0 => String::new(),
@@ -149,7 +157,7 @@ impl Axis {
         }
     }
 
-    /// How wide its widest label is.
+    /// The width of the widest label, in pixels.
     pub fn label_width(&self, face: Face, size: f64) -> f64 {
         self.ticks.iter().map(|tick| face.width(&tick.label, size)).fold(0.0, f64::max)
     }
@@ -164,14 +172,14 @@ fn exponent(largest: f64) -> i32 {
     }
 }
 
-/// Steps beyond ten that suit degrees.
+/// The steps from ten on that suit degrees.
 const ANGLES: [f64; 6] = [10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 
 /// The smallest round step of at least this size.
 fn first_step(size: f64, steps: Steps) -> f64 {
     let decimal = |size: f64| {
         let power = 10_f64.powf(size.log10().floor());
-        // Above by rounding only.
+        // A step that is smaller by rounding alone will do.
         let found = [1.0, 2.0, 5.0].map(|digit| digit * power);
         found.into_iter().find(|&step| step >= size * (1.0 - 1e-9)).unwrap_or(10.0 * power)
     };
@@ -187,7 +195,7 @@ fn next_step(step: f64, steps: Steps) -> f64 {
 }
 
 fn ticks([low, high]: [f64; 2], step: f64, exponent: i32) -> Vec<Tick> {
-    // A tick that is an end by all but rounding is on the axis.
+    // A tick that is at an end up to rounding is on the axis.
     let slack = 1e-9;
     let first = (low / step - slack).ceil();
     let last = (high / step + slack).floor();
@@ -195,7 +203,7 @@ fn ticks([low, high]: [f64; 2], step: f64, exponent: i32) -> Vec<Tick> {
     let decimals = (-(step / scale).log10().floor()).max(0.0) as usize;
     let mut found = Vec::new();
     let mut number = first;
-    // An axis so narrow that its values are not told apart has no room to count.
+    // On an axis so narrow that doubles cannot tell its values apart, counting would not end.
     while number <= last && found.len() < 1000 {
         let value = number * step;
         found.push(Tick { value, label: label(value / scale, decimals) });
@@ -204,7 +212,7 @@ fn ticks([low, high]: [f64; 2], step: f64, exponent: i32) -> Vec<Tick> {
     found
 }
 
-/// A number as a label: with a minus sign, never a negative zero.
+/// The text of a number with so many decimals: with a typographic minus sign, and without negative zeros.
 pub fn label(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {

@@ -1,27 +1,27 @@
-//! Colours that people with any kind of colour vision tell apart.
+//! Colours that people with any kind of colour vision can tell apart.
 
 use colorous::{CIVIDIS, VIRIDIS};
 
 /// An opaque colour: red, green, blue.
 pub type Color = [u8; 3];
 
-/// Text and axes.
+/// The colour of text and axes.
 pub const INK: Color = [0x22, 0x22, 0x22];
-/// What stands back: notes, ticks.
+/// The colour of notes and ticks.
 pub const FAINT: Color = [0x5a, 0x5a, 0x5a];
-/// Lines of the grid.
+/// The colour of grid lines.
 pub const GRID: Color = [0xe2, 0xe2, 0xe2];
-/// Spans of time that are not valid.
+/// The colour of spans of time that are not valid.
 pub const SHADE: Color = [0xf6, 0xdc, 0xd2];
-/// Marks of violations.
+/// The colour of marks of violations.
 pub const ALARM: Color = [0xb0, 0x3a, 0x12];
-/// Dots of a cloud.
+/// The colour of dots and bars.
 pub const DOT: Color = [0x00, 0x72, 0xb2];
-/// The ground.
+/// The background.
 pub const WHITE: Color = [0xff; 3];
 
-/// The colours of M. Okabe and K. Ito (jfly.uni-koeln.de/color) that stand out from white: all but
-/// the yellow.
+/// The colours of M. Okabe and K. Ito (jfly.uni-koeln.de/color), without the yellow, which does not stand out
+/// from white.
 const OKABE_ITO: [Color; 7] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -31,29 +31,29 @@ const OKABE_ITO: [Color; 7] = [
     [0xe6, 0x9f, 0x00],
     [0x00, 0x00, 0x00],
 ];
-/// Lines beyond the colours differ by their dashes: lengths of strokes and gaps.
+/// Further lines differ by their dashes: lengths of strokes and gaps, in pixels.
 const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[9.0, 3.0, 2.0, 3.0]];
 
-/// How line number `i` of a panel looks: its colour and its dashes. They repeat after 28.
+/// The colour and the dashes of line number `i` of a panel. They repeat after 28 lines.
 pub fn line(i: usize) -> (Color, &'static [f64]) {
     let dashes = DASHES[i / OKABE_ITO.len() % DASHES.len()];
     (OKABE_ITO[i % OKABE_ITO.len()], dashes)
 }
 
-/// Maps of a scalar, perceptually uniform.
+/// A map from numbers to colours, perceptually uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Map {
-    /// Slices and values.
+    /// The map for slices and values.
     Viridis,
-    /// Numbers of poses.
+    /// The map for numbers of poses.
     Cividis,
 }
 
 impl Map {
-    /// The bright end of a map is lost on white paper: maps are cut there.
+    /// The share of a map that is used: its bright end is lost on white paper.
     const END: f64 = 0.95;
 
-    /// The colour of a share from 0 to 1; what is outside is clamped.
+    /// The colour for a share from 0 to 1. Other numbers are clamped.
     pub fn color(self, share: f64) -> Color {
         let gradient = match self {
             Self::Viridis => VIRIDIS,

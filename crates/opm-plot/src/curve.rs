@@ -1,27 +1,37 @@
 //! A value over time, of any length, in bounded memory.
 
-/// Points of a curve that are kept before it is thinned out.
+/// The number of points of a curve before it is thinned out.
 const MOST: usize = 32_768;
-/// Spans of time that a thinned curve is told in: several to a pixel.
+/// The number of spans of time of a thinned curve: several for each pixel.
 const SPANS: f64 = 4096.0;
 
-/// A value over time.
+/// A value over time, in bounded memory.
 ///
-/// A long curve is told by what can be seen of it: in each of some thousand spans of time the first,
-/// the last, the lowest and the highest point, which are points of the curve. A value that is not
-/// finite is a gap.
+/// Of a long curve only those points are kept that can be seen: in each of some thousand spans of time the
+/// first, the last, the lowest and the highest point. A value that is not finite is a gap.
+///
+/// ```
+/// use opm_plot::Curve;
+///
+/// let mut curve = Curve::default();
+/// for i in 0..100_000 {
+///     curve.push(f64::from(i), f64::from(i).sin());
+/// }
+/// assert_eq!(curve.samples(), 100_000);
+/// assert!(curve.is_thinned() && curve.points().len() < 50_000);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
     points: Vec<[f64; 2]>,
     range: Option<[f64; 2]>,
     smallest_positive: Option<f64>,
     samples: u64,
-    /// Length of a span, once there are spans.
+    /// The length of a span, once the curve has been thinned out.
     span: Option<f64>,
 }
 
 impl Curve {
-    /// Adds a value, later than the last one.
+    /// Adds a value at a time later than the last one.
     pub fn push(&mut self, time: f64, value: f64) {
         self.samples += 1;
         let value = if value.is_finite() {
@@ -41,27 +51,27 @@ impl Curve {
         }
     }
 
-    /// The points to draw: time and value, NaN for a gap.
+    /// The points to draw: time and value, which is NaN for a gap.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
     }
 
-    /// Lowest and highest value; `None` without any.
+    /// The lowest and the highest value; `None` if no value is finite.
     pub fn range(&self) -> Option<[f64; 2]> {
         self.range
     }
 
-    /// The lowest value above zero.
+    /// The lowest value above zero; `None` if there is no such value.
     pub fn smallest_positive(&self) -> Option<f64> {
         self.smallest_positive
     }
 
-    /// Values that were added.
+    /// The number of values that were added.
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Whether not every value is among the points.
+    /// Whether points have been left out.
     pub fn is_thinned(&self) -> bool {
         self.span.is_some()
     }
@@ -73,7 +83,7 @@ impl Curve {
         let start = *start;
         let span = ((end - start) / SPANS).max(self.span.unwrap_or(0.0));
         if span <= 0.0 || !span.is_finite() {
-            // All at one time: a vertical line, told by its ends.
+            // All points are at one time: of a vertical line the ends are kept.
             self.points = extremes(&self.points);
             self.span = Some(0.0);
             return;
@@ -85,7 +95,7 @@ impl Curve {
     }
 }
 
-/// First, lowest, highest and last point, and a gap if there is one, in their order.
+/// The first, lowest, highest and last point, and a gap if there is one, in their order.
 fn extremes(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let value = |&i: &usize| points[i][1];
     let finite = || (0..points.len()).filter(|i| value(i).is_finite());

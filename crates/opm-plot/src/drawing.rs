@@ -1,31 +1,64 @@
-//! A picture as a list of shapes: what every figure is drawn into, and every format written from.
+//! A picture as a list of shapes. Every figure is laid out as one, and every format is written from one.
 //!
 //! Coordinates are in pixels of a screen (96 to the inch), x to the right and y down.
 
 use crate::color::Color;
 use crate::font::Face;
+use crate::{png, svg};
 
-/// Width and height.
+/// A size, in pixels of a screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
-    /// From left to right.
+    /// The width.
     pub width: f64,
-    /// From top to bottom.
+    /// The height.
     pub height: f64,
 }
 
 /// A picture.
+///
+/// ```
+/// use opm_plot::drawing::{Drawing, Path, Rect, Shape, Size};
+///
+/// let square = Path::rect(Rect { x: 10.0, y: 10.0, width: 80.0, height: 80.0 });
+/// let drawing = Drawing {
+///     size: Size { width: 100.0, height: 100.0 },
+///     title: "A blue square".into(),
+///     shapes: vec![Shape::Area(square, opm_plot::color::DOT)],
+/// };
+/// assert!(drawing.to_svg()?.contains("A blue square"));
+/// assert!(drawing.to_png()?.starts_with(b"\x89PNG"));
+/// # Ok::<(), opm_plot::png::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Its size.
+    /// The size.
     pub size: Size,
-    /// What it is called by programs that read pictures aloud.
+    /// The title, which programs read that describe pictures to the blind.
     pub title: String,
-    /// What is on it; later shapes cover earlier ones.
+    /// The shapes; later ones cover earlier ones.
     pub shapes: Vec<Shape>,
 }
 
-/// One thing in a picture.
+impl Drawing {
+    /// The drawing as an SVG file.
+    ///
+    /// # Errors
+    /// An image in it cannot be encoded.
+    pub fn to_svg(&self) -> Result<String, png::Error> {
+        svg::write(self)
+    }
+
+    /// The drawing as a PNG file, with [`png::SCALE`] pixels for one of a screen each way.
+    ///
+    /// # Errors
+    /// [`png::Error::Size`] if there is no memory for so many pixels.
+    pub fn to_png(&self) -> Result<Vec<u8>, png::Error> {
+        png::write(self)
+    }
+}
+
+/// A shape in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// An area of one colour.
@@ -36,30 +69,30 @@ pub enum Shape {
     Text(Text),
     /// A raster, stretched to a box.
     Image {
-        /// The box.
+        /// The box that it fills.
         place: Rect,
         /// The raster.
         image: Image,
     },
-    /// Shapes that are one thing to the reader.
+    /// Shapes that belong together for the reader.
     Group {
-        /// What kind of thing: a word.
+        /// The kind of group, one word: for instance `panel` or `curve`.
         kind: &'static str,
-        /// Which one.
+        /// The name of this group among those of its kind.
         label: String,
-        /// Its shapes.
+        /// The shapes.
         shapes: Vec<Shape>,
     },
 }
 
-/// How a line looks.
+/// The look of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
-    /// Its colour.
+    /// The colour.
     pub color: Color,
-    /// Its width.
+    /// The width, in pixels.
     pub width: f64,
-    /// Lengths of strokes and gaps; nothing is a line without gaps.
+    /// The lengths of strokes and gaps, in pixels; empty for a line without gaps.
     pub dashes: &'static [f64],
 }
 
@@ -70,43 +103,43 @@ impl Pen {
     }
 }
 
-/// A text.
+/// A text on one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// What it says.
+    /// The text itself.
     pub text: String,
-    /// Where its baseline starts.
+    /// The start of its baseline.
     pub at: [f64; 2],
-    /// The font's size.
+    /// The size of the font, in pixels.
     pub size: f64,
     /// The font.
     pub face: Face,
-    /// Its colour.
+    /// The colour.
     pub color: Color,
-    /// Read from bottom to top.
+    /// Whether it is read from bottom to top.
     pub turned: bool,
 }
 
 /// A box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
-    /// Left side.
+    /// The left side.
     pub x: f64,
-    /// Upper side.
+    /// The upper side.
     pub y: f64,
-    /// Its width.
+    /// The width.
     pub width: f64,
-    /// Its height.
+    /// The height.
     pub height: f64,
 }
 
 impl Rect {
-    /// Right side.
+    /// The right side.
     pub fn right(&self) -> f64 {
         self.x + self.width
     }
 
-    /// Lower side.
+    /// The lower side.
     pub fn bottom(&self) -> f64 {
         self.y + self.height
     }
@@ -115,31 +148,31 @@ impl Rect {
 /// A raster of opaque pixels, the first row on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// Red, green and blue of every pixel, row by row; `None` lets the ground be seen.
+    /// The colour of every pixel, row by row; `None` is transparent.
     pub pixels: Vec<Option<Color>>,
 }
 
-/// Straight lines, in one piece or several.
+/// A path of straight lines, in one piece or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path(pub Vec<Step>);
 
 /// A step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Starts a piece.
+    /// Starts a piece at a point.
     Move([f64; 2]),
-    /// Goes on.
+    /// Goes on to a point in a straight line.
     Line([f64; 2]),
-    /// Back to where the piece started.
+    /// Goes back to the start of the piece.
     Close,
 }
 
 impl Path {
-    /// Through these points.
+    /// The path through these points, in one piece.
     pub fn through(points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let mut path = Self::default();
         for (number, point) in points.into_iter().enumerate() {
@@ -148,7 +181,7 @@ impl Path {
         path
     }
 
-    /// Around a box.
+    /// The path around a box.
     pub fn rect(rect: Rect) -> Self {
         let mut path = Self::default();
         path.add_rect(rect);
@@ -181,42 +214,42 @@ impl Path {
     }
 }
 
-/// Which part of a text is at the given place.
+/// The part of a text that is at a given place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its start.
+    /// The start of the text.
     Start,
-    /// Its middle.
+    /// The middle of the text.
     Middle,
-    /// Its end.
+    /// The end of the text.
     End,
 }
 
-/// How a text is written.
+/// The look of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// The font's size.
+    /// The size of the font, in pixels.
     pub size: f64,
     /// The font.
     pub face: Face,
-    /// Its colour.
+    /// The colour.
     pub color: Color,
 }
 
 impl Style {
-    /// How wide a text is.
+    /// The width of a text, in pixels.
     pub fn width(&self, text: &str) -> f64 {
         self.face.width(text, self.size)
     }
 
-    /// A text on the baseline `at`.
+    /// A text from left to right, with the anchor of its baseline at a point.
     pub fn text(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
         let text = text.into();
         let x = x - self.before(&text, anchor);
         self.shape(text, [x, y], false)
     }
 
-    /// A text from bottom to top, its baseline to the right of it.
+    /// A text from bottom to top, with the anchor of its baseline, which is on its right, at a point.
     pub fn turned(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
         let text = text.into();
         let y = y + self.before(&text, anchor);

@@ -3,21 +3,21 @@
 use std::sync::LazyLock;
 use ttf_parser::{Face as FontFace, GlyphId, OutlineBuilder};
 
-/// One of the two fonts.
+/// The font of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Face {
-    /// Everything but titles.
+    /// DejaVu Sans, for all texts but titles.
     Regular,
-    /// Titles.
+    /// DejaVu Sans Bold, for titles.
     Bold,
 }
 
 /// A piece of a glyph's outline, in units of the font with y upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stroke {
-    /// Starts a contour.
+    /// Starts a contour at a point.
     Move([f32; 2]),
-    /// A straight line.
+    /// A straight line to a point.
     Line([f32; 2]),
     /// A quadratic curve: its control point and its end.
     Quad([f32; 2], [f32; 2]),
@@ -30,11 +30,11 @@ static REGULAR: LazyLock<Option<FontFace<'static>>> =
 static BOLD: LazyLock<Option<FontFace<'static>>> =
     LazyLock::new(|| FontFace::parse(include_bytes!("../fonts/DejaVuSans-Bold.ttf"), 0).ok());
 
-/// Height of capitals above the baseline, of the font's size.
+/// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
 
 impl Face {
-    /// Units of the font to its size: that of both fonts.
+    /// The number of font units in the font's size, the same for both fonts.
     pub const UNITS: f64 = 2048.0;
 
     fn font(self) -> Option<&'static FontFace<'static>> {
@@ -44,8 +44,8 @@ impl Face {
         }
     }
 
-    /// Glyphs of a text, each with its distance from the start, in units of the font. A character
-    /// that the font lacks is an empty box.
+    /// The glyphs of a text, each with its distance from the start, in units of the font. A character that
+    /// the font lacks becomes an empty box.
     pub fn glyphs(self, text: &str) -> impl Iterator<Item = (u16, f64)> {
         let mut at = 0.0;
         text.chars().map(move |character| {
@@ -61,7 +61,7 @@ impl Face {
         self.font().and_then(|font| font.glyph_hor_advance(glyph)).unwrap_or(0).into()
     }
 
-    /// How wide a text is when written in this size.
+    /// The width of a text in this font size, in the same unit.
     pub fn width(self, text: &str, size: f64) -> f64 {
         let glyph = |c| self.font().and_then(|font| font.glyph_index(c)).unwrap_or(GlyphId(0));
         text.chars().map(|c| self.advance(glyph(c))).sum::<f64>() * size / Self::UNITS
@@ -76,7 +76,7 @@ impl Face {
         outline.0
     }
 
-    /// The text, or as much of it as fits in `room`, then an ellipsis.
+    /// The text, or as much of it as fits in `room` together with an ellipsis.
     pub fn fit(self, text: &str, size: f64, room: f64) -> String {
         if self.width(text, size) <= room {
             return text.to_owned();
@@ -91,7 +91,7 @@ impl Face {
         String::new()
     }
 
-    /// The text in lines no wider than `room`, broken between words.
+    /// The text in lines no wider than `room`, which are broken between words.
     pub fn wrap(self, text: &str, size: f64, room: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {

@@ -5,40 +5,40 @@ use crate::color::{FAINT, GRID, INK};
 use crate::drawing::{Anchor, Path, Pen, Rect, Shape, Style};
 use crate::font::{CAPITALS, Face};
 
-/// Numbers at ticks.
+/// The style of numbers at ticks.
 pub const TICK: Style = Style { size: 11.0, face: Face::Regular, color: FAINT };
-/// Names of axes and curves.
+/// The style of names of axes and curves.
 pub const NAME: Style = Style { size: 12.0, face: Face::Regular, color: INK };
-/// Titles of panels.
+/// The style of titles of panels.
 pub const TITLE: Style = Style { size: 12.5, face: Face::Bold, color: INK };
 
-/// Length of a tick.
+/// The length of a tick.
 const TICK_LENGTH: f64 = 4.0;
-/// Between a tick and its number.
+/// The gap between a tick and its number.
 const TICK_GAP: f64 = 3.0;
-/// Between two numbers.
+/// The least gap between two numbers.
 const APART: f64 = 8.0;
-/// Between the numbers of an axis and its name.
+/// The gap between the numbers of an axis and its name.
 const NAME_GAP: f64 = 6.0;
-/// Below a horizontal axis: ticks and numbers.
+/// The room below a horizontal axis for ticks and numbers.
 pub const NUMBERS_BELOW: f64 = TICK_LENGTH + TICK_GAP + 11.0;
-/// Below a horizontal axis: ticks, numbers and its name.
+/// The room below a horizontal axis for ticks, numbers and its name.
 pub const BELOW: f64 = NUMBERS_BELOW + NAME_GAP + 13.0;
-/// Least distance between the ticks of a vertical axis.
+/// The least distance between the ticks of a vertical axis.
 const LINE_APART: f64 = 26.0;
 
-/// Room to the left of a vertical axis with these numbers and a name.
+/// The room to the left of a vertical axis for its numbers and, if it is `named`, its name.
 pub fn left_of(axis: &Axis, named: bool) -> f64 {
     let name = if named { NAME_GAP + NAME.size + 2.0 } else { 0.0 };
     TICK_LENGTH + TICK_GAP + axis.label_width(TICK.face, TICK.size) + name
 }
 
-/// How many ticks a vertical axis of this height has at most.
+/// The largest number of ticks of a vertical axis of this height.
 pub fn ticks_in(height: f64) -> usize {
     ((height / LINE_APART) as usize).clamp(2, 8)
 }
 
-/// Whether the numbers of a horizontal axis of this length keep apart.
+/// Tells whether the numbers of a horizontal axis of this length keep apart.
 pub fn fits(length: f64) -> impl Fn(&[Tick], f64) -> bool {
     move |ticks, step| {
         let widest = ticks.iter().map(|tick| TICK.width(&tick.label)).fold(0.0, f64::max);
@@ -46,34 +46,34 @@ pub fn fits(length: f64) -> impl Fn(&[Tick], f64) -> bool {
     }
 }
 
-/// A box and what its sides mean.
+/// A box and the axes along its sides.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The box.
     pub place: Rect,
-    /// From left to right.
+    /// The axis from left to right.
     pub x: &'a Axis,
-    /// From bottom to top.
+    /// The axis from bottom to top.
     pub y: &'a Axis,
 }
 
 impl Frame<'_> {
-    /// Where two values are.
+    /// The point of two values.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.across(x), self.up(y)]
     }
 
-    /// Where a value of the horizontal axis is.
+    /// The horizontal place of a value.
     pub fn across(&self, x: f64) -> f64 {
         self.place.x + self.place.width * self.x.share(x)
     }
 
-    /// Where a value of the vertical axis is.
+    /// The vertical place of a value.
     pub fn up(&self, y: f64) -> f64 {
         self.place.bottom() - self.place.height * self.y.share(y)
     }
 
-    /// Lines through the ticks, to be drawn first.
+    /// The lines through the ticks, to be drawn first.
     pub fn grid(&self) -> Shape {
         let Rect { x: left, y: top, .. } = self.place;
         let (right, bottom) = (self.place.right(), self.place.bottom());
@@ -89,7 +89,7 @@ impl Frame<'_> {
         Shape::Line(lines, Pen::new(GRID, 0.8))
     }
 
-    /// The box itself and its ticks, over what is in it.
+    /// The box itself and its ticks, to be drawn over its content.
     pub fn border(&self) -> Vec<Shape> {
         let Rect { x: left, .. } = self.place;
         let bottom = self.place.bottom();

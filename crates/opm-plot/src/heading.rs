@@ -1,4 +1,4 @@
-//! What stands above and below every figure.
+//! The texts above and below every figure.
 
 use crate::color::{FAINT, INK};
 use crate::drawing::{Anchor, Shape, Style};
@@ -7,32 +7,32 @@ use crate::font::Face;
 const TITLE: Style = Style { size: 17.0, face: Face::Bold, color: INK };
 const LINE: Style = Style { size: 12.0, face: Face::Regular, color: INK };
 const NOTE: Style = Style { size: 11.0, face: Face::Regular, color: FAINT };
-/// From the baseline of a line to that of the next, in sizes of the font.
+/// The distance between baselines, in sizes of the font.
 const SPACING: f64 = 1.4;
-/// Around the figure.
+/// The margin around the figure.
 pub const MARGIN: f64 = 16.0;
-/// Between the heading and the figure, and between the figure and its notes.
+/// The gap between the heading and the figure, and between the figure and its notes.
 const GAP: f64 = 14.0;
 
-/// What a figure is called and what is said about it.
+/// The texts of a figure: its title, lines below the title, and notes below the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// One line, cut where it is too long.
+    /// The title, on one line, which is shortened if it is too long.
     pub title: String,
-    /// Below the title, wrapped.
+    /// The lines below the title, which are wrapped.
     pub lines: Vec<String>,
-    /// Below the figure, wrapped.
+    /// The notes below the figure, which are wrapped.
     pub notes: Vec<String>,
 }
 
 impl Heading {
-    /// How far down the heading goes in a figure of this width.
+    /// The room that the heading takes at the top of a figure of this width, in pixels.
     pub fn top(&self, width: f64) -> f64 {
         let lines = wrapped(&self.lines, LINE, width).len() as f64;
         MARGIN + TITLE.size + lines * SPACING * LINE.size + GAP
     }
 
-    /// How much room the notes take at the bottom of a figure of this width.
+    /// The room that the notes take at the bottom of a figure of this width, in pixels.
     pub fn bottom(&self, width: f64) -> f64 {
         match wrapped(&self.notes, NOTE, width).len() {
             0 => MARGIN,
@@ -40,7 +40,7 @@ impl Heading {
         }
     }
 
-    /// Its texts; the notes start at `end`.
+    /// The texts as shapes, in a figure of this width. The notes start at the height `end`.
     pub fn draw(&self, width: f64, end: f64) -> Vec<Shape> {
         let title = TITLE.face.fit(&self.title, TITLE.size, width - 2.0 * MARGIN);
         let mut y = MARGIN + TITLE.size - 2.0;

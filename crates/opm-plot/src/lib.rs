@@ -1,13 +1,53 @@
-//! Figures of curves over time and of clouds of points, as SVG and PNG.
+//! Figures of curves over time and of points in a plane, as SVG and PNG.
 //!
-//! A figure ([`TimeFigure`], [`TileFigure`]) is plain data: numbers in the units that they are shown
-//! in, and names. It is laid out as a [`Drawing`], a list of shapes, from which [`svg::write`] and
-//! [`png::write`] make files that show the same thing. Texts are outlines of fonts that come with
-//! the crate, and are measured with the same fonts: nothing depends on what the machine has. The same
-//! figure gives the same bytes.
+//! A figure is plain data: numbers in the units that they are shown in, and names. [`TimeFigure`] shows curves
+//! over time, [`TileFigure`] shows tiles with cells of a grid, point clouds and histograms. Either is laid out
+//! as a [`Drawing`], a list of shapes, which is written as SVG or PNG; both look the same.
 //!
-//! However much there is to draw, a figure stays small: curves are thinned out to their extremes
-//! ([`Curve`]), cells and dots beyond [`MOST_SHAPES`] of them become an image.
+//! ```
+//! use opm_plot::{Curve, Heading, Panel, Row, Scale, Steps, TimeFigure, Unit};
+//!
+//! let mut curve = Curve::default();
+//! for i in 0..=100 {
+//!     let time = 0.1 * f64::from(i);
+//!     curve.push(time, 30.0 * time.sin());
+//! }
+//! let panel = Panel {
+//!     title: "Joint".into(),
+//!     name: "angle".into(),
+//!     unit: Unit { symbol: "deg".into(), steps: Steps::Degrees, resolution: 1e-6 },
+//!     scale: Scale::Linear,
+//!     curves: vec![(0, curve)],
+//! };
+//! let figure = TimeFigure {
+//!     heading: Heading { title: "A motion".into(), ..Heading::default() },
+//!     time: [0.0, 10.0],
+//!     rows: vec![Row { names: vec!["phi1".into()], panels: vec![Some(panel)] }],
+//!     invalid: vec![],
+//!     marks: vec![],
+//! };
+//! let drawing = figure.draw(None)?;
+//! let (svg, png) = (drawing.to_svg()?, drawing.to_png()?);
+//! assert!(svg.starts_with("<svg") && png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Where to find what
+//!
+//! | question | items |
+//! |---|---|
+//! | curves over time | [`TimeFigure`], [`Row`], [`Panel`], [`Curve`], [`Scale`] |
+//! | points in a plane | [`TileFigure`], [`Section`], [`Tile`], [`Cells`], [`Cloud`], [`Histogram`], [`Bar`] |
+//! | axes and units | [`Unit`], [`Steps`], [`Measure`], module [`axis`] |
+//! | texts above and below | [`Heading`] |
+//! | the shapes of a figure | [`Drawing`], modules [`drawing`], [`color`], [`font`] |
+//! | files | [`Drawing::to_svg`], [`Drawing::to_png`], modules [`svg`], [`png`] |
+//!
+//! Texts are outlines of fonts that come with the crate, and are measured with the same fonts: nothing depends
+//! on the fonts of the machine. The same figure gives the same bytes.
+//!
+//! A figure stays small, however much there is to draw: curves are thinned out to their extremes ([`Curve`]),
+//! and more than [`MOST_SHAPES`] cells or dots become an image.
 
 pub mod axis;
 pub mod color;
@@ -22,6 +62,7 @@ mod tiles;
 mod time;
 
 pub use axis::{Steps, Unit};
+pub use color::{Color, Map};
 pub use curve::Curve;
 pub use drawing::{Drawing, Size};
 pub use heading::Heading;
@@ -30,13 +71,14 @@ pub use tiles::{
 };
 pub use time::{Panel, Row, Scale, TimeFigure};
 
-/// Largest width and height of a figure; its PNG has four times as many pixels as that squared.
+/// The largest width and height of a figure, in pixels of a screen. A PNG has [`png::SCALE`] pixels for each of
+/// them, each way.
 pub const MOST: f64 = 4000.0;
 
-/// Cells or dots of one panel that are drawn one by one; where there are more they become an image.
+/// The most cells or dots of one panel that are drawn one by one. More of them become an image.
 pub const MOST_SHAPES: usize = 5000;
 
-/// A figure does not fit in the size that was asked for.
+/// A figure does not fit in the size that it should be drawn in.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "{panels} panels need at least {}x{}, and nothing is larger than {MOST}x{MOST}",
@@ -44,8 +86,8 @@ pub const MOST_SHAPES: usize = 5000;
     needed.height
 )]
 pub struct TooSmall {
-    /// The least size.
+    /// The smallest size that the figure fits in.
     pub needed: Size,
-    /// Panels of the figure.
+    /// The number of panels of the figure.
     pub panels: usize,
 }

@@ -1,4 +1,4 @@
-//! A drawing as PNG, two pixels for one of a screen each way.
+//! Writes a drawing as PNG, with two pixels for one of a screen each way.
 
 use crate::color::{Color as Rgb, WHITE};
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
@@ -9,29 +9,30 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
-/// Pixels of a PNG for one of a drawing, each way: for sharp screens and for print.
+/// The number of pixels of a PNG for one of a drawing, each way: for sharp screens and for print.
 pub const SCALE: u32 = 2;
 
-/// Why there is no PNG.
+/// Why a drawing cannot be written as PNG.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
-    /// No memory for so many pixels, or none at all.
+    /// There is no memory for so many pixels, or there are no pixels.
     #[error("a picture of {width} x {height} pixels")]
     Size {
-        /// Pixels in a row.
+        /// The number of pixels in a row.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
     },
-    /// The encoder's reason.
+    /// The encoder failed.
     #[error("cannot encode the picture")]
     Encode(#[from] EncodingError),
 }
 
-/// The whole file.
+/// Writes a drawing as the bytes of a PNG file; see also [`Drawing::to_png`].
 ///
 /// # Errors
-/// More pixels than there is memory for.
+/// [`Error::Size`] if there is no memory for so many pixels.
 pub fn write(drawing: &Drawing) -> Result<Vec<u8>, Error> {
     let pixels = |length: f64| (length * f64::from(SCALE)).round() as u32;
     let mut canvas = pixmap(pixels(drawing.size.width), pixels(drawing.size.height))?;
@@ -40,7 +41,7 @@ pub fn write(drawing: &Drawing) -> Result<Vec<u8>, Error> {
     encode(&canvas, ColorType::Rgb)
 }
 
-/// An image of a drawing as a file of its own.
+/// Writes an image of a drawing as a file of its own.
 pub(crate) fn image(image: &Image) -> Result<Vec<u8>, Error> {
     encode(&raster(image)?, ColorType::Rgba)
 }
@@ -49,9 +50,9 @@ fn pixmap(width: u32, height: u32) -> Result<Pixmap, Error> {
     Pixmap::new(width, height).ok_or(Error::Size { width, height })
 }
 
-/// With or without a channel that says what is seen of the ground: all of it or nothing.
+/// Encodes a picture, with a channel of opacity (RGBA) or without one (RGB).
 fn encode(canvas: &Pixmap, kind: ColorType) -> Result<Vec<u8>, Error> {
-    /// Pixels to the metre: twice the 96 to the inch of a screen.
+    /// The number of pixels in a metre: twice the 96 in an inch of a screen.
     const DENSITY: u32 = (96 * SCALE * 10_000).div_ceil(254);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, canvas.width(), canvas.height());
@@ -119,7 +120,7 @@ fn paint(rgb: Rgb) -> Paint<'static> {
 }
 
 fn fill(canvas: &mut Pixmap, path: Option<tiny_skia::Path>, rgb: Rgb, place: Transform) {
-    // Nothing to see is nothing to draw.
+    // An empty path is not drawn.
     if let Some(path) = path {
         canvas.fill_path(&path, &paint(rgb), FillRule::Winding, place, None);
     }

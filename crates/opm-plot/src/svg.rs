@@ -1,4 +1,4 @@
-//! A drawing as SVG: texts are outlines, so that it looks the same wherever it is shown.
+//! Writes a drawing as SVG. Texts are outlines, so that it looks the same everywhere.
 
 use crate::color::Color;
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
@@ -7,10 +7,10 @@ use crate::png;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// The whole file.
+/// Writes a drawing as the text of an SVG file; see also [`Drawing::to_svg`].
 ///
 /// # Errors
-/// An image that cannot be encoded.
+/// An image in the drawing cannot be encoded.
 pub fn write(drawing: &Drawing) -> Result<String, png::Error> {
     let [width, height] = [drawing.size.width, drawing.size.height].map(number);
     let mut svg = Svg::default();
@@ -71,11 +71,11 @@ impl Svg {
     fn text(&mut self, out: &mut String, text: &Text) {
         let scale = text.size / Face::UNITS;
         let [x, y] = text.at.map(number);
-        let turn = if text.turned { " rotate(-90)" } else { "" };
+        let rotation = if text.turned { " rotate(-90)" } else { "" };
         let _ = write!(
             out,
             "<g class=\"text\" aria-label=\"{}\" fill=\"{}\" \
-             transform=\"translate({x} {y}){turn} scale({scale:.6} -{scale:.6})\">",
+             transform=\"translate({x} {y}){rotation} scale({scale:.6} -{scale:.6})\">",
             escape(&text.text),
             hex(text.color)
         );
@@ -151,7 +151,7 @@ fn steps(path: &Path) -> String {
     out
 }
 
-/// To a hundredth of a pixel, without trailing zeros.
+/// A number, rounded to a hundredth of a pixel, without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -162,7 +162,7 @@ fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// For text and attributes. Control characters, which XML does not allow, become spaces.
+/// A text for elements and attributes. Control characters, which XML does not allow, become spaces.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -178,7 +178,7 @@ fn escape(text: &str) -> String {
     out
 }
 
-/// RFC 4648, section 4.
+/// Base 64, as in RFC 4648, section 4.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,4 +1,4 @@
-//! Small pictures of points in a plane, side by side in sections.
+//! Figures of points in a plane: tiles side by side, in sections.
 
 mod bar;
 mod cells;
@@ -19,56 +19,91 @@ use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
 use cloud::Density;
 
-/// Sections of tiles, from top to bottom.
+/// A figure of tiles, in sections from top to bottom.
+///
+/// ```
+/// use opm_plot::{
+///     Cells, Content, Heading, Measure, Paint, Section, Spacing, Steps, Tile, TileFigure, Unit, color,
+/// };
+///
+/// let grid = Spacing::between([-100.0, 100.0], 41);
+/// let mut cells = Cells::plain(grid, grid);
+/// for (x, y) in (0..41).flat_map(|i| (0..41).map(move |j| (grid.value(i), grid.value(j)))) {
+///     if x * x + y * y <= 80.0 * 80.0 {
+///         cells.push(x, y, 0.0);
+///     }
+/// }
+/// let unit = Unit { symbol: "mm".into(), steps: Steps::Decimal, resolution: 1e-6 };
+/// let axis = |name: &str| Measure { name: name.into(), unit: unit.clone() };
+/// let tile = Tile {
+///     title: "level".into(),
+///     x: axis("x"),
+///     y: axis("y"),
+///     content: Content::Cells(cells, Paint::Plain(color::DOT)),
+///     mark: Some([0.0, 0.0]),
+/// };
+/// let figure = TileFigure {
+///     heading: Heading { title: "A workspace".into(), ..Heading::default() },
+///     sections: vec![Section {
+///         title: "Slices".into(),
+///         columns: 3,
+///         shared: true,
+///         tiles: vec![tile],
+///         bar: None,
+///     }],
+/// };
+/// assert!(figure.draw(None)?.to_svg()?.contains("A workspace"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TileFigure {
-    /// What stands above and below.
+    /// The texts above and below.
     pub heading: Heading,
-    /// The sections.
+    /// The sections, from top to bottom.
     pub sections: Vec<Section>,
 }
 
-/// Tiles that show the same kind of thing.
+/// A section of a figure: tiles that show the same kind of thing.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// What stands above it.
+    /// The title above it.
     pub title: String,
-    /// Tiles in a row, where they are about as tall as wide.
+    /// The number of tiles in a row, if they are about as tall as wide. There are more tall tiles in a row.
     pub columns: usize,
-    /// All tiles have the same axes, which are numbered at the outer sides only.
+    /// Whether all tiles have the same axes, which are then numbered at the outer sides only.
     pub shared: bool,
-    /// Row by row.
+    /// The tiles, row by row.
     pub tiles: Vec<Tile>,
-    /// What the colours mean.
+    /// The meaning of the colours, if they have one.
     pub bar: Option<Bar>,
 }
 
-/// A box of points.
+/// A tile: a box with points.
 #[derive(Clone, Debug)]
 pub struct Tile {
-    /// What stands above it; may be empty.
+    /// The title above it, which may be empty.
     pub title: String,
-    /// From left to right.
+    /// The axis from left to right.
     pub x: Measure,
-    /// From bottom to top.
+    /// The axis from bottom to top.
     pub y: Measure,
-    /// What is in it.
+    /// The content.
     pub content: Content,
-    /// A place that is marked.
+    /// A point that is marked by a cross.
     pub mark: Option<[f64; 2]>,
 }
 
-/// What values along an axis are.
+/// The meaning of the values along an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Their name.
+    /// The name of the values.
     pub name: String,
-    /// Their unit.
+    /// The unit of the values.
     pub unit: Unit,
 }
 
 impl Measure {
-    /// Of an axis without values: bars lie along the other one.
+    /// The measure of an axis without values, if bars lie along the other axis.
     pub fn nothing() -> Self {
         Self { name: String::new(), unit: Unit { resolution: f64::INFINITY, ..Unit::none() } }
     }
@@ -77,46 +112,46 @@ impl Measure {
         self.name.is_empty()
     }
 
-    /// A number of things, which are called `name`.
+    /// The measure of a number of things, which are called `name`.
     pub fn count(name: &str) -> Self {
         let unit = Unit { symbol: String::new(), steps: Steps::Decimal, resolution: 0.5 };
         Self { name: name.to_owned(), unit }
     }
 }
 
-/// What is in a tile.
+/// The content of a tile.
 #[derive(Clone, Debug)]
 pub enum Content {
-    /// Cells of a grid.
+    /// Cells of a grid, and how they are coloured.
     Cells(Cells, Paint),
-    /// Points anywhere.
+    /// Points anywhere in the plane.
     Cloud(Cloud),
-    /// Numbers of values.
+    /// A histogram of values.
     Histogram(Histogram),
 }
 
-/// Width of a figure that nobody chose one for, at most; and the least one.
+/// The largest width of a figure whose size is not given, and the least width.
 const WIDTH: f64 = 1000.0;
 const NARROW: f64 = 600.0;
-/// Widest tile; widest histogram.
+/// The widest tile, and the widest histogram.
 const WIDEST: f64 = 420.0;
 const WIDEST_HISTOGRAM: f64 = 620.0;
-/// Height of a tile over its width, where lengths do not decide it, and at most.
+/// The ratio of a tile's height to its width, if lengths do not decide it, and the largest ratio.
 const FLAT: f64 = 0.72;
 const FLAT_HISTOGRAM: f64 = 0.36;
 const FLAT_BAR: f64 = 0.15;
 const TALLEST: f64 = 1.05;
-/// The same of tiles that are as wide as their lengths demand.
+/// The largest ratio for tiles that are as wide as their lengths demand.
 const TALLEST_SHARED: f64 = 2.0;
-/// Least width and height of a tile, and what it may lack by rounding.
+/// The least width and height of a tile, and what it may lack by rounding.
 const LEAST: f64 = 60.0;
 const ROUNDING: f64 = 1e-6;
-/// Between columns.
+/// The gap between columns.
 const BETWEEN: f64 = 22.0;
-/// Above a tile: with a title, and without.
+/// The room above a tile, with a title and without.
 const ABOVE: f64 = 20.0;
 const ABOVE_BARE: f64 = 8.0;
-/// Above a section, for its title; between sections.
+/// The room above a section for its title, and the gap between sections.
 const TITLE_ROOM: f64 = 20.0;
 const SECTIONS_APART: f64 = 20.0;
 
@@ -126,24 +161,24 @@ const EMPTY: Style = Style { size: 12.0, face: Face::Regular, color: FAINT };
 /// A section with all sizes known.
 struct Laid<'a> {
     section: &'a Section,
-    /// Tiles in a row.
+    /// The number of tiles in a row.
     columns: usize,
     ranges: Vec<[[f64; 2]; 2]>,
     density: Density,
-    /// Room left of the first column, and of each further one.
+    /// The room left of the first column, and of each further one.
     left: [f64; 2],
-    /// Room for the colours.
+    /// The room for the colours.
     bar: f64,
-    /// Of a tile.
+    /// The size of a tile.
     width: f64,
     height: f64,
 }
 
 impl TileFigure {
-    /// Draws it, in a size that suits it or in the one given.
+    /// Draws the figure in a given size, or in one that suits it.
     ///
     /// # Errors
-    /// A size that the tiles do not fit in.
+    /// [`TooSmall`] if the tiles do not fit in the size.
     pub fn draw(&self, size: Option<Size>) -> Result<Drawing, TooSmall> {
         let room = size.map_or(WIDTH, |size| size.width);
         let mut laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, room)).collect();
@@ -178,7 +213,7 @@ impl TileFigure {
         self.sections.iter().map(|section| section.tiles.len()).sum()
     }
 
-    /// The least size, a little on the large side.
+    /// The least size, or a little more.
     fn least(&self) -> Size {
         let laid: Vec<Laid<'_>> = self.sections.iter().map(|s| Laid::new(s, WIDTH)).collect();
         let grow = laid.iter().map(|s| LEAST / s.width.min(s.height)).fold(0.0, f64::max);
@@ -224,7 +259,7 @@ impl<'a> Laid<'a> {
         };
         let slopes: Vec<f64> = (0..ranges.len()).map(slope).collect();
         let steepest = slopes.iter().copied().fold(0.0, f64::max).max(0.15);
-        // More of tall tiles go in a row.
+        // There are more tall tiles in a row.
         let columns = match section.shared && steepest > TALLEST {
             true => (section.columns as f64 * steepest).round() as usize,
             false => section.columns,
@@ -247,7 +282,7 @@ impl<'a> Laid<'a> {
         self.section.tiles.len().div_ceil(self.columns)
     }
 
-    /// Width of the tiles with their numbers.
+    /// The width of the tiles with their numbers.
     fn across(&self) -> f64 {
         let columns = self.columns as f64;
         self.left[0] + self.left[1] * (columns - 1.0) + columns * self.width
@@ -258,7 +293,7 @@ impl<'a> Laid<'a> {
         MARGIN + title.max(self.across() + self.bar) + MARGIN
     }
 
-    /// Height of the tiles alone.
+    /// The height of the tiles alone.
     fn tiles(&self) -> f64 {
         self.rows() as f64 * self.height
     }
@@ -268,12 +303,12 @@ impl<'a> Laid<'a> {
         if titled { ABOVE } else { ABOVE_BARE }
     }
 
-    /// Below a row that is not the last.
+    /// The room below a row that is not the last.
     fn below(&self) -> f64 {
         if self.section.shared { 8.0 } else { BELOW }
     }
 
-    /// Height of all but the tiles.
+    /// The height of everything except the tiles.
     fn around(&self) -> f64 {
         let rows = self.rows() as f64;
         TITLE_ROOM + rows * self.above() + (rows - 1.0).max(0.0) * self.below() + BELOW
@@ -355,7 +390,7 @@ impl<'a> Laid<'a> {
     }
 }
 
-/// At which sides a tile has numbers.
+/// The sides at which a tile has numbers.
 #[derive(Clone, Copy)]
 struct Sides {
     left: bool,
@@ -363,7 +398,8 @@ struct Sides {
 }
 
 impl Section {
-    /// Most points in one place of any cloud whose points are not dots; 1 without one.
+    /// The largest number of points in one place of any cloud that is not drawn as dots; 1 without such a
+    /// cloud. It is the upper end of the colours.
     pub fn densest(&self) -> u64 {
         self.density().most
     }
@@ -380,7 +416,7 @@ impl Section {
         Density { pool, most }
     }
 
-    /// What the axes of every tile show.
+    /// The ranges of both axes of every tile.
     fn ranges(&self) -> Vec<[[f64; 2]; 2]> {
         let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         let extents: Vec<_> = self.tiles.iter().map(|tile| tile.content.extent()).collect();
@@ -401,7 +437,7 @@ impl Section {
 }
 
 impl Content {
-    /// Ranges of what is drawn; `None` of nothing.
+    /// The ranges of the content along both axes; `None` if there is nothing to draw.
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         match self {
             Self::Cells(cells, _) => cells.extent(),
@@ -411,7 +447,7 @@ impl Content {
     }
 }
 
-/// A cross that is seen on any ground.
+/// A cross that is seen on every background.
 fn cross([x, y]: [f64; 2]) -> Shape {
     const ARM: f64 = 5.0;
     let mut path = Path::through([[x - ARM, y], [x + ARM, y]]);

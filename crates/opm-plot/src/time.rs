@@ -1,4 +1,4 @@
-//! Curves over time: panels below each other, with what belongs together side by side.
+//! Figures of curves over time: panels below each other, related ones side by side.
 
 use crate::axis::{self, Axis, Steps, Unit};
 use crate::color::{ALARM, SHADE, line};
@@ -9,99 +9,99 @@ use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
 
-/// Panels over time.
+/// A figure of curves over time. The [crate] has an example.
 #[derive(Clone, Debug)]
 pub struct TimeFigure {
-    /// What stands above and below.
+    /// The texts above and below.
     pub heading: Heading,
-    /// First and last time, in seconds.
+    /// The first and the last time, seconds.
     pub time: [f64; 2],
-    /// From top to bottom.
+    /// The rows of panels, from top to bottom.
     pub rows: Vec<Row>,
-    /// Spans of time in which the values do not hold: shaded.
+    /// Spans of time in which the values are not valid, which are shaded.
     pub invalid: Vec<[f64; 2]>,
-    /// Times that are marked with their numbers, from 1, in rising order.
+    /// Times that are marked with their numbers, from 1 on, in ascending order.
     pub marks: Vec<f64>,
 }
 
-/// Panels side by side whose curves have the same names: values and their rates.
+/// A row of panels whose curves have the same names: for instance values and their rates.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Names of the curves, for the legend.
+    /// The names of the curves, for the legend.
     pub names: Vec<String>,
-    /// One a column; the last may be missing.
+    /// One panel for each column; `None` leaves a column empty.
     pub panels: Vec<Option<Panel>>,
 }
 
-/// A box of curves.
+/// A panel: a box with curves.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What stands above it.
+    /// The title above it.
     pub title: String,
-    /// What the values are, for instance `angle`.
+    /// The name of the values, for instance `angle`.
     pub name: String,
-    /// The unit that they are in.
+    /// The unit of the values.
     pub unit: Unit,
-    /// How they are laid out.
+    /// How values are laid out along the vertical axis.
     pub scale: Scale,
-    /// The curves, each with the number of its name.
+    /// The curves, each with the number of its name in [`Row::names`].
     pub curves: Vec<(usize, Curve)>,
 }
 
 /// How values are laid out along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Values are laid out evenly.
     Linear,
-    /// By their logarithms; values that are not positive are left out.
+    /// Values are laid out by their logarithms. Values that are not positive are left out.
     Logarithmic,
 }
 
-/// Height of a panel, where nothing else is asked for, and the least one.
+/// The height of a panel, if the figure's size is not given, and the least height.
 const HEIGHT: f64 = 132.0;
 const LEAST_HEIGHT: f64 = 64.0;
-/// Width of a panel, by the number of columns.
+/// The width of a panel, by the number of columns, and the least width.
 const WIDTHS: [f64; 3] = [640.0, 430.0, 370.0];
 const LEAST_WIDTH: f64 = 140.0;
-/// Above a panel, for its title.
+/// The room above a panel for its title.
 const ABOVE: f64 = 22.0;
-/// Below a panel that has no numbers there.
+/// The room below a panel that has no numbers there.
 const SPACE: f64 = 12.0;
-/// Between columns.
+/// The gap between columns.
 const BETWEEN: f64 = 22.0;
-/// In a legend: from line to line, the piece of curve, the gap behind it.
+/// In a legend: the distance between lines, the length of the piece of curve, the gap behind it.
 const LINE: f64 = 17.0;
 const SAMPLE: f64 = 26.0;
 const BEHIND: f64 = 6.0;
 /// The widest name in a legend.
 const WIDEST: f64 = 170.0;
-/// Room for the numbers of marks.
+/// The room for the numbers of marks.
 const MARKS: f64 = 14.0;
 
 const MARK: Style = Style { size: 10.5, face: Face::Bold, color: ALARM };
 
-/// Room beside the panels: left of every column, and for the legends.
+/// The room beside the panels: left of every column, and for the legends.
 struct Sides {
     left: Vec<f64>,
     legend: f64,
 }
 
-/// Where a panel goes.
+/// The place of a panel.
 struct Spot {
     place: Rect,
-    /// Room left of it.
+    /// The room left of it.
     left: f64,
-    /// No panel is below it.
+    /// Whether no panel is below it.
     ends: bool,
-    /// It is in the first row.
+    /// Whether it is in the first row.
     first: bool,
 }
 
 impl TimeFigure {
-    /// Draws it, in a size that suits it or in the one given.
+    /// Draws the figure in a given size, or in one that suits it.
     ///
     /// # Errors
-    /// A size that the panels do not fit in.
+    /// [`TooSmall`] if the panels do not fit in the size.
     pub fn draw(&self, size: Option<Size>) -> Result<Drawing, TooSmall> {
         let columns = self.rows.iter().map(|row| row.panels.len()).max().unwrap_or(1).max(1);
         let sides = self.sides(columns);
@@ -129,7 +129,7 @@ impl TimeFigure {
         if panel < LEAST_WIDTH || height < needed.height || height > MOST || width > MOST {
             return Err(TooSmall { needed, panels: self.panels() });
         }
-        // What is left over or missing is shared evenly, as far as the legends allow.
+        // Surplus or missing height is shared evenly, as far as the legends allow.
         let heights = share(height - fixed, &least, &natural);
 
         let mut shapes = self.heading.draw(width, height - self.heading.bottom(width));
@@ -172,7 +172,7 @@ impl TimeFigure {
         below.flat_map(|row| row.panels.get(column)).all(Option::is_none)
     }
 
-    /// Rows, other than the last, in which a column ends.
+    /// The number of rows, without the last, in which a column ends.
     fn early(&self, columns: usize) -> usize {
         let rows = 0..self.rows.len().saturating_sub(1);
         let ends = |row: &usize| {
@@ -184,7 +184,7 @@ impl TimeFigure {
         rows.filter(ends).count()
     }
 
-    /// Room for the numbers left of every column, and for the legends.
+    /// The room for the numbers left of every column, and for the legends.
     fn sides(&self, columns: usize) -> Sides {
         // Numbers get no wider in panels of other heights than by a digit.
         let slack = TICK_SLACK;
@@ -209,7 +209,7 @@ impl TimeFigure {
         let mut shapes = Vec::new();
         for span in &self.invalid {
             let [left, right] = span.map(|time| frame.across(time.clamp(x.range[0], x.range[1])));
-            // A single sample is to be seen, too.
+            // A single sample has to be seen, too.
             let width = (right - left).max(1.5);
             let area = Path::rect(Rect { x: left, width, ..place });
             shapes.push(Shape::Area(area, SHADE));
@@ -258,19 +258,19 @@ impl TimeFigure {
 }
 
 const DECADE: f64 = 10.0;
-/// Room for one more digit than the numbers were measured with.
+/// The room for one more digit than the numbers were measured with.
 const TICK_SLACK: f64 = 7.0;
 
 fn seconds() -> Unit {
     Unit { symbol: "s".into(), ..Unit::none() }
 }
 
-/// A time alone gets a second around it.
+/// The range of the time axis: a single time gets a second around it.
 fn widened([start, end]: [f64; 2]) -> [f64; 2] {
     if end > start { [start, end] } else { [start - 0.5, start + 0.5] }
 }
 
-/// Divides `height`: everyone has the least, and up to its natural height before anyone has more.
+/// Divides `height` among rows: all get their least height first, then their natural height, then the rest.
 fn share(height: f64, least: &[f64], natural: &[f64]) -> Vec<f64> {
     let [least_sum, natural_sum] = [least, natural].map(|heights| heights.iter().sum::<f64>());
     if height >= natural_sum {
@@ -323,7 +323,7 @@ fn curve_shapes(curve: &Curve, frame: &Frame<'_>, pen: Pen) -> Vec<Shape> {
     shapes
 }
 
-/// Names with a piece of their curves, in the middle of a panel's height.
+/// The legend: names with a piece of their curves, in the middle of a panel's height.
 fn legend(names: &[String], [x, top]: [f64; 2], height: f64) -> Shape {
     let mut y = top + 0.5 * (height - LINE * names.len() as f64) + 0.5 * LINE;
     let mut shapes = Vec::new();

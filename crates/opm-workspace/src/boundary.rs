@@ -1,28 +1,27 @@
 //! The boundary of a plane set as closed polylines: marching squares on the points of its grid.
 //!
-//! A line runs half-way between a point that is in and its neighbour that is out. Where two points that
-//! are in meet at a corner alone, they are kept apart, as [`Components`](crate::Components) are. Where
-//! the set goes up to the edge of the grid, so does the line: what is beyond is not known, and an angle
-//! that comes full circle is cut open there. W. E.
-//! Lorensen, H. E. Cline, *Marching cubes*, SIGGRAPH 1987, in the plane.
+//! A line runs half-way between a point of the set and its neighbour outside. Two points of the set that
+//! meet at a corner alone are kept apart, as in [`Components`](crate::Components). Where the set goes up
+//! to the edge of the grid, so does the line: what is beyond is not known, and an angle that comes full
+//! circle is cut open there. W. E. Lorensen, H. E. Cline, *Marching cubes*, SIGGRAPH 1987, in the plane.
 
 use crate::grid::Axis;
 use crate::set::GridSet;
 use crate::sweep::{Run, runs};
 use std::collections::HashSet;
 
-/// A closed polyline: the last point is joined to the first. The set lies to its left, so that it runs
+/// A closed polyline, whose last point is joined to its first. The set lies to its left: it runs
 /// counter-clockwise around a piece of the set, and clockwise around a hole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ring {
-    /// Its corners; no three in a row are in line.
+    /// The corners, as values of both axes. No three in succession are on a line.
     pub points: Vec<[f64; 2]>,
 }
 
 impl Ring {
-    /// The area inside, in the product of both axes' units; of a hole negative.
+    /// The area inside, in the product of both axes' units. It is negative for a hole.
     pub fn area(&self) -> f64 {
-        // From the first corner, so that a far-off place costs no digits.
+        // Seen from the first corner, so that a figure far from the origin keeps its digits.
         let Some(&[x, y]) = self.points.first() else { return 0.0 };
         let sides = self.points.windows(2);
         sides.map(|s| 0.5 * ((s[0][0] - x) * (s[1][1] - y) - (s[1][0] - x) * (s[0][1] - y))).sum()
@@ -32,21 +31,37 @@ impl Ring {
 /// The boundary of a set, or of one slice of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// The number of the value of the set's third axis that has several values, if there is one.
+    /// The number of the value on the third axis that has several values; `None` if there are only two.
     pub slice: Option<u64>,
-    /// Closed polylines in the first two axes that have several values.
+    /// The closed polylines, in the first two axes that have several values.
     pub rings: Vec<Ring>,
 }
 
 impl Outline {
-    /// The area inside, holes not counted.
+    /// The area of the set, in the product of both axes' units; holes are subtracted.
     pub fn area(&self) -> f64 {
         self.rings.iter().map(Ring::area).sum()
     }
 }
 
-/// The boundary of a set in the first two axes that have several values; where there is a third one, a
-/// slice for each of its values. `None` of sets of fewer or more dimensions than that.
+/// The boundary of a set in the first two axes that have several values. If a third axis has several values,
+/// there is one outline for each of them. `None` if fewer than two axes or more than three have several
+/// values.
+///
+/// ```
+/// use opm_workspace::{Axis, GridSet, SetAxis, boundary};
+///
+/// let axis = |name: &str| SetAxis { axis: Axis::new(name, -1.0, 1.0, 201), circle: false };
+/// let axes = vec![axis("x"), axis("y")];
+/// let disc = GridSet::of(axes, |number| {
+///     let [x, y] = [number % 201, number / 201].map(|i| i as f64 / 100.0 - 1.0);
+///     x * x + y * y < 0.25
+/// })?;
+/// let outlines = boundary(&disc).ok_or("not a plane set")?;
+/// assert_eq!((outlines.len(), outlines[0].rings.len()), (1, 1));
+/// assert!((outlines[0].area() - 0.25 * std::f64::consts::PI).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn boundary(set: &GridSet) -> Option<Vec<Outline>> {
     let axes = set.varying();
     let ([x, y] | [x, y, _]) = axes[..] else { return None };
@@ -59,28 +74,51 @@ pub fn boundary(set: &GridSet) -> Option<Vec<Outline>> {
     Some((0..set.rows() / high).map(outline).collect())
 }
 
-/// The boundary of the points of a plane grid that are `inside`, row by row.
+/// A mask does not have one value for each point of its grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{found} points, expected {expected}")]
+pub struct MaskError {
+    /// The number of points of the mask.
+    pub found: u64,
+    /// The number of points of the grid.
+    pub expected: u64,
+}
+
+/// The boundary of the points of a plane grid that are `inside`, which has one value for each point, row by
+/// row: the point with numbers `i` along `x` and `j` along `y` is at `j * x.count + i`.
 ///
-/// # Panics
-/// Where `inside` has another number of points than the grid.
-pub fn rings(x: &Axis, y: &Axis, inside: &[bool]) -> Vec<Ring> {
-    assert!(inside.len() as u64 == x.count * y.count, "{} points", inside.len());
+/// # Errors
+/// [`MaskError`] if `inside` has another number of points than the grid.
+pub fn mask_boundary(x: &Axis, y: &Axis, inside: &[bool]) -> Result<Vec<Ring>, MaskError> {
+    let (found, expected) = (inside.len() as u64, x.count * y.count);
+    if found != expected {
+        return Err(MaskError { found, expected });
+    }
     let runs = |row: &[bool]| {
         let mut runs = Vec::new();
         let numbers = (0..).zip(row).filter(|(_, inside)| **inside);
         numbers.for_each(|(number, _)| runs::push(&mut runs, number));
         runs
     };
-    let rows: Vec<Vec<Run>> = inside.chunks(x.count as usize).map(runs).collect();
-    trace(x, y, |row| &rows[row])
+    let rows: Vec<Vec<Run>> = inside.chunks((x.count as usize).max(1)).map(runs).collect();
+    Ok(trace(x, y, |row| &rows[row]))
 }
 
-/// The boundary of a set that has these runs in each row; in time and memory as many as there are runs, not
-/// points.
+// Old names, for the crates above.
+/// [`mask_boundary`], which panics.
+///
+/// # Panics
+/// If `inside` has another number of points than the grid.
+#[doc(hidden)]
+pub fn rings(x: &Axis, y: &Axis, inside: &[bool]) -> Vec<Ring> {
+    mask_boundary(x, y, inside).expect("one value for each point")
+}
+
+/// The boundary of a set that has these runs in each row. It takes time and memory for runs, not for points.
 fn trace<'a>(x: &Axis, y: &Axis, runs: impl Fn(usize) -> &'a [Run]) -> Vec<Ring> {
     let [width, height] = [x, y].map(|axis| axis.count as i64);
     let mask = Mask { runs, width, height };
-    // Every ring runs to the right below some point of the set; each stretch of that is in one ring.
+    // Every ring runs to the right below some point of the set, and each such stretch is in one ring.
     let mut seen = HashSet::new();
     let mut found = vec![];
     for start in (0..height).flat_map(|row| mask.bare_below(row)) {
@@ -114,7 +152,7 @@ fn trace<'a>(x: &Axis, y: &Axis, runs: impl Fn(usize) -> &'a [Run]) -> Vec<Ring>
     found
 }
 
-/// The corners at which a closed polyline turns.
+/// The corners at which a closed polyline changes its direction.
 fn bends(corners: &[[i64; 2]]) -> impl Iterator<Item = [i64; 2]> {
     let mut corners = corners;
     // At a corner of the grid the line may end where it began.
@@ -126,8 +164,8 @@ fn bends(corners: &[[i64; 2]]) -> impl Iterator<Item = [i64; 2]> {
     let count = corners.len();
     (0..count).filter_map(move |i| {
         let [a, b, c] = [corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]];
-        let turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
-        (turn != 0).then_some(b)
+        let cross = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+        (cross != 0).then_some(b)
     })
 }
 
@@ -141,7 +179,7 @@ fn step(point: [i64; 2], by: [i64; 2]) -> [i64; 2] {
 #[derive(Clone, Copy, PartialEq)]
 struct Crossing {
     point: [i64; 2],
-    /// The way to the neighbour.
+    /// The step to the neighbour.
     out: [i64; 2],
 }
 
@@ -152,7 +190,7 @@ struct Mask<F> {
 }
 
 impl<'a, F: Fn(usize) -> &'a [Run]> Mask<F> {
-    /// None in rows beyond the grid.
+    /// The runs of a row; none in rows beyond the grid.
     fn row(&self, row: i64) -> &'a [Run] {
         if (0..self.height).contains(&row) { (self.runs)(row as usize) } else { &[] }
     }
@@ -180,7 +218,7 @@ impl<'a, F: Fn(usize) -> &'a [Run]> Mask<F> {
         })
     }
 
-    /// The last crossing in line with one, in its row.
+    /// The last crossing of the same row on a line with this one.
     fn straight(&self, crossing: Crossing) -> Crossing {
         let Crossing { point: [i, j], out } = crossing;
         let Some(run) = self.run([i, j]) else { return crossing };
@@ -205,7 +243,7 @@ impl<'a, F: Fn(usize) -> &'a [Run]> Mask<F> {
         [i.clamp(0, 2 * (self.width - 1)), j.clamp(0, 2 * (self.height - 1))]
     }
 
-    /// The next one with the set to the left.
+    /// The next crossing with the set to the left.
     fn next(&self, Crossing { point, out }: Crossing) -> Crossing {
         let ahead = [-out[1], out[0]];
         let left = step(point, ahead);

@@ -1,4 +1,4 @@
-//! Connected components of a set: points that are neighbours along an axis belong together.
+//! Connected components of a set. Points that are neighbours along an axis belong together.
 //!
 //! Runs are joined, not points, by union-find (R. E. Tarjan, *Efficiency of a good but not linear set
 //! union algorithm*, J. ACM 22, 1975).
@@ -6,15 +6,30 @@
 use crate::set::{GridSet, SetAxis};
 use crate::sweep::Run;
 
-/// The connected components of a set, the largest first; of several of one size, the one with the first point.
-/// Two points are neighbours where they differ by one step along one axis; a step from the last value of an axis
-/// that comes full circle leads to the first.
+/// The connected components of a set, the largest first. Those of the same size are in the order of their
+/// first points.
+///
+/// Two points are neighbours if they differ by one step along one axis. On an axis that comes full circle, a
+/// step from the last value leads to the first.
+///
+/// ```
+/// use opm_workspace::{Axis, Components, GridSet, SetAxis};
+///
+/// let axis = Axis::new("x", 0.0, 9.0, 10);
+/// let set = GridSet::of(vec![SetAxis { axis, circle: false }], |number| number != 3)?;
+/// let components = Components::new(&set);
+/// assert_eq!(components.sizes(), [6, 3]);
+/// // The points before the gap are component 1.
+/// let (run, component) = components.runs().next().ok_or("no runs")?;
+/// assert_eq!((run.from, run.to, component), (0, 3, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Components<'a> {
     set: &'a GridSet,
-    /// Points of each.
+    /// The number of points of each component.
     sizes: Vec<u64>,
-    /// Of each run of the set, the number of its component.
+    /// The number of the component that each run of the set is in.
     of_runs: Vec<u32>,
 }
 
@@ -41,12 +56,13 @@ impl<'a> Components<'a> {
         Self { set, sizes: roots.into_iter().map(|root| sizes[root]).collect(), of_runs }
     }
 
-    /// How many points each has.
+    /// The number of points of each component, the largest first.
     pub fn sizes(&self) -> &[u64] {
         &self.sizes
     }
 
-    /// The runs of the set, by the numbers of their points, ascending; each with the number of its component.
+    /// The runs of the set, by the numbers of their points in the grid, ascending. Each comes with the
+    /// number of its component, from 0 on.
     pub fn runs(&self) -> impl Iterator<Item = (Run, u32)> + '_ {
         (0..self.set.rows()).flat_map(move |row| {
             let first = row as u64 * self.set.row();
@@ -58,7 +74,7 @@ impl<'a> Components<'a> {
     }
 }
 
-/// The runs of a set, those of neighbours joined.
+/// The runs of a set, of which neighbours are joined.
 fn joined(set: &GridSet) -> Forest {
     let runs = set.span(set.rows().saturating_sub(1)).end;
     let mut forest = Forest { parents: (0..runs as u32).collect() };
@@ -108,14 +124,15 @@ struct Forest {
 impl Forest {
     fn root(&mut self, mut run: usize) -> usize {
         while self.parents[run] as usize != run {
-            // Every node on the way up gets its grandparent for a parent.
+            // Every node on the path to the root gets its grandparent as its parent.
             self.parents[run] = self.parents[self.parents[run] as usize];
             run = self.parents[run] as usize;
         }
         run
     }
 
-    /// The earlier root stays one: the result does not depend on the order.
+    /// Joins the trees of two runs. The earlier root stays a root, so that the result does not depend on
+    /// the order.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b)] = a.min(b) as u32;

@@ -1,5 +1,7 @@
 //! A limit on the condition number: poses too near to a singularity do not count.
 
+use crate::grid::{Grid, Sections};
+use crate::progress::Cancelled;
 use crate::sweep::Modes;
 use opm_core::manipulator::{AllModes, Manipulator, Solution};
 use opm_core::velocity::Jacobians;
@@ -7,19 +9,55 @@ use opm_core::velocity::Jacobians;
 /// The largest condition number at which a pose counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConditionLimit {
-    /// That number, at least one.
+    /// The largest condition number, at least one.
     pub most: f64,
-    /// The characteristic length that it is meant with, metres.
+    /// The characteristic length that condition numbers are computed with, metres; usually
+    /// [`Manipulator::characteristic_length`].
     pub length: f64,
 }
 
+/// Why a sweep has no condition numbers.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConditionError {
+    /// The grid is of one section alone: only the whole mechanism has a condition number.
+    #[error("a section alone has no condition number")]
+    Section,
+    /// The characteristic length is not a positive number.
+    #[error("characteristic length {0} m, expected a positive number")]
+    Length(f64),
+    /// The limit of the sweep was given with another characteristic length.
+    #[error("characteristic lengths {index} m and, of the limit, {limit} m; expected the same")]
+    Lengths {
+        /// The length for the index, metres.
+        index: f64,
+        /// The length of the limit, metres.
+        limit: f64,
+    },
+    /// The sweep was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
 impl ConditionLimit {
-    /// No limit, for condition numbers with this characteristic length.
+    /// A limit that admits every pose, for condition numbers with this characteristic length, metres.
     pub fn none(length: f64) -> Self {
         Self { most: f64::INFINITY, length }
     }
 
-    /// The condition number of a solution that is within it, and within all joint limits.
+    /// Whether the poses of a grid have condition numbers.
+    pub(crate) fn check(&self, grid: &Grid) -> Result<(), ConditionError> {
+        if grid.sections() != Sections::Whole {
+            return Err(ConditionError::Section);
+        }
+        if self.length > 0.0 && self.length.is_finite() {
+            Ok(())
+        } else {
+            Err(ConditionError::Length(self.length))
+        }
+    }
+
+    /// The condition number of a solution; `None` if it is beyond this limit or any joint limit.
     fn admits(
         &self,
         manipulator: &Manipulator,
@@ -34,7 +72,27 @@ impl ConditionLimit {
     }
 }
 
-/// A limit with the working memory to decide poses by it.
+/// Decides poses one by one by a limit on the condition number. It holds the working memory for that, so
+/// that nothing is allocated for a pose.
+///
+/// A pose has a value for each of [`Manipulator::task_coordinates`], radians or metres. One with another
+/// number of values, or with a value that is not a number, is out of reach.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{ConditionLimit, Conditioned, Modes};
+///
+/// let home: Vec<f64> = manipulator.task_coordinates().iter().map(|c| c.home).collect();
+/// let limit = ConditionLimit { most: 100.0, length: manipulator.characteristic_length() };
+/// let mut conditioned = Conditioned::new(&manipulator, limit);
+/// let index = conditioned.local_index(&home, Modes::Any).ok_or("home is singular")?;
+/// assert!(index >= 0.01 && index <= 1.0);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Conditioned<'a> {
     manipulator: &'a Manipulator,
@@ -42,21 +100,21 @@ pub struct Conditioned<'a> {
     all: AllModes,
     solution: Solution,
     jacobians: Jacobians,
-    /// Of the last solution that was admitted.
+    /// The condition number of the last solution that was admitted.
     condition: f64,
 }
 
 impl<'a> Conditioned<'a> {
-    /// The limit for poses of a manipulator.
+    /// Decides poses of a manipulator by a limit.
     pub fn new(manipulator: &'a Manipulator, limit: ConditionLimit) -> Self {
         let (all, solution) = (manipulator.all_modes(), manipulator.solution());
         let jacobians = manipulator.jacobians();
         Self { manipulator, limit, all, solution, jacobians, condition: f64::INFINITY }
     }
 
-    /// The local conditioning index of a pose: the inverse of its condition number, in the first working
-    /// mode, all-plus first, that the limit admits. One at best, zero at a singularity; `None` where
-    /// there is no such mode.
+    /// The local conditioning index of a pose: one over its condition number, in the first working mode,
+    /// all-plus first, that the limit admits. It is one at best and zero at a singularity; `None` if there
+    /// is no such mode.
     pub fn local_index(&mut self, pose: &[f64], modes: Modes) -> Option<f64> {
         self.first(pose, modes)?;
         Some(self.index())
@@ -67,13 +125,14 @@ impl<'a> Conditioned<'a> {
         self.condition.recip()
     }
 
-    /// The joints in the first working mode, all-plus first, in which a pose is in reach, within all
-    /// joint limits and no worse conditioned than the limit; `None` where there is none.
+    /// The joint values in the first working mode, all-plus first, in which a pose is in reach, within all
+    /// joint limits and no worse conditioned than the limit; `None` if there is no such mode.
     pub fn first(&mut self, pose: &[f64], modes: Modes) -> Option<&Solution> {
         self.any(pose, modes, |_| false).then_some(&self.solution)
     }
 
-    /// Gives the joints of every such mode, until `go_on` is false; whether there was any.
+    /// Gives the joint values in every such mode, until `go_on` returns false. Returns whether there was
+    /// any such mode.
     pub fn any(
         &mut self,
         pose: &[f64],

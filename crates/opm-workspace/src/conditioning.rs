@@ -1,45 +1,72 @@
 //! How well a workspace is conditioned: the local index, one over the condition number, at every pose,
-//! and their mean, the global one. C. Gosselin, J. Angeles, *A global performance index for the kinematic
-//! optimization of robotic manipulators*, J. Mech. Des. 113, 1991.
+//! and their mean, the global index. C. Gosselin, J. Angeles, *A global performance index for the
+//! kinematic optimization of robotic manipulators*, J. Mech. Des. 113, 1991.
 
-use crate::condition::{ConditionLimit, Conditioned};
+use crate::condition::{ConditionError, ConditionLimit, Conditioned};
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::Sweep;
 
-/// Local indices are summed as whole numbers of this part of one: such a sum is the same in any order.
+/// Local indices are summed as whole numbers, in units of one over this: such a sum is the same in any order.
 const UNIT: f64 = (1_u64 << 60) as f64;
 
-/// Local conditioning indices of the reachable poses of a grid, each in the first working mode that
-/// reaches it within all limits. Those of parts of one grid add up to those of the whole.
+/// The conditioning indices of the reachable poses of a grid, each in the first working mode that reaches
+/// it within all limits. The indices of parts of one grid add up to those of the whole.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Axis, ConditioningIndex, Grid, Modes, Progress, Sweep};
+///
+/// let axes = vec![Axis::new("x", -0.2, 0.2, 9), Axis::new("y", -0.2, 0.2, 9)];
+/// let grid = Grid::new(&manipulator, axes)?;
+/// let sweep = Sweep::new(&manipulator, &grid, Modes::One(manipulator.home_mode()));
+/// let length = manipulator.characteristic_length();
+/// let index = ConditioningIndex::of(&sweep, length, &Progress::default())?;
+/// let global = index.global().ok_or("nothing is reachable")?;
+/// assert!(index.min <= global && global <= index.max);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConditioningIndex {
     /// The characteristic length of the condition numbers, metres.
     pub length: f64,
-    /// Poses that have one.
+    /// The number of poses that have a local index.
     pub poses: u64,
-    /// The least.
+    /// The least local index; infinite without poses.
     pub min: f64,
-    /// The greatest, one at most.
+    /// The greatest local index, at most one; zero without poses.
     pub max: f64,
-    /// Of all, in units of 2⁻⁶⁰: a whole number, so that however a sweep is cut, the parts add up to it.
+    /// The sum of the local indices, in units of 2⁻⁶⁰. As a whole number it does not depend on how a
+    /// sweep is divided into parts.
     pub sum: u128,
 }
 
 impl ConditioningIndex {
-    /// Of no poses.
+    /// The index of no poses.
     pub fn nothing(length: f64) -> Self {
         Self { length, poses: 0, min: f64::INFINITY, max: 0.0, sum: 0 }
     }
 
-    /// Sweeps a grid of poses, a few microseconds a reachable pose. Where the sweep has a limit on the
-    /// condition number, that has to be meant with the same length.
-    ///
-    /// # Panics
-    /// On a grid of one section alone, and on a length that is not positive.
+    /// The indices of the poses that a sweep reaches, with a characteristic `length` in metres. This takes a
+    /// few microseconds for each reachable pose.
     ///
     /// # Errors
-    /// When told to stop.
-    pub fn new(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
+    /// [`ConditionError`]: a grid of one section alone, a length that is not a positive number or not the
+    /// one of the sweep's own limit, or a sweep that was cancelled.
+    pub fn of(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, ConditionError> {
+        ConditionLimit::none(length).check(sweep.grid())?;
+        match sweep.limit() {
+            Some(limit) if limit.length != length => {
+                Err(ConditionError::Lengths { index: length, limit: limit.length })
+            }
+            _ => Ok(Self::of_checked(sweep, length, progress)?),
+        }
+    }
+
+    fn of_checked(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
         let nothing = Self::nothing(length);
         let limit = sweep.limit().unwrap_or(ConditionLimit::none(length));
         let mut all = nothing;
@@ -66,13 +93,13 @@ impl ConditioningIndex {
         Ok(all)
     }
 
-    /// The global conditioning index: the mean of the local ones over the grid's reachable poses, each
-    /// of the same weight; `None` where there is none.
+    /// The global conditioning index: the mean of the local ones over the grid's reachable poses, all of
+    /// the same weight; `None` if no pose is reachable.
     pub fn global(&self) -> Option<f64> {
         (self.poses > 0).then(|| self.sum as f64 / UNIT / self.poses as f64)
     }
 
-    /// Adds those of another part of the same grid.
+    /// Adds the indices of another part of the same grid, with the same characteristic length.
     pub fn add(&mut self, other: &Self) {
         self.poses += other.poses;
         self.min = self.min.min(other.min);
@@ -85,5 +112,24 @@ impl ConditioningIndex {
         self.min = self.min.min(local);
         self.max = self.max.max(local);
         self.sum += (local * UNIT).round() as u128;
+    }
+}
+
+// Old names, for the crates above.
+#[doc(hidden)]
+impl ConditioningIndex {
+    /// [`ConditioningIndex::of`], which panics.
+    ///
+    /// # Errors
+    /// A sweep that was cancelled.
+    ///
+    /// # Panics
+    /// On a grid of one section alone.
+    pub fn new(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
+        match Self::of(sweep, length, progress) {
+            Ok(index) => Ok(index),
+            Err(ConditionError::Cancelled(cancelled)) => Err(cancelled),
+            Err(error) => panic!("{error}"),
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! A grid that suits a mechanism: how far its workspace reaches along every task coordinate.
 //!
-//! Found by sweeping: a coarse grid about home grows until no reachable pose lies on its faces, then
-//! shrinks onto those that there are. A workspace ends in tips and edges that are thinner than such a
-//! grid's steps: from the farthest pose that was found along a coordinate, grids about the farthest so
-//! far, ever finer, go on until none goes farther. One way for every mechanism, limits of all kinds
-//! included.
+//! The grid is found by sweeping. A coarse grid about home grows until no reachable pose lies on its
+//! faces, then it shrinks onto the reachable poses. A workspace ends in tips and edges that are thinner
+//! than the steps of such a grid. So from the farthest pose that was found along a coordinate, ever finer
+//! grids about the farthest pose so far go on until none goes farther. This works for every mechanism and
+//! for limits of all kinds.
 
 use crate::grid::{Axis, Grid};
 use crate::progress::{Cancelled, Progress};
@@ -14,53 +14,70 @@ use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Poses of a coarse grid: a few milliseconds each.
+/// The number of poses of a coarse grid, whose sweep takes a few milliseconds.
 const COARSE_POSES: f64 = 1e6;
 
-/// Poses of the default grid: a picture worth looking at, in about a second.
+/// The number of poses of the default grid: enough for a good picture, in about a second.
 const DEFAULT_POSES: f64 = 4e6;
 
-/// The default grid has this many times more values along a lower coordinate than along an upper
-/// one: slices that are fine, at orientations that are few.
+/// The default grid has this many times more values along a coordinate of the lower section than along
+/// one of the upper section: fine slices, at few orientations.
 const FINER: f64 = 6.0;
 
 /// How many times a coarse grid may double before a coordinate counts as unbounded.
 const DOUBLINGS: usize = 8;
 
-/// Poses of a grid about the farthest pose.
+/// The number of poses of a grid about the farthest pose.
 const FOLLOWING_POSES: f64 = 2e4;
 
-/// How far a workspace reaches is followed up to this share of its width.
+/// The extent of a workspace is followed up to this share of its width.
 const FOLLOWED: f64 = 0.01;
 
 /// A coarse grid that shrinks by less than this has settled.
 const SETTLED: f64 = 0.9;
 
-/// A workspace narrower than this share of the box that it was looked for in is a point, or next to
-/// one: the grid shrinks no further.
+/// A workspace narrower than this share of the box that it was looked for in is nearly a point: the grid
+/// shrinks no further.
 const NARROW: f64 = 1e-6;
 
-/// This near to a value of a coarse grid, in steps, is on it: rounding must not decide.
+/// A value this near to one of a coarse grid, in steps, is on the grid: rounding must not decide.
 const ON_GRID: f64 = 1e-6;
 
 /// How far a workspace reaches along one task coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
-    /// The task coordinate's name.
+    /// The name of the task coordinate.
     pub name: &'static str,
-    /// Lowest value, radians or metres.
+    /// The lowest value, radians or metres.
     pub min: f64,
-    /// Highest value, radians or metres.
+    /// The highest value, radians or metres.
     pub max: f64,
-    /// The workspace goes on beyond, without an end that was found.
+    /// Whether the workspace goes on beyond, without an end that was found.
     pub unbounded: bool,
 }
 
-/// A grid over the whole workspace, and how far that reaches. Angles that know no whole turns are
-/// kept to one turn, and what has no end to the size of the mechanism.
+/// A grid over the whole workspace, and how far the workspace reaches along each task coordinate. Angles of
+/// which whole turns do not matter are kept to one turn, and coordinates without an end to the size of
+/// the mechanism.
 ///
 /// # Errors
-/// When told to stop.
+/// [`Cancelled`] if [`Progress::cancel`] was called.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Modes, Progress, default_grid};
+///
+/// let mode = Modes::One(manipulator.home_mode());
+/// let (grid, extents) = default_grid(&manipulator, mode, &Progress::default())?;
+/// let x = &extents[0];
+/// assert_eq!(x.name, "x");
+/// assert!(grid.axes()[0].min <= x.min && x.max <= grid.axes()[0].max);
+/// # Ok(())
+/// # }
+/// ```
 pub fn default_grid(
     manipulator: &Manipulator,
     modes: Modes,
@@ -82,13 +99,13 @@ pub fn default_grid(
     Ok((grid.expect("ranges are finite and counts small"), extents))
 }
 
-/// Where the workspace is looked for along one coordinate.
+/// The range in which the workspace is looked for along one coordinate.
 #[derive(Clone, Debug)]
 struct Range {
     extent: Extent,
-    /// Ends that it starts with.
+    /// The ends that the search starts with.
     start: [f64; 2],
-    /// May go beyond them.
+    /// Whether the range may go beyond them.
     grows: bool,
 }
 
@@ -108,20 +125,20 @@ impl Range {
         self.extent.max - self.extent.min
     }
 
-    /// Of an Euler angle about the intersection motion or the platform's axis.
+    /// Whether it is an Euler angle about the intersection motion or the platform's axis.
     fn turns(&self) -> bool {
         matches!(self.extent.name, "zeta" | "psi")
     }
 
-    /// Half its width farther to both sides, where it may grow: thin parts may pass between the poses of
-    /// a coarse grid that ends there.
+    /// The range with half its width more on both sides, if it may grow: thin parts may lie between the
+    /// poses of a coarse grid.
     fn beyond(&self) -> [f64; 2] {
         let more = if self.grows && !self.extent.unbounded { 0.5 * self.width() } else { 0.0 };
         [self.extent.min - more, self.extent.max + more]
     }
 
-    /// The ends, outward to about a percent of the width, in decimal steps; not beyond those of an
-    /// angle's one turn.
+    /// The ends, rounded outward to decimal steps of about a percent of the width; an angle stays within
+    /// its one turn.
     fn rounded(&self) -> [f64; 2] {
         let Extent { min, max, .. } = self.extent;
         let width = self.width();
@@ -134,7 +151,7 @@ impl Range {
         let step = |end: f64, outward: fn(f64) -> f64| {
             if exponent < 0 { outward(end * power) / power } else { outward(end / power) * power }
         };
-        // What is on a step but for rounding stays on it.
+        // An end that is nearly on a step stays on it.
         let inward = 1e-12 * width;
         let low = step(min + inward, f64::floor);
         let high = step(max - inward, f64::ceil);
@@ -145,15 +162,15 @@ impl Range {
     }
 }
 
-/// Sweeps of coarse grids.
+/// The search for the extent of the workspace, by sweeps of coarse grids.
 struct Search<'a> {
     manipulator: &'a Manipulator,
     modes: Modes,
     progress: &'a Progress,
     start: Vec<Range>,
-    /// Values of a coarse grid along every coordinate.
+    /// The number of values of a coarse grid along every coordinate.
     count: u64,
-    /// Home is part of the workspace.
+    /// Whether home is part of the workspace.
     home: bool,
 }
 
@@ -172,7 +189,7 @@ impl<'a> Search<'a> {
         Ok(Self { manipulator, modes, progress, start, count, home })
     }
 
-    /// Ranges that hold the whole workspace; where it has no end, as they start.
+    /// Ranges that hold the whole workspace. A coordinate without an end keeps its first range.
     fn grow(&self) -> Result<Vec<Range>, Cancelled> {
         let mut start = self.start.clone();
         loop {
@@ -195,7 +212,7 @@ impl<'a> Search<'a> {
                     return Ok(ranges);
                 }
             }
-            // What still grows has no end; how far the others reach is found without it.
+            // Ranges that still grow have no end. The extent of the others is found without them.
             for number in last {
                 start[number].extent.unbounded = true;
             }
@@ -212,8 +229,8 @@ impl<'a> Search<'a> {
             let Some(hits) = self.hits(&ranges)? else { return Ok(ranges) };
             let mut found = ranges.clone();
             let mut farther = false;
-            // At a tilt of zero zeta and psi turn about one axis: what goes on along one of them is the
-            // same orientations again, with the other.
+            // At a tilt of zero, zeta and psi are angles about the same axis: going on along one of them
+            // gives orientations again that the other has given.
             let tilt = ranges.iter().find(|range| range.extent.name == "xi");
             let level = tilt.is_some_and(|tilt| {
                 let slack = FOLLOWED * tilt.width();
@@ -242,9 +259,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How far the workspace reaches along one coordinate, to one side, from a pose of it: grids about
-    /// the farthest pose so far, of a coarse grid's step to every side, and half as wide where they gain
-    /// little. Stays `within` a box.
+    /// How far the workspace reaches along one coordinate, to one side, from a pose of it. Grids about the
+    /// farthest pose so far are one step of the coarse grid wide to every side, and half as wide each
+    /// time that they gain little. They stay `within` a box.
     fn follow(
         &self,
         mut pose: Vec<f64>,
@@ -289,7 +306,7 @@ impl<'a> Search<'a> {
         Ok(if outward > 0.0 { end.min(limit) } else { end.max(limit) })
     }
 
-    /// Ranges as close about the workspace as a coarse grid shows it.
+    /// Ranges that enclose the workspace as closely as a coarse grid shows it.
     fn shrink(&self, mut ranges: Vec<Range>) -> Result<Vec<Range>, Cancelled> {
         loop {
             let grid = self.grid(&ranges);
@@ -361,8 +378,8 @@ impl<'a> Search<'a> {
         Ok(hits)
     }
 
-    /// Of every coordinate, a reachable pose of the grid with its lowest and one with its highest value:
-    /// the first of them.
+    /// For every coordinate, the first reachable pose of the grid with its lowest value, and the first with
+    /// its highest value.
     fn farthest(&self, grid: &Grid) -> Result<Option<Vec<[Vec<f64>; 2]>>, Cancelled> {
         let mut farthest = vec![];
         Sweep::new(self.manipulator, grid, self.modes).points(
@@ -410,14 +427,14 @@ impl<'a> Search<'a> {
 
 /// How far the reachable poses of a coarse grid go along one axis.
 struct Hit {
-    /// Lowest and highest number of their values.
+    /// The lowest and the highest number of their values on the axis.
     numbers: [u64; 2],
     /// A pose with the lowest value, and one with the highest.
     poses: [Vec<f64>; 2],
 }
 
-/// The range of an angle that knows no whole turns: of Euler angles and tilts every orientation or
-/// direction, each but once, home's among them.
+/// The range of an angle of which whole turns do not matter. Of Euler angles and tilts it gives every
+/// orientation or direction once, that of home among them.
 pub(crate) fn one_turn(name: &str, home: f64) -> [f64; 2] {
     match name {
         "xi" => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
@@ -431,12 +448,12 @@ fn axis(name: &str, min: f64, max: f64, count: u64) -> Axis {
     if min < max { Axis::new(name, min, max, count) } else { Axis::fixed(name, min) }
 }
 
-/// The whole turns nearest to an angle; none for one of at most half a turn.
+/// The whole turns nearest to an angle, radians; zero for an angle of at most half a turn.
 fn whole_turns(angle: f64) -> f64 {
     if angle.abs() <= PI { 0.0 } else { TAU * (angle / TAU).round() }
 }
 
-/// A length that the workspace is of the order of: how far the joints are spread and may travel.
+/// A length of the order of the workspace's size: how far the joints are spread and how far they travel.
 fn size(manipulator: &Manipulator) -> f64 {
     let mechanism = manipulator.mechanism();
     let spread = mechanism.joints().map(|j| (j.point - mechanism.platform).norm());
@@ -448,7 +465,7 @@ fn size(manipulator: &Manipulator) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }
 
-/// The nearest odd number, at least 3: a grid about home has home on it.
+/// The nearest odd number, at least 3, so that a grid about home has home on it.
 fn odd(count: f64) -> u64 {
     ((count - 1.0) / 2.0).round().max(1.0) as u64 * 2 + 1
 }

@@ -1,47 +1,55 @@
-//! Grids of poses, or of what one section alone is asked for: one axis a coordinate, both ends on the
-//! grid.
+//! Grids of poses, or of the coordinates of one section alone: one axis for each coordinate, with both ends on
+//! the grid.
 
 use opm_core::joint::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::number::readable;
 use std::f64::consts::TAU;
 
-/// Most poses of a grid: indices beyond are not exact in double precision, which JSON readers use.
+/// Most poses of a grid: larger numbers are not exact in double precision, which JSON readers use.
 const MOST_POSES: u64 = 1 << 53;
 
-/// An angle's values cover a whole turn if they do to within this, radians.
+/// An angle's values cover a whole turn if their range is that to within this, radians.
 const WHOLE: f64 = 1e-9;
 
 /// Equally spaced values of one coordinate.
+///
+/// ```
+/// use opm_workspace::Axis;
+///
+/// let axis = Axis::new("x", -0.1, 0.1, 5);
+/// assert_eq!((axis.value(0), axis.value(2), axis.value(4)), (-0.1, 0.0, 0.1));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// The coordinate's name.
     pub name: String,
-    /// First value, radians or metres.
+    /// The first value, radians or metres.
     pub min: f64,
-    /// Last value, radians or metres.
+    /// The last value, radians or metres.
     pub max: f64,
-    /// Number of values, at least one.
+    /// The number of values, at least one.
     pub count: u64,
 }
 
 /// Why axes do not make a grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
-    /// No such coordinate.
+    /// No coordinate has the name of the axis.
     #[error("grid axis {name}: no such {}, expected one of {expected}", section.coordinate())]
     Unknown {
-        /// As given.
+        /// The name of the axis.
         name: String,
-        /// What the grid is of.
+        /// The sections that the grid is of.
         section: Sections,
-        /// Those that there are.
+        /// The names of all coordinates, separated by commas.
         expected: String,
     },
-    /// One axis twice.
+    /// Two axes have the same name.
     #[error("grid axis {0}: given twice")]
     Twice(String),
-    /// An end that is not a number, or the ends reversed.
+    /// An end of an axis is not a finite number, or the ends are reversed.
     #[error(
         "grid axis {name}: {} to {}, expected {}",
         readable(*min),
@@ -49,51 +57,51 @@ pub enum GridError {
         if min > max { "the smaller one first".to_owned() } else { format!("numbers up to {LARGEST:e}") }
     )]
     Range {
-        /// The axis.
+        /// The name of the axis.
         name: String,
-        /// As given.
+        /// The first value, as given.
         min: f64,
-        /// As given.
+        /// The last value, as given.
         max: f64,
     },
-    /// A number of values that cannot hold both ends.
+    /// The number of values does not fit the ends of an axis.
     #[error(
         "grid axis {name}: {count} values from {} to {}, expected {expected}",
         readable(*min),
         readable(*max)
     )]
     Count {
-        /// The axis.
+        /// The name of the axis.
         name: String,
-        /// As given.
+        /// The number of values, as given.
         count: u64,
-        /// As given.
+        /// The first value, as given.
         min: f64,
-        /// As given.
+        /// The last value, as given.
         max: f64,
-        /// What would do.
+        /// The number of values that was expected.
         expected: &'static str,
     },
-    /// Too many poses.
+    /// The grid has too many poses.
     #[error("grid of {given} poses, expected at most 2^53, some 9e15")]
     Size {
-        /// As a number or a product.
+        /// The number of poses, as a number or a product.
         given: String,
     },
 }
 
 impl Axis {
-    /// `count` values from `min` to `max`.
+    /// `count` values from `min` to `max`, radians or metres, of the coordinate `name`.
     pub fn new(name: impl Into<String>, min: f64, max: f64, count: u64) -> Self {
         Self { name: name.into(), min, max, count }
     }
 
-    /// One value.
+    /// The single value of a coordinate, radians or metres.
     pub fn fixed(name: impl Into<String>, value: f64) -> Self {
         Self::new(name, value, value, 1)
     }
 
-    /// Value number `i`. Both ends are met exactly.
+    /// Value number `i`, from 0 on. Both ends are met exactly.
     #[inline]
     pub fn value(&self, i: u64) -> f64 {
         if self.count == 1 {
@@ -118,19 +126,21 @@ impl Axis {
     }
 }
 
-/// What a grid is of.
+/// The sections of the mechanism that a grid is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sections {
-    /// Poses of the platform.
+    /// Both sections: the grid's points are poses of the platform.
     Whole,
-    /// `b`: the upper section alone.
+    /// The upper section alone: the grid's points are its displacements `b`.
     Upper,
-    /// `v` and the cuts ([`Manipulator::cuts`]): the lower section alone.
+    /// The lower section alone: the grid's points are its displacements `v`, together with the
+    /// displacements of the imaginary joints of the legs that are split in the upper section
+    /// ([`Manipulator::cuts`]).
     Lower,
 }
 
 impl Sections {
-    /// What its coordinates are called.
+    /// What a coordinate of such a grid is called in messages.
     pub fn coordinate(self) -> &'static str {
         match self {
             Self::Whole => "task coordinate",
@@ -140,16 +150,16 @@ impl Sections {
     }
 }
 
-/// What is known of a grid's coordinate.
+/// A coordinate of a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Its name.
+    /// The name of the coordinate.
     pub name: String,
-    /// Angle or length.
+    /// Whether it is an angle or a length.
     pub quantity: Quantity,
     /// The value at home, radians or metres.
     pub home: f64,
-    /// An angle of which whole turns matter: a helical joint follows them.
+    /// Whether it is an angle of which whole turns matter, because a helical joint follows them.
     pub counts_turns: bool,
 }
 
@@ -179,32 +189,53 @@ impl Sections {
     }
 }
 
-/// One axis for every coordinate of a manipulator's pose, or of one section alone, in their order.
-/// Poses are numbered with the first coordinate fastest.
+/// A grid of poses: one axis for every coordinate of a manipulator's pose, or of one section alone, in their
+/// order. Poses are numbered from 0 on, with the first coordinate fastest.
+///
+/// A *row* are the poses that differ in the first coordinate alone. A *slice* are the poses that share all
+/// coordinates of the upper section, or, in a grid of the lower section alone, the displacements of all
+/// imaginary joints.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Axis, Grid};
+///
+/// // Coordinates without an axis stay at home.
+/// let axes = vec![Axis::new("x", -0.3, 0.3, 61), Axis::new("xi", 0.0, 0.5, 11)];
+/// let grid = Grid::new(&manipulator, axes)?;
+/// assert_eq!((grid.poses(), grid.row(), grid.slices()), (61 * 11, 61, 11));
+/// assert_eq!(grid.pose(60)[0], 0.3);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
     coordinates: Vec<Coordinate>,
     sections: Sections,
-    /// Of the lower section alone, what its axes after `v`'s are.
+    /// In a grid of the lower section alone, the imaginary joints whose displacements are its last axes.
     cuts: Vec<ImaginaryJoint>,
-    /// Number of coordinates that belong to a slice.
+    /// The number of coordinates that vary within a slice.
     lower: usize,
     poses: u64,
 }
 
 impl Grid {
-    /// A grid over these axes; a task coordinate without one stays at its home value.
+    /// A grid of poses over these axes, in any order. A task coordinate without an axis stays at its home
+    /// value.
     ///
     /// # Errors
-    /// Unknown or repeated axes, ends that are not numbers or reversed, counts that cannot hold
-    /// both ends, more than 2^53 poses.
+    /// [`GridError`]: unknown or repeated axes, ends that are not finite numbers or reversed, counts that
+    /// cannot hold both ends, or more than 2^53 poses.
     pub fn new(manipulator: &Manipulator, given: Vec<Axis>) -> Result<Self, GridError> {
         Self::of(Sections::Whole, manipulator, given)
     }
 
-    /// The same of one section alone. A pose of it is a value for each of its coordinates: see
-    /// [`Sections::coordinates`].
+    /// A grid of the whole mechanism or of one section alone, as [`Grid::new`]. A pose of it has a value for
+    /// each of [`Sections::coordinates`].
     ///
     /// # Errors
     /// As [`Grid::new`].
@@ -252,18 +283,21 @@ impl Grid {
         }
     }
 
-    /// What it is a grid of.
+    /// The sections that it is a grid of.
     pub fn sections(&self) -> Sections {
         self.sections
     }
 
-    /// What its axes are values of, in their order.
+    /// The coordinates of its axes, in their order.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
 
-    /// Whether the values of axis number `axis` come full circle: the first and the last are the same
-    /// place, or a step from one another.
+    /// Whether the values of axis number `axis` come full circle: the first and the last value are the same
+    /// place, or a step from each other.
+    ///
+    /// # Panics
+    /// There is no axis of this number.
     pub fn is_circle(&self, axis: usize) -> bool {
         let Coordinate { quantity, counts_turns, .. } = self.coordinates[axis];
         let Axis { min, max, count, .. } = self.axes[axis];
@@ -280,49 +314,50 @@ impl Grid {
         &self.axes
     }
 
-    /// Number of poses.
+    /// The number of poses.
     pub fn poses(&self) -> u64 {
         self.poses
     }
 
-    /// Poses of a row: they differ in the first coordinate alone. In a grid of the upper section alone
-    /// every pose is a row, and a slice.
+    /// The number of poses in a row, which differ in the first coordinate alone. In a grid of the upper
+    /// section alone every pose is a row, and a slice.
     pub fn row(&self) -> u64 {
         if self.lower == 0 { 1 } else { self.axes[0].count }
     }
 
-    /// The displacement along the intersection motion that a leg has in the slice of the lower section
-    /// alone with these values of its cuts.
+    /// In a grid of the lower section alone: a leg's displacement along the intersection motion, in the slice
+    /// with these values of the imaginary joints.
     pub(crate) fn cut(&self, leg: usize, values: &[f64]) -> f64 {
         let cut = self.cuts.iter().zip(values).find(|(cut, _)| cut.leg == leg);
         cut.map_or(0.0, |(cut, value)| cut.displacement(*value))
     }
 
-    /// Number of slices: sets of poses that share all coordinates of the upper section, or all cuts.
+    /// The number of slices: sets of poses that share all coordinates but those of [`Grid::lower`].
     pub fn slices(&self) -> u64 {
         self.axes[self.lower..].iter().map(|axis| axis.count).product()
     }
 
-    /// Number of the lower section's task coordinates: those that vary within a slice. None in a grid
+    /// The number of the lower section's task coordinates, which vary within a slice. It is zero in a grid
     /// of the upper section alone.
     pub fn lower(&self) -> usize {
         self.lower
     }
 
-    /// The pose with this number.
+    /// The pose with this number, radians and metres, one value for each axis.
     pub fn pose(&self, index: u64) -> Vec<f64> {
         let mut pose = vec![0.0; self.axes.len()];
         self.pose_into(index, &mut pose);
         pose
     }
 
-    /// Puts the pose with this number, a value an axis, into `pose`.
+    /// Puts the pose with this number into `pose`, one value for each axis. Further values of `pose` stay as
+    /// they are; a shorter `pose` takes the first values.
     pub fn pose_into(&self, index: u64, pose: &mut [f64]) {
         fill(&self.axes, index, pose);
     }
 }
 
-/// Values of the axes at a mixed-radix number, the first axis fastest.
+/// Puts the values of the axes at a mixed-radix number into `values`, the first axis fastest.
 pub(crate) fn fill(axes: &[Axis], mut number: u64, values: &mut [f64]) {
     for (value, axis) in values.iter_mut().zip(axes) {
         *value = axis.value(number % axis.count);

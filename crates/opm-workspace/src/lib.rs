@@ -1,8 +1,48 @@
-//! Sweeps of a manipulator's workspace over grids of poses, in parallel.
+//! Workspaces of manipulators: which poses are in reach and within the limits, and what follows from that.
 //!
-//! The upper section of the mechanism is solved once an orientation; per pose, only whether each
-//! leg's lower chain closes is left to test. Nothing depends on the number of threads: counts and
-//! ranges are reduced by operations that do not round, and points come in the order of their index.
+//! A [`Sweep`] finds this out for every pose of a [`Grid`], in parallel. Its poses make sets with connected
+//! components and boundaries, reachable and dexterous workspaces, and conditioning indices. [`measure`](mod@measure) bounds areas and volumes with a guarantee. Results do not
+//! depend on the number of threads: sums are of whole numbers, and points come in the order of their number.
+//!
+//! The kinematics are in [`opm_core`], which this crate exports again.
+//!
+//! ```
+//! use opm_workspace::opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+//! use opm_workspace::{Axis, Grid, GridSet, Modes, Progress, Sweep, boundary};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let example = examples::find("plano-spherical-5dof").ok_or("no such example")?;
+//! let manipulator = Manipulator::new(file::read(example.text)?.mechanism)?;
+//!
+//! // The workspace in x and y, with all other coordinates at home, in steps of 5 mm.
+//! let axes = vec![Axis::new("x", -0.3, 0.3, 121), Axis::new("y", -0.3, 0.3, 121)];
+//! let grid = Grid::new(&manipulator, axes)?;
+//! let sweep = Sweep::new(&manipulator, &grid, Modes::One(manipulator.home_mode()));
+//!
+//! let count = sweep.count(&Progress::default())?;
+//! println!("{} of {} poses are in reach", count.reachable, count.poses);
+//!
+//! let set = GridSet::reached(&sweep, &Progress::default())?;
+//! let outline = &boundary(&set).ok_or("not a plane set")?[0];
+//! println!("{} rings around {:.4} m2", outline.rings.len(), outline.area());
+//! # assert!(count.reachable > 0 && outline.area() > 0.0);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Where to find what
+//!
+//! | question | items |
+//! |---|---|
+//! | which poses | [`Grid`], [`Axis`], [`Sections`], [`default_grid`] |
+//! | which of them are in reach | [`Sweep`], [`Modes`], [`Count`], [`Hits`], [`Progress`] |
+//! | parts of a sweep, stored and put together | [`Shard`], [`Count::merge`], [`Poses`], [`replay`] |
+//! | which poses are far from singular | [`ConditionLimit`], [`Conditioned`], [`ConditioningIndex`] |
+//! | the set of reachable poses | [`GridSet`], [`Components`], [`boundary`], [`mask_boundary`] |
+//! | places that some or all orientations reach | [`Visits`] |
+//! | areas and volumes with guaranteed bounds | [`measure`](mod@measure) |
+//!
+//! Numbers are SI and radians. Work is done on the current rayon thread pool.
 
 mod boundary;
 mod components;
@@ -19,9 +59,11 @@ mod set;
 mod sweep;
 mod visits;
 
-pub use boundary::{Outline, Ring, boundary, rings};
+pub use opm_core;
+
+pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
 pub use components::Components;
-pub use condition::{ConditionLimit, Conditioned};
+pub use condition::{ConditionError, ConditionLimit, Conditioned};
 pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
@@ -30,7 +72,12 @@ pub use progress::{Cancelled, Progress};
 pub use replay::replay;
 pub use set::{GridSet, SetAxis, SetError};
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
-pub use visits::Visits;
+pub use visits::{OtherGrid, Visits};
 
-/// Threads that may be asked for: more is a slip of the finger, and takes minutes to begin and to stop.
+// Old names, for the crates above.
+#[doc(hidden)]
+pub use boundary::rings;
+
+/// The most threads that front ends accept: a larger number is a mistake, and takes minutes to begin and to
+/// stop.
 pub const MOST_THREADS: u16 = 1024;

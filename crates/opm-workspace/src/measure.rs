@@ -1,19 +1,46 @@
-//! Measures of the workspace with bounds that are guaranteed: areas, volumes, shares of all
-//! orientations.
+//! Measures of the workspace with guaranteed bounds: areas, volumes, shares of all orientations.
 //!
-//! The box that is asked for is cut into ever smaller ones, those first whose part in the workspace is
-//! least known ([`opm_core::enclosure`] says how much of each is, from both sides). Rounds of splits do
-//! not depend on when to stop: with a larger budget the same rounds go on, and bounds only come closer.
-//! Boxes are summed in a fixed order, so that nothing depends on the number of threads, nor on who is
-//! asked for which box: [`Search`] says what to ask, an [`Asker`] answers.
+//! A [`Domain`] is a box of poses. It is split into ever smaller boxes, first those of which it is least
+//! known how much is in the workspace; [`opm_core::enclosure`] bounds that from both sides. The rounds of
+//! splits do not depend on when to stop: with a larger budget the same rounds go on, and the bounds only
+//! come closer. Boxes are summed in a fixed order, so that the result does not depend on the number of
+//! threads, nor on who evaluates which box. [`measure`](fn@measure) does it all. To evaluate boxes
+//! elsewhere, [`Search`] gives the boxes of each round, and an [`Evaluator`] bounds them.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+//! # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+//! # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+//! use opm_workspace::measure::{CoordinateRange, Domain, Goal, measure};
+//! use opm_workspace::{Modes, Progress, Sections};
+//!
+//! // The area that is reachable with the platform level, in a square.
+//! let ranges = [CoordinateRange::new("x", -0.2, 0.2), CoordinateRange::new("y", -0.2, 0.2)];
+//! let domain = Domain::new(&manipulator, Sections::Whole, &ranges)?;
+//! let (modes, goal) = (Modes::Any, Goal { tolerance: 0.02, ..Goal::default() });
+//! let area = measure(&manipulator, &domain, modes, &goal, &Progress::default());
+//! assert!(area.lower <= area.upper && area.upper <= 0.16 * (1.0 + 1e-9));
+//! assert!(area.meets(0.02));
+//! # Ok(())
+//! # }
+//! ```
 
 mod cell;
 mod domain;
 mod ranges;
 
 pub use cell::{Bounds, Cell};
-pub use domain::{Domain, DomainAxis, DomainError, Over};
-pub use ranges::ranges;
+pub use domain::{CoordinateRange, Domain, DomainAxis, DomainError};
+pub use ranges::default_ranges;
+
+// Old names, for the crates above.
+#[doc(hidden)]
+pub use Evaluator as Asker;
+#[doc(hidden)]
+pub use domain::CoordinateRange as Over;
+#[doc(hidden)]
+pub use ranges::default_ranges as ranges;
 
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::Modes;
@@ -21,13 +48,13 @@ use opm_core::manipulator::{Manipulator, Mode};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Fewest boxes that a round splits, where there are as many.
+/// Fewest boxes that a round splits, if there are so many.
 const ROUND: usize = 256;
 
 /// The share of the undecided boxes that a round splits.
 const SHARE: usize = 4;
 
-/// Rounding of a compensated sum of products of a few numbers, as a share of the whole.
+/// The rounding of a compensated sum of products of a few numbers, as a share of the whole measure.
 const ROUNDING: f64 = 1e-14;
 
 /// When a measure is good enough.
@@ -35,14 +62,15 @@ const ROUNDING: f64 = 1e-14;
 pub struct Goal {
     /// How far the true measure may be from the value, as a share of the value.
     pub tolerance: f64,
-    /// Most boxes to look at, some 100 bytes of memory each; the first ones are looked at in any case.
+    /// Most boxes to evaluate, which take some 100 bytes of memory each. The first boxes are evaluated in any
+    /// case.
     pub budget: u64,
 }
 
-/// Whether a tolerance is one.
+/// Checks a tolerance that a user gave.
 ///
 /// # Errors
-/// What was expected instead.
+/// The text of what was expected instead.
 pub fn check_tolerance(tolerance: f64) -> Result<(), &'static str> {
     match tolerance {
         0.0..1.0 => Ok(()),
@@ -56,32 +84,33 @@ impl Default for Goal {
     }
 }
 
-/// Why a measure was taken no further.
+/// Why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// It is as good as it was to be.
+    /// The measure is within the tolerance.
     Tolerance,
-    /// The next round is beyond the budget.
+    /// The next round would be beyond the budget.
     Budget,
-    /// It was told to.
+    /// The search was cancelled.
     Cancelled,
-    /// Splitting boxes brings the bounds no closer: they are apart by what is on the rim.
+    /// Splitting boxes brings the bounds no closer: what lies between them is on the boundary of the
+    /// workspace.
     Exhausted,
 }
 
-/// A measure between two bounds, in the product of metres and radians of the axes with a width. The
-/// bounds hold, whatever it stopped for.
+/// A measure between two bounds, in the product of the units, metres or radians, of the axes with a width. The
+/// bounds hold, whatever the reason was to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The measure is not less.
+    /// The lower bound.
     pub lower: f64,
-    /// The measure is not more.
+    /// The upper bound.
     pub upper: f64,
-    /// The measure of the whole box.
+    /// The measure of the whole domain.
     pub whole: f64,
-    /// Boxes that were looked at.
+    /// The number of boxes that were evaluated.
     pub boxes: u64,
-    /// Why there are no more.
+    /// Why there are no more boxes.
     pub stop: Stop,
 }
 
@@ -91,7 +120,7 @@ impl Measured {
         0.5 * (self.lower + self.upper)
     }
 
-    /// The value as a share of the whole box.
+    /// The value as a share of the whole domain.
     pub fn fraction(&self) -> f64 {
         self.value() / self.whole
     }
@@ -102,13 +131,14 @@ impl Measured {
         if half > 0.0 { half / self.value() } else { 0.0 }
     }
 
-    /// Whether the measure is certain to be within a share of the value from it.
+    /// Whether the uncertainty is at most `tolerance`.
     pub fn meets(&self, tolerance: f64) -> bool {
         self.uncertainty() <= tolerance
     }
 }
 
-/// Measures how much of a domain is in reach and within the limits.
+/// Measures how much of a domain is in reach and within the limits. A search that is cancelled by
+/// [`Progress::cancel`] gives the bounds that it has found so far.
 pub fn measure(
     manipulator: &Manipulator,
     domain: &Domain,
@@ -116,43 +146,43 @@ pub fn measure(
     goal: &Goal,
     progress: &Progress,
 ) -> Measured {
-    let asker = Asker::new(manipulator, domain, modes);
+    let evaluator = Evaluator::new(manipulator, domain, modes);
     let mut search = Search::new(domain, *goal);
     while let Some(cells) = search.round() {
-        let Ok(bounds) = asker.ask(cells, progress) else { break };
-        search.take(bounds);
+        let Ok(bounds) = evaluator.evaluate(cells, progress) else { break };
+        search.settle_round(bounds);
     }
     search.found()
 }
 
-/// Who knows of every box how much of it is in reach.
+/// Bounds how much of a box is in reach.
 #[derive(Clone, Copy, Debug)]
-pub struct Asker<'a> {
+pub struct Evaluator<'a> {
     manipulator: &'a Manipulator,
     domain: &'a Domain,
     mode: Option<Mode>,
 }
 
-impl<'a> Asker<'a> {
-    /// For boxes of this domain of a manipulator.
+impl<'a> Evaluator<'a> {
+    /// An evaluator for boxes of this domain, in these working modes.
     pub fn new(manipulator: &'a Manipulator, domain: &'a Domain, modes: Modes) -> Self {
         Self { manipulator, domain, mode: modes.one() }
     }
 
-    /// What is known of some boxes, in their order. It depends on nothing but the box: whoever is asked, the
-    /// answer is the same to the bit.
+    /// The bounds of some boxes, in their order, found on all threads. They depend on nothing but the box:
+    /// on every machine they are the same to the bit.
     ///
     /// # Errors
-    /// When told to stop.
-    pub fn ask(&self, cells: &[Cell], progress: &Progress) -> Result<Vec<Bounds>, Cancelled> {
+    /// [`Cancelled`] if [`Progress::cancel`] was called.
+    pub fn evaluate(&self, cells: &[Cell], progress: &Progress) -> Result<Vec<Bounds>, Cancelled> {
         let of = |cell: &Cell| progress.advance(1).map(|()| self.bounds(cell));
         cells.par_iter().map(of).collect()
     }
 
-    /// What is known of a cell: its bounds and how to split it.
+    /// The bounds of a cell and how to split it.
     fn bounds(&self, cell: &Cell) -> Bounds {
         let sides = self.domain.sides(cell);
-        let verdict = self.manipulator.enclose(self.domain.asked(), self.mode, &sides);
+        let verdict = self.manipulator.enclose(self.domain.query(), self.mode, &sides);
         let size = self.domain.size(cell);
         let split = verdict.split.and_then(|side| self.domain.wide_number(side));
         let open = verdict.lower < verdict.upper;
@@ -164,8 +194,8 @@ impl<'a> Asker<'a> {
     }
 }
 
-/// A sum whose rounding does not grow with the number of its terms (A. Neumaier, 1974); of numbers that are
-/// not negative.
+/// A sum of numbers that are not negative, whose rounding does not grow with the number of its terms (A.
+/// Neumaier, 1974).
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     sum: f64,
@@ -185,29 +215,59 @@ impl Sum {
     }
 }
 
-/// The boxes of a domain, as far as they are decided. It goes on in rounds, whose boxes may be asked for
-/// anywhere: of an [`Asker`], here or in other processes.
+/// There are more or fewer bounds than boxes in a round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{found} bounds, expected {expected}: one for each box of the round")]
+pub struct WrongAnswer {
+    /// The number of bounds.
+    pub found: usize,
+    /// The number of boxes in the round.
+    pub expected: usize,
+}
+
+/// The search for the measure of a domain. It goes on in rounds, whose boxes may be evaluated anywhere: by an
+/// [`Evaluator`] in this process or in others, to which [`Cell::pack`] and [`Bounds::pack`] carry them.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_workspace::measure::{CoordinateRange, Domain, Evaluator, Goal, Search};
+/// # use opm_workspace::{Modes, Progress, Sections};
+/// # let ranges = [CoordinateRange::new("x", -0.2, 0.2)];
+/// # let domain = Domain::new(&manipulator, Sections::Whole, &ranges)?;
+/// let evaluator = Evaluator::new(&manipulator, &domain, Modes::Any);
+/// let mut search = Search::new(&domain, Goal::default());
+/// while let Some(cells) = search.round() {
+///     let bounds = evaluator.evaluate(cells, &Progress::default())?;
+///     search.answer(bounds)?;
+/// }
+/// assert!(search.found().meets(0.01));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Search<'a> {
     domain: &'a Domain,
     goal: Goal,
-    /// Those that are worth splitting.
+    /// The boxes that are worth splitting.
     open: Vec<(Cell, Bounds)>,
-    /// Sums of the bounds of the others.
+    /// The sums of the bounds of all other boxes.
     settled: [Sum; 2],
     /// The best bounds so far.
     bounds: [f64; 2],
     boxes: u64,
     /// The boxes of the round.
-    asked: Vec<Cell>,
-    /// Which open ones they are the halves of, two each; none of the first round, whose boxes are the
-    /// domain's.
+    cells: Vec<Cell>,
+    /// The numbers of the open boxes that they are the halves of, two of each. It is empty in the first
+    /// round, whose boxes are those of the domain.
     halved: Vec<usize>,
     stop: Option<Stop>,
 }
 
 impl<'a> Search<'a> {
-    /// Nothing is known of the domain yet.
+    /// A search of which nothing is known yet.
     pub fn new(domain: &'a Domain, goal: Goal) -> Self {
         Self {
             domain,
@@ -216,19 +276,19 @@ impl<'a> Search<'a> {
             settled: [Sum::default(); 2],
             bounds: [0.0, domain.whole()],
             boxes: 0,
-            asked: Vec::new(),
+            cells: Vec::new(),
             halved: Vec::new(),
             stop: None,
         }
     }
 
-    /// The boxes to ask for next, whose bounds it is to [take](Self::take); `None` where the search is over.
+    /// The boxes to evaluate next, whose bounds go to [`Search::answer`]; `None` if the search is over.
     pub fn round(&mut self) -> Option<&[Cell]> {
         self.halved.clear();
-        self.asked.clear();
+        self.cells.clear();
         if self.boxes == 0 {
-            self.asked.extend(self.domain.cells());
-            return Some(&self.asked);
+            self.cells.extend(self.domain.cells());
+            return Some(&self.cells);
         }
         let count = (self.open.len() / SHARE).max(ROUND).min(self.open.len());
         self.stop = if self.found().meets(self.goal.tolerance) {
@@ -244,7 +304,7 @@ impl<'a> Search<'a> {
             return None;
         }
         self.choose(count);
-        Some(&self.asked)
+        Some(&self.cells)
     }
 
     /// Chooses the boxes that leave the widest gap.
@@ -263,17 +323,26 @@ impl<'a> Search<'a> {
             let (cell, bounds) = self.open[number];
             bounds.split.into_iter().flat_map(move |axis| cell.halves(axis))
         });
-        self.asked.extend(halves);
+        self.cells.extend(halves);
     }
 
-    /// Takes what is known of the boxes of the round, in their order.
+    /// Takes the bounds of the boxes of the round, in their order.
     ///
-    /// # Panics
-    /// Where there are more or fewer than these.
-    pub fn take(&mut self, bounds: Vec<Bounds>) {
-        assert_eq!(bounds.len(), self.asked.len(), "bounds for every box of the round");
+    /// # Errors
+    /// [`WrongAnswer`] if there are more or fewer bounds than boxes; then nothing is taken.
+    pub fn answer(&mut self, bounds: Vec<Bounds>) -> Result<(), WrongAnswer> {
+        let (found, expected) = (bounds.len(), self.cells.len());
+        if found != expected {
+            return Err(WrongAnswer { found, expected });
+        }
+        self.settle_round(bounds);
+        Ok(())
+    }
+
+    /// Takes as many bounds as there are boxes in the round.
+    fn settle_round(&mut self, bounds: Vec<Bounds>) {
         self.boxes += bounds.len() as u64;
-        let mut known = self.asked.drain(..).zip(bounds);
+        let mut known = self.cells.drain(..).zip(bounds);
         for number in self.halved.drain(..) {
             if let (Some(first), Some(second)) = (known.next(), known.next()) {
                 self.open[number] = first;
@@ -284,7 +353,7 @@ impl<'a> Search<'a> {
         self.settle();
     }
 
-    /// Takes those boxes away that no split makes better known, and sums up.
+    /// Takes away the boxes that no split makes better known, and sums up.
     fn settle(&mut self) {
         let settled = &mut self.settled;
         self.open.retain(|(_, bounds)| {
@@ -300,7 +369,7 @@ impl<'a> Search<'a> {
             upper.add(bounds.upper);
         }
         let whole = self.domain.whole();
-        // Of nothing there is nothing to round.
+        // A sum of nothing is not rounded.
         let rounded = |sum: Sum, sign: f64| match sum.value() {
             0.0 => 0.0,
             value => value + sign * ROUNDING * whole,
@@ -309,10 +378,33 @@ impl<'a> Search<'a> {
         self.bounds[1] = self.bounds[1].min(rounded(upper, 1.0));
     }
 
-    /// What is known so far; of a search that is not over, as of one that was cancelled.
+    /// The measure as far as it is known. A search that is not over stops with [`Stop::Cancelled`].
     pub fn found(&self) -> Measured {
         let [lower, upper] = self.bounds;
         let (whole, stop) = (self.domain.whole(), self.stop.unwrap_or(Stop::Cancelled));
         Measured { lower, upper, whole, boxes: self.boxes, stop }
+    }
+}
+
+// Old names, for the crates above.
+#[doc(hidden)]
+impl Evaluator<'_> {
+    /// [`Evaluator::evaluate`].
+    ///
+    /// # Errors
+    /// A measure that was cancelled.
+    pub fn ask(&self, cells: &[Cell], progress: &Progress) -> Result<Vec<Bounds>, Cancelled> {
+        self.evaluate(cells, progress)
+    }
+}
+
+#[doc(hidden)]
+impl Search<'_> {
+    /// [`Search::answer`], which panics.
+    ///
+    /// # Panics
+    /// If there are more or fewer bounds than boxes.
+    pub fn take(&mut self, bounds: Vec<Bounds>) {
+        self.answer(bounds).expect("bounds for every box of the round");
     }
 }

@@ -1,17 +1,17 @@
-//! Work on many items in parallel, whose results come in order and in bounded memory.
+//! Parallel work on many items, whose results come in order and in bounded memory.
 
 use crate::progress::Cancelled;
 use rayon::prelude::*;
 
-/// Items that are worked on together between two visits (more only where there are more threads):
-/// bounds the memory that results wait in.
+/// The number of items that are worked on together between two visits, if there are not more threads. It
+/// bounds the memory of the results that wait.
 const BATCH: usize = 16;
 
 /// Makes something of every item, on any thread with a `scratch` of its own, and gives it to `visit`
 /// in the order of the items, while the next ones are worked on.
 ///
 /// # Errors
-/// The first one among the items, or that `visit` gives, or when `make` was told to stop.
+/// The first error among the items or of `visit`, or `Cancelled` from `make`.
 pub fn in_order<I: Send, S, T: Send, E: From<Cancelled> + Send>(
     items: impl Iterator<Item = Result<I, E>> + Send,
     scratch: impl Fn() -> S + Sync + Send,

@@ -1,23 +1,25 @@
-//! Where the reachable poses of a grid come from: a sweep, or wherever sweeps of its shards left them.
+//! Where the reachable poses of a grid come from: a sweep, or files in which sweeps of its shards were stored.
 
 use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
 use crate::set::SetError;
 use crate::sweep::{Hits, Sweep};
 
-/// Gives the reachable poses of a grid as often as asked for. What is made of them does not depend on
-/// where they come from.
+/// A source that gives the reachable poses of a grid, as often as it is asked to. [`Sweep`] is one;
+/// [`replay`](crate::replay) helps to make another of stored poses. Sets ([`GridSet`](crate::GridSet)) and
+/// visits ([`Visits`](crate::Visits)) can be made of any source.
 pub trait Poses {
-    /// What goes wrong with it.
+    /// Why poses cannot be had.
     type Error: From<SetError> + From<Cancelled> + Send;
 
-    /// Whose poses they are.
+    /// The grid that the poses are of.
     fn grid(&self) -> &Grid;
 
     /// Gives every pose, as [`Sweep::points`] does.
     ///
     /// # Errors
-    /// The first one that `visit` gives, or when told to stop, or where there are no more to be had.
+    /// The first error of `visit`, [`Cancelled`] if [`Progress::cancel`] was called, or the reason why the
+    /// source cannot give its poses.
     fn points<T: Send>(
         &self,
         progress: &Progress,

@@ -1,19 +1,45 @@
-//! The reachable poses of a grid once more, from where a sweep stored their numbers.
+//! The reachable poses of a grid once more, from the numbers that a sweep stored.
 
 use crate::grid::{Grid, fill};
 use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Hits, Run};
 
-/// Poses that are made into points together.
+/// The number of poses that are made into points together.
 const BLOCK: u64 = 1 << 15;
 
-/// Gives poses of a grid as [`Sweep::points`](crate::Sweep::points) does, from `runs` of their
-/// numbers, which ascend and lie apart: what `make` and `visit` get differs in nothing but in how
-/// rows are divided.
+/// Gives poses of a grid as [`Sweep::points`](crate::Sweep::points) does, from `runs` of their numbers,
+/// which ascend and lie apart. Only the division of rows into segments may differ from a sweep's.
 ///
 /// # Errors
-/// The first one among the runs or that `visit` gives, or when told to stop.
+/// The first error among the runs or of `visit`, or [`Cancelled`] if [`Progress::cancel`] was called.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Axis, Cancelled, Grid, Progress, Run, replay};
+///
+/// let grid = Grid::new(&manipulator, vec![Axis::new("x", 0.0, 0.4, 5)])?;
+/// let stored = [Run { from: 0, to: 1 }, Run { from: 3, to: 5 }];
+/// let mut x = Vec::new();
+/// replay(
+///     &grid,
+///     stored.into_iter().map(Ok::<_, Cancelled>),
+///     &Progress::default(),
+///     |hits, made: &mut Vec<f64>| made.extend_from_slice(hits.first),
+///     Vec::new,
+///     |made| {
+///         x.extend(made);
+///         Ok(())
+///     },
+/// )?;
+/// assert_eq!(x.len(), 3);
+/// assert_eq!((x[0], x[2]), (0.0, 0.4));
+/// # Ok(())
+/// # }
+/// ```
 pub fn replay<T: Send, E: From<Cancelled> + Send>(
     grid: &Grid,
     runs: impl Iterator<Item = Result<Run, E>> + Send,
@@ -23,7 +49,7 @@ pub fn replay<T: Send, E: From<Cancelled> + Send>(
     visit: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     let row = grid.row();
-    // One more than the last pose that was given, as far as the blocks have come.
+    // One more than the last pose of the blocks so far.
     let mut reached = 0;
     let blocks = Blocks { runs, rest: None }.map(|block| {
         block.map(|block| {
@@ -51,10 +77,10 @@ pub fn replay<T: Send, E: From<Cancelled> + Send>(
     )
 }
 
-/// Runs, cut into blocks of so many poses that many blocks fit into memory.
+/// Runs, divided into blocks of a number of poses of which many blocks fit into memory.
 struct Blocks<I> {
     runs: I,
-    /// What did not fit into the block before.
+    /// The part of a run that did not fit into the block before.
     rest: Option<Run>,
 }
 
@@ -81,11 +107,11 @@ impl<E, I: Iterator<Item = Result<Run, E>>> Iterator for Blocks<I> {
     }
 }
 
-/// The row that poses are in.
+/// The row that poses are in, with working memory for their coordinates.
 struct Row<'a> {
     grid: &'a Grid,
     number: Option<u64>,
-    /// Rows of a slice.
+    /// The number of rows in a slice.
     slice: u64,
     first: Vec<f64>,
     others: Vec<f64>,

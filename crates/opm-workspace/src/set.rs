@@ -1,4 +1,4 @@
-//! Sets of points of a grid: which are in, row by row.
+//! Sets of points of a grid, stored as runs, row by row.
 
 use crate::grid::{Axis, Grid};
 use crate::poses::Poses;
@@ -6,56 +6,78 @@ use crate::progress::{Cancelled, Progress};
 use crate::sweep::Run;
 use std::ops::Range;
 
-/// Most rows and most runs of a set: some GiB of memory.
+/// Most rows and most runs of a set, which take some GiB of memory.
 const MOST: u64 = 1 << 27;
 
 /// One axis of a set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetAxis {
-    /// Its values.
+    /// The values of the axis.
     pub axis: Axis,
-    /// An angle whose values come full circle: the last has the first for a neighbour.
+    /// Whether it is an angle whose values come full circle, so that the last and the first are neighbours.
     pub circle: bool,
 }
 
-/// Why there is no set.
+/// Why a set or visits cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetError {
-    /// It does not fit in memory.
+    /// The set does not fit in memory.
     #[error(
         "{what} of a set: {given}, expected at most {most}; sweep a coarser grid or a part of it"
     )]
     Size {
-        /// Rows, or runs of points.
+        /// What there are too many of: `rows`, `runs` or `places`.
         what: &'static str,
-        /// How many there are, at least.
+        /// The number of them, at least.
         given: u64,
-        /// How many may be.
+        /// The largest number that is possible.
         most: u64,
     },
-    /// The sweep was told to stop.
+    /// The sweep was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Points of a grid. They are numbered as the grid's poses are, with the first axis fastest; a row is
-/// what differs in the first axis that has several values.
+/// A set of points of a grid. The points are numbered from 0 on, with the first axis fastest. The points of a
+/// row differ in the first axis that has several values.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Axis, Components, Grid, GridSet, Modes, Progress, Sweep, boundary};
+///
+/// let axes = vec![Axis::new("x", -0.3, 0.3, 121), Axis::new("y", -0.3, 0.3, 121)];
+/// let grid = Grid::new(&manipulator, axes)?;
+/// let sweep = Sweep::new(&manipulator, &grid, Modes::One(manipulator.home_mode()));
+/// let set = GridSet::reached(&sweep, &Progress::default())?;
+/// assert_eq!(set.count(), sweep.count(&Progress::default())?.reachable);
+/// assert!(set.numbers().all(|number| set.contains(number)));
+///
+/// let parts = Components::new(&set).sizes().len();
+/// let outline = &boundary(&set).ok_or("not a plane set")?[0];
+/// assert!(outline.rings.len() >= parts);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSet {
     axes: Vec<SetAxis>,
-    /// Points of a row.
+    /// The number of points in a row.
     row: u64,
-    /// Where the runs of each row end.
+    /// Where the runs of each row end among all runs.
     ends: Vec<usize>,
-    /// Points of each row, by their numbers in it, ascending and apart.
+    /// The points of each row as runs of their numbers in it, ascending and apart.
     runs: Vec<Run>,
 }
 
 impl GridSet {
-    /// The set that a sweep reaches, of poses or of one section alone.
+    /// The set of all reachable poses of a source, for instance of a [`Sweep`](crate::Sweep).
     ///
     /// # Errors
-    /// A set that does not fit in memory, or poses that cannot be had.
+    /// The set does not fit in memory ([`SetError::Size`]), or the source's own errors.
     pub fn reached<P: Poses>(poses: &P, progress: &Progress) -> Result<Self, P::Error> {
         let grid = poses.grid();
         let mut set = SetBuilder::new(set_axes(grid, 0..grid.axes().len()))?;
@@ -68,8 +90,8 @@ impl GridSet {
         Ok(set.finish())
     }
 
-    /// The slices of a grid in which a sweep reaches any pose, as points of the axes that the slices
-    /// differ in.
+    /// The slices of a grid in which any pose is reachable, as points of the axes that the slices differ
+    /// in. If the upper section is spherical, these are the orientations that are reached anywhere.
     ///
     /// # Errors
     /// As [`GridSet::reached`].
@@ -93,10 +115,10 @@ impl GridSet {
         Ok(set.finish())
     }
 
-    /// The points of a grid with these axes that `holds` says are in.
+    /// The set of those points of a grid with these axes whose numbers `holds` accepts.
     ///
     /// # Errors
-    /// A set that does not fit in memory.
+    /// The set does not fit in memory ([`SetError::Size`]).
     pub fn of(axes: Vec<SetAxis>, holds: impl Fn(u64) -> bool) -> Result<Self, SetError> {
         let mut set = SetBuilder::new(axes)?;
         (0..set.points)
@@ -110,32 +132,35 @@ impl GridSet {
         &self.axes
     }
 
-    /// Numbers of the axes that have several values.
+    /// The numbers of the axes that have several values, ascending.
     pub fn varying(&self) -> Vec<usize> {
         (0..self.axes.len()).filter(|&i| self.axes[i].axis.count > 1).collect()
     }
 
-    /// Points of the grid.
+    /// The number of points of the grid.
     pub fn points(&self) -> u64 {
         self.axes.iter().map(|a| a.axis.count).product()
     }
 
-    /// Points of the set.
+    /// The number of points of the set.
     pub fn count(&self) -> u64 {
         self.runs.iter().map(|run| run.to - run.from).sum()
     }
 
-    /// Points of a row.
+    /// The number of points of the grid in a row.
     pub fn row(&self) -> u64 {
         self.row
     }
 
-    /// The points of row number `row`, by their numbers in it, ascending and apart.
+    /// The points of row number `row` as runs of their numbers in it, ascending and apart.
+    ///
+    /// # Panics
+    /// There is no row of this number.
     pub fn runs(&self, row: usize) -> &[Run] {
         &self.runs[self.span(row)]
     }
 
-    /// Number of rows.
+    /// The number of rows.
     pub fn rows(&self) -> usize {
         self.ends.len()
     }
@@ -146,10 +171,14 @@ impl GridSet {
         start..self.ends[row]
     }
 
-    /// Whether the set has the point of this number.
+    /// Whether the set has the point of this number. A number beyond the grid is not in the set.
     pub fn contains(&self, number: u64) -> bool {
         let place = number % self.row;
-        let runs = self.runs((number / self.row) as usize);
+        let row = usize::try_from(number / self.row).unwrap_or(usize::MAX);
+        if row >= self.rows() {
+            return false;
+        }
+        let runs = self.runs(row);
         let after = runs.partition_point(|run| run.from <= place);
         after > 0 && place < runs[after - 1].to
     }
@@ -162,7 +191,7 @@ impl GridSet {
         })
     }
 
-    /// The coordinates of the point of this number.
+    /// The coordinates of the point of this number, radians and metres, one for each axis.
     pub fn point(&self, mut number: u64) -> Vec<f64> {
         let value = |SetAxis { axis, .. }: &SetAxis| {
             let value = axis.value(number % axis.count);
@@ -178,10 +207,10 @@ pub(crate) fn set_axes(grid: &Grid, axes: Range<usize>) -> Vec<SetAxis> {
     axes.map(|i| SetAxis { axis: grid.axes()[i].clone(), circle: grid.is_circle(i) }).collect()
 }
 
-/// A set whose points come in the order of their numbers.
+/// Makes a set of points that come in the order of their numbers.
 pub(crate) struct SetBuilder {
     set: GridSet,
-    /// Of the grid.
+    /// The number of points of the grid.
     points: u64,
 }
 
@@ -197,7 +226,7 @@ impl SetBuilder {
         Ok(Self { set, points })
     }
 
-    /// Adds points after all that are in.
+    /// Adds points behind all that the set has.
     pub fn push(&mut self, points: Run) -> Result<(), SetError> {
         let Self { set: GridSet { row: length, ends, runs, .. }, .. } = self;
         let mut from = points.from;

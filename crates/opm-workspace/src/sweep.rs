@@ -1,48 +1,52 @@
 //! The sweep: which poses of a grid are in reach and within the limits.
 //!
-//! The poses that share the upper section's coordinates are a slice: it is solved once, and leaves
-//! each leg a set of poses. Where that is a region of the plane, it is cut by whole rows at a time
-//! ([`cuts`]), else it is asked for in pieces of rows ([`pieces`]).
+//! The poses that share the upper section's coordinates are a slice. The upper section is solved once in
+//! a slice, and leaves each leg one or several branches, each a set of poses. Where all of them are
+//! regions of the plane, whole rows are clipped to them ([`clip`]). Other branches are asked for in pieces
+//! of rows, between the places where their feasibility changes ([`transitions`]).
 
-mod cuts;
-mod pieces;
+mod clip;
+mod known_range;
+mod row;
 pub(crate) mod runs;
-mod scratch;
 mod shard;
-mod spans;
+mod sheet;
+mod transitions;
+mod worker;
 
 pub use runs::Run;
 pub use shard::{Shard, ShardError};
 
-use crate::condition::ConditionLimit;
-use crate::grid::{Grid, Sections};
+use crate::condition::{ConditionError, ConditionLimit};
+use crate::grid::Grid;
 use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
-use cuts::ROWS;
+use clip::ROWS;
+use known_range::KnownRanges;
 use opm_core::manipulator::{Follow, Manipulator, Mode};
 use rayon::prelude::*;
-use scratch::Scratch;
-use spans::Spans;
+use sheet::SheetKind;
 use std::ops::Range;
+use worker::{Visitor, Worker};
 
 /// Poses of a row that are decided together, of which a block has room for several.
 const SEGMENT: u64 = 1024;
 
-/// Poses of a block, the unit of work: some 0.1 ms, so that threads share evenly and a request to
-/// stop is heard at once.
+/// Poses of a block, the unit of work. It takes some 0.1 ms, so that threads share evenly and a request
+/// to stop is heard at once.
 const BLOCK: u64 = 1 << 15;
 
-/// Which working modes count.
+/// The working modes in which a pose counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Modes {
-    /// One.
+    /// A pose counts where this mode reaches it within the limits.
     One(Mode),
     /// A pose counts where any mode reaches it within the limits.
     Any,
 }
 
 impl Modes {
-    /// The one, if there is just one.
+    /// The mode, if it is a single one.
     pub fn one(self) -> Option<Mode> {
         match self {
             Self::One(mode) => Some(mode),
@@ -51,26 +55,27 @@ impl Modes {
     }
 }
 
-/// What a sweep found, or a shard of it. Of a grid of one section alone, what is said of poses is said of its points.
+/// The result of a sweep, or of one shard of it. In a grid of one section alone a pose is a point of that
+/// grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// Poses that were decided: of the grid, or of the shard.
+    /// The number of poses that were decided: those of the grid, or of the shard.
     pub poses: u64,
-    /// Poses in reach and within all limits.
+    /// The number of poses in reach and within all limits.
     pub reachable: u64,
-    /// Lowest and highest value of every imaginary joint over the reachable poses; `None` where
-    /// there is no such pose.
+    /// The lowest and highest value of every imaginary joint over the reachable poses, radians or metres,
+    /// in the order of [`Manipulator::imaginary`]; `None` where there is no such pose.
     pub imaginary: Vec<Option<[f64; 2]>>,
 }
 
 impl Count {
-    /// Of no poses.
+    /// The count of no poses.
     pub fn nothing(manipulator: &Manipulator) -> Self {
         Self { poses: 0, reachable: 0, imaginary: vec![None; manipulator.imaginary().len()] }
     }
 
-    /// Of both together, which have no pose in common. Exact: in whatever order and however
-    /// bracketed shards are merged, the result is the same to the bit.
+    /// The count of both together, which have no pose in common. This is exact: in whatever order
+    /// shards are merged, the result is the same to the bit.
     #[must_use]
     pub fn merge(mut self, other: &Self) -> Self {
         self.poses += other.poses;
@@ -83,48 +88,75 @@ impl Count {
         self
     }
 
-    /// Takes the imaginary joint of a leg that follows in this way, unless it lies between others.
-    fn used(&mut self, manipulator: &Manipulator, way: &Follow, spans: &mut Spans) {
-        if spans.hold(way) {
+    /// Widens the range of an imaginary joint to its value in a leg branch, unless that lies between
+    /// known values.
+    fn used(&mut self, manipulator: &Manipulator, branch: &Follow, known: &mut KnownRanges) {
+        if known.contain_or_widen(branch) {
             return;
         }
-        if let Some((imaginary, value)) = manipulator.imaginary_value(way) {
+        if let Some((imaginary, value)) = manipulator.imaginary_value(branch) {
             self.widen(imaginary, value);
         }
     }
 
     fn widen(&mut self, imaginary: usize, value: f64) {
-        // Of zeros of two signs, which `min` may confuse, there is but one then.
+        // This makes a negative zero positive: `min` may confuse the two.
         let value = value + 0.0;
         let range = self.imaginary[imaginary].get_or_insert([value; 2]);
         *range = [range[0].min(value), range[1].max(value)];
     }
 }
 
-/// The reachable poses of one segment of a row: they differ in the first coordinate.
+/// The reachable poses of one segment of a row. They differ in the first coordinate alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Hits<'a> {
-    /// Number of the slice: see [`Grid::slices`].
+    /// The number of the slice: see [`Grid::slices`].
     pub slice: u64,
-    /// Number of the row: that of its poses over [`Grid::row`].
+    /// The number of the row: the number of any of its poses, divided by [`Grid::row`].
     pub row: u64,
-    /// Numbers of the values of the first coordinate.
+    /// The numbers of the first coordinate's values, ascending and apart.
     pub runs: &'a [Run],
-    /// Values of the first coordinate, ascending.
+    /// The values of the first coordinate, radians or metres, ascending.
     pub first: &'a [f64],
-    /// The other coordinates.
+    /// The other coordinates, radians or metres, in the order of the grid's axes.
     pub others: &'a [f64],
 }
 
 impl Hits<'_> {
-    /// The numbers of the poses in a grid, which has to be the one that was swept.
+    /// The numbers of the poses in the grid that was swept.
     pub fn numbers(&self, grid: &Grid) -> impl Iterator<Item = Run> {
         let first = self.row * grid.row();
         self.runs.iter().map(move |run| Run { from: first + run.from, to: first + run.to })
     }
 }
 
-/// A sweep of one grid.
+/// A sweep of one grid: which of its poses a manipulator reaches within its limits.
+///
+/// A sweep is cheap to make and to copy. [`Sweep::count`] counts the reachable poses, and
+/// [`Sweep::points`] gives each of them. Both work on all threads of the current rayon pool; their
+/// results do not depend on how many these are.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// use opm_workspace::{Axis, Grid, Modes, Progress, Shard, Sweep};
+///
+/// let axes = vec![Axis::new("x", -0.3, 0.3, 61), Axis::new("y", -0.3, 0.3, 61)];
+/// let grid = Grid::new(&manipulator, axes)?;
+/// let sweep = Sweep::new(&manipulator, &grid, Modes::One(manipulator.home_mode()));
+/// let count = sweep.count(&Progress::default())?;
+/// assert_eq!(count.poses, 61 * 61);
+///
+/// // The counts of shards, made anywhere, add up to that of the whole.
+/// let half = |number| Ok::<_, Box<dyn std::error::Error>>(
+///     sweep.shard(Shard::new(number, 2)?).count(&Progress::default())?,
+/// );
+/// assert_eq!(half(1)?.merge(&half(2)?), count);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
@@ -132,19 +164,19 @@ pub struct Sweep<'a> {
     modes: Modes,
     limit: Option<ConditionLimit>,
     shard: Shard,
-    /// Segments a row.
+    /// The number of segments in a row.
     segments: u64,
-    /// Segments a block.
+    /// The number of segments in a block.
     stride: u64,
-    /// Rows a sheet: they differ in the second coordinate alone, where that is the lower section's.
+    /// The number of rows in a sheet. They differ in the second coordinate alone, if that is one of the
+    /// lower section's.
     side: u64,
-    /// Sheets a slice.
+    /// The number of sheets in a slice.
     sheets: u64,
 }
 
 impl<'a> Sweep<'a> {
-    /// Sweeps `grid`, a grid of this manipulator or of one of its sections alone, in one working mode or
-    /// in any.
+    /// A sweep of `grid`, which has to be a grid of this manipulator or of one of its sections alone.
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
         let row = grid.row();
         let stride = (BLOCK / row.min(SEGMENT)).max(1);
@@ -156,17 +188,17 @@ impl<'a> Sweep<'a> {
         Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
     }
 
-    /// What is swept.
+    /// The grid that is swept.
     pub fn grid(&self) -> &'a Grid {
         self.grid
     }
 
-    /// Whose workspace it is.
+    /// The manipulator whose workspace it is.
     pub fn manipulator(&self) -> &'a Manipulator {
         self.manipulator
     }
 
-    /// In which working modes.
+    /// The working modes in which poses count.
     pub fn modes(&self) -> Modes {
         self.modes
     }
@@ -176,34 +208,33 @@ impl<'a> Sweep<'a> {
         self.limit
     }
 
-    /// The same sweep, but a pose counts only in a working mode in which it is conditioned well
-    /// enough. That is decided pose by pose, a few microseconds each and mode.
+    /// The same sweep, but a pose counts only in a working mode in which its condition number is within
+    /// `limit`. That is decided pose by pose, a few microseconds for each pose and mode.
     ///
-    /// # Panics
-    /// On a grid of one section alone: only the whole mechanism has a condition number.
-    #[must_use]
-    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
-        let whole = self.grid.sections() == Sections::Whole;
-        assert!(whole || limit.is_none(), "a section alone has no condition number");
-        Self { limit, ..self }
+    /// # Errors
+    /// [`ConditionError::Section`] on a grid of one section alone: only the whole mechanism has a condition
+    /// number. [`ConditionError::Length`] if the limit's characteristic length is not a positive number.
+    pub fn with_limit(self, limit: ConditionLimit) -> Result<Self, ConditionError> {
+        limit.check(self.grid)?;
+        Ok(Self { limit: Some(limit), ..self })
     }
 
-    /// The same sweep, of one shard of its grid alone: whole blocks of rows, of which every shard
-    /// has as many as any other, or one more. Together the shards' points are those of the whole
-    /// sweep, one after the other, and their counts [merge](Count::merge) to that of the whole,
-    /// however many they are. A shard is empty where there are more of them than blocks.
+    /// The same sweep of one shard of its grid alone. A shard is a number of whole blocks of rows; the
+    /// shards' numbers of blocks differ by one at most. The shards' points, one shard after the other,
+    /// are those of the whole sweep, and their counts [merge](Count::merge) to that of the whole. Some
+    /// shards are empty if there are more of them than blocks.
     #[must_use]
     pub fn shard(self, shard: Shard) -> Self {
         Self { shard, ..self }
     }
 
-    /// Number of poses of the grid, or of the shard of it.
+    /// The number of poses of the grid, or of the shard.
     pub fn poses(&self) -> u64 {
         let Range { start, end } = self.range();
         end - start
     }
 
-    /// The numbers of these poses.
+    /// The numbers of the poses of the grid, or of the shard.
     pub fn range(&self) -> Range<u64> {
         let Range { start, end } = self.blocks();
         self.poses_before(start)..self.poses_before(end)
@@ -213,16 +244,16 @@ impl<'a> Sweep<'a> {
     /// depend on the size of the grid.
     ///
     /// # Errors
-    /// When told to stop.
+    /// [`Cancelled`] if [`Progress::cancel`] was called.
     pub fn count(&self, progress: &Progress) -> Result<Count, Cancelled> {
         let nothing = || Count::nothing(self.manipulator);
         self.blocks()
             .into_par_iter()
             .map_init(
-                || Scratch::new(self),
-                |scratch, block| {
+                || Worker::new(self),
+                |worker, block| {
                     let mut count = nothing();
-                    self.block(block, scratch, &mut count, None);
+                    self.block(block, worker, &mut count, None);
                     progress.advance(count.poses)?;
                     Ok(count)
                 },
@@ -230,12 +261,37 @@ impl<'a> Sweep<'a> {
             .try_reduce(nothing, |a, b| Ok(a.merge(&b)))
     }
 
-    /// Gives every reachable pose, in the order of their numbers: `make` turns the hits of a
-    /// segment into something to keep, on any thread, and `visit` takes these in order while the
-    /// next are made. Memory does not depend on the size of the grid.
+    /// Gives every reachable pose, in the order of their numbers. For every block of the grid, `empty`
+    /// makes a value, and `make` adds the hits of each segment to it, on any thread. Then `visit`
+    /// takes these values in the order of their blocks, on one thread, while the next are made. Memory does
+    /// not depend on the size of the grid.
     ///
     /// # Errors
-    /// The first one that `visit` gives, or when told to stop.
+    /// The first error of `visit`, or [`Cancelled`] if [`Progress::cancel`] was called.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+    /// # use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
+    /// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
+    /// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+    /// # let grid = Grid::new(&manipulator, vec![Axis::new("x", -0.3, 0.3, 61)])?;
+    /// # let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
+    /// // The first coordinates of all reachable poses.
+    /// let mut x = Vec::new();
+    /// sweep.points(
+    ///     &Progress::default(),
+    ///     |hits, made: &mut Vec<f64>| made.extend_from_slice(hits.first),
+    ///     Vec::new,
+    ///     |made| {
+    ///         x.extend(made);
+    ///         Ok::<(), Cancelled>(())
+    ///     },
+    /// )?;
+    /// assert_eq!(x.len() as u64, sweep.count(&Progress::default())?.reachable);
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn points<T: Send, E: From<Cancelled> + Send>(
         &self,
         progress: &Progress,
@@ -245,12 +301,12 @@ impl<'a> Sweep<'a> {
     ) -> Result<(), E> {
         in_order(
             self.blocks().map(Ok),
-            || Scratch::new(self),
-            |scratch, block| {
+            || Worker::new(self),
+            |worker, block| {
                 let mut made = empty();
                 let mut count = Count::nothing(self.manipulator);
                 let mut make = |hits: &Hits<'_>| make(hits, &mut made);
-                self.block(block, scratch, &mut count, Some(&mut make));
+                self.block(block, worker, &mut count, Some(&mut make));
                 progress.advance(count.poses)?;
                 Ok(made)
             },
@@ -258,7 +314,7 @@ impl<'a> Sweep<'a> {
         )
     }
 
-    /// Pieces that the work comes in: more threads than these have nothing to do.
+    /// The number of blocks that the work is divided into. Further threads have nothing to do.
     pub fn pieces(&self) -> u64 {
         let Range { start, end } = self.blocks();
         end - start
@@ -269,7 +325,7 @@ impl<'a> Sweep<'a> {
         self.shard.of((self.rows() * self.segments).div_ceil(self.stride))
     }
 
-    /// Poses of all blocks before one.
+    /// The number of poses of all blocks before one.
     fn poses_before(&self, block: u64) -> u64 {
         let along = self.grid.row();
         let segments = (block * self.stride).min(self.rows() * self.segments);
@@ -280,14 +336,8 @@ impl<'a> Sweep<'a> {
         self.grid.poses() / self.grid.row()
     }
 
-    /// Decides the poses of one block and adds them to `count`, which is all without anybody to `hit`.
-    fn block(
-        &self,
-        block: u64,
-        scratch: &mut Scratch<'_>,
-        count: &mut Count,
-        mut hit: Option<&mut dyn FnMut(&Hits<'_>)>,
-    ) {
+    /// Decides the poses of one block, adds them to `count`, and gives them to `hit`, if there is one.
+    fn block(&self, block: u64, worker: &mut Worker<'_>, count: &mut Count, mut hit: Visitor<'_>) {
         let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
@@ -303,10 +353,28 @@ impl<'a> Sweep<'a> {
             let window = Run { from, to: (from + SEGMENT).min(along) };
             count.poses += together * (window.to - window.from);
             next += together;
-            scratch.enter_sheet(sheet / self.sheets, sheet % self.sheets);
-            if scratch.alive {
-                scratch.decide(start..start + together, window, count, &mut hit);
+            worker.sheet.enter(sheet / self.sheets, sheet % self.sheets);
+            if worker.sheet.kind != SheetKind::Unreachable {
+                worker.decide(start..start + together, window, count, &mut hit);
             }
+        }
+    }
+}
+
+// Old names, for the crates above.
+#[doc(hidden)]
+impl Sweep<'_> {
+    /// [`Sweep::with_limit`], which panics.
+    ///
+    /// # Panics
+    /// With a limit, on a grid of one section alone.
+    #[must_use]
+    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
+        match limit {
+            Some(limit) => {
+                self.with_limit(limit).expect("a condition limit for the whole mechanism")
+            }
+            None => Self { limit: None, ..self },
         }
     }
 }

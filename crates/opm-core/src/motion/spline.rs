@@ -1,60 +1,55 @@
-//! Cubic splines through a table of values, on common knots.
+//! Natural cubic splines through a table of values, several columns on common knots.
 //!
-//! `numeris` finds the natural cubic spline: value, first and second derivative are continuous, and
-//! the second derivative is zero at both ends. It answers with values and slopes; the second
-//! derivative, too, follows from those at the knots, since between two knots there is only one cubic
-//! with these values and slopes.
+//! The value and its first two derivatives are continuous, and the second derivative is zero at both
+//! ends. The second derivatives `m` at the knots, which are `h[i]` apart, obey
+//!
+//! ```text
+//! h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1]),   d[i] = (y[i+1] - y[i]) / h[i]
+//! ```
+//!
+//! a tridiagonal system whose diagonal dominates, so that elimination needs no pivots (J. Stoer, R.
+//! Bulirsch, *Introduction to Numerical Analysis*, section 2.4). The values and slopes at the knots are
+//! kept: between two knots there is only one cubic that has them.
 
 use super::Instant;
-use numeris::interp::{DynCubicSpline, InterpError};
 
 /// Fewest knots of a natural cubic spline.
 pub const FEWEST: usize = 3;
 
-/// Natural cubic splines, one a coordinate.
+/// Natural cubic splines on common knots, one for each coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     times: Vec<f64>,
     columns: Vec<Column>,
 }
 
-/// Values and slopes at the knots.
+/// Values and slopes of one coordinate at the knots.
 #[derive(Clone, Debug, PartialEq)]
 struct Column {
     values: Vec<f64>,
     slopes: Vec<f64>,
 }
 
-/// Why there is no spline.
+/// Why no spline goes through a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SplineError {
-    /// Too few knots.
+    /// There are too few knots.
     #[error("{0} times, expected at least {FEWEST}")]
     TooFew(usize),
-    /// Times that do not increase.
+    /// The times do not increase.
     #[error("the times do not increase")]
     NotIncreasing,
-    /// A column with another number of values than there are times.
+    /// A column does not have one value for each time.
     #[error("not as many values as times")]
     Length,
-    /// Times so close together that the slopes overflow.
+    /// The times are so close together that derivatives overflow.
     #[error("times are too close together")]
     TooClose,
 }
 
-impl From<InterpError> for SplineError {
-    fn from(error: InterpError) -> Self {
-        match error {
-            InterpError::TooFewPoints => Self::TooFew(0),
-            InterpError::NotSorted => Self::NotIncreasing,
-            InterpError::LengthMismatch => Self::Length,
-            InterpError::IllConditioned => Self::TooClose,
-        }
-    }
-}
-
 impl Spline {
-    /// Through the values of each column at these times, seconds, which increase.
+    /// The splines through the values of each column at these times, seconds, which increase.
     ///
     /// # Errors
     /// Fewer than three times, times that do not increase or are too close together, or a column of
@@ -63,10 +58,16 @@ impl Spline {
         if times.len() < FEWEST {
             return Err(SplineError::TooFew(times.len()));
         }
+        if !times.is_sorted_by(|a, b| a < b) {
+            return Err(SplineError::NotIncreasing);
+        }
         let columns = columns.into_iter().map(|values| {
-            let spline = DynCubicSpline::new(times.clone(), values.clone())?;
-            let slopes: Vec<f64> = times.iter().map(|&t| spline.eval_derivative(t).1).collect();
-            let finite = slopes.iter().all(|slope| slope.is_finite());
+            if values.len() != times.len() {
+                return Err(SplineError::Length);
+            }
+            let second = second_derivatives(&times, &values);
+            let slopes = slopes(&times, &values, &second);
+            let finite = second.iter().chain(&slopes).all(|number| number.is_finite());
             if finite { Ok(Column { values, slopes }) } else { Err(SplineError::TooClose) }
         });
         Ok(Self { columns: columns.collect::<Result<_, _>>()?, times })
@@ -80,7 +81,7 @@ impl Spline {
     /// Values and derivatives at time `t`, which is brought back between the ends.
     ///
     /// # Panics
-    /// If `out` is for another number of columns.
+    /// `out` is for another number of columns.
     pub fn at(&self, t: f64, out: &mut Instant) {
         assert_eq!(self.columns.len(), out.pose.len(), "columns of the spline");
         let last = self.times.len() - 1;
@@ -99,6 +100,43 @@ impl Spline {
             out.acceleration[number] = 2.0 * half + 6.0 * sixth * s;
         }
     }
+}
+
+/// The second derivatives of the natural spline at its knots.
+fn second_derivatives(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = times.len() - 1;
+    let width = |i: usize| times[i + 1] - times[i];
+    let mean = |i: usize| (values[i + 1] - values[i]) / width(i);
+    let mut second = vec![0.0; times.len()];
+    // Elimination leaves `second[i] + above[i] second[i + 1]` on the left of every equation.
+    let mut above = vec![0.0; times.len()];
+    for i in 1..last {
+        let diagonal = 2.0 * (width(i - 1) + width(i)) - width(i - 1) * above[i - 1];
+        let right = 6.0 * (mean(i) - mean(i - 1)) - width(i - 1) * second[i - 1];
+        above[i] = width(i) / diagonal;
+        second[i] = right / diagonal;
+    }
+    for i in (1..last).rev() {
+        second[i] -= above[i] * second[i + 1];
+    }
+    second
+}
+
+/// The slopes of the spline at its knots.
+fn slopes(times: &[f64], values: &[f64], second: &[f64]) -> Vec<f64> {
+    let mut slopes: Vec<f64> = (0..times.len() - 1)
+        .map(|i| {
+            let width = times[i + 1] - times[i];
+            let mean = (values[i + 1] - values[i]) / width;
+            mean - width * (2.0 * second[i] + second[i + 1]) / 6.0
+        })
+        .collect();
+    // The cubic's derivative at the far end of the last piece.
+    let i = times.len() - 2;
+    let width = times[i + 1] - times[i];
+    let sixth = (second[i + 1] - second[i]) / (6.0 * width);
+    slopes.push(slopes[i] + width * (second[i] + 3.0 * sixth * width));
+    slopes
 }
 
 #[cfg(test)]
@@ -141,6 +179,43 @@ mod tests {
             }
         }
         assert!(at(&spline, 0.0)[2].abs() < 1e-12 && at(&spline, 99.0)[2].abs() < 1e-12);
+    }
+
+    /// The equations at the top of this file, solved as a dense system by LU with pivots.
+    #[test]
+    fn second_derivatives_solve_the_dense_system() {
+        use nalgebra::{DMatrix, DVector};
+        let times = [0.0, 0.3, 1.0, 1.1, 2.5, 4.0, 4.2];
+        let values = [1.0, -2.0, 0.5, 0.7, 3.0, -1.0, 0.0];
+        let n = times.len();
+        let width = |i: usize| times[i + 1] - times[i];
+        let mean = |i: usize| (values[i + 1] - values[i]) / width(i);
+        let (mut matrix, mut right) = (DMatrix::identity(n, n), DVector::zeros(n));
+        for i in 1..n - 1 {
+            matrix[(i, i - 1)] = width(i - 1);
+            matrix[(i, i)] = 2.0 * (width(i - 1) + width(i));
+            matrix[(i, i + 1)] = width(i);
+            right[i] = 6.0 * (mean(i) - mean(i - 1));
+        }
+        let expected = matrix.lu().solve(&right).unwrap();
+        let spline = Spline::new(times.into(), vec![values.into()]).unwrap();
+        for (i, &t) in times.iter().enumerate() {
+            let second = at(&spline, t)[2];
+            assert!((second - expected[i]).abs() < 1e-11 * expected.amax(), "{t}: {second}");
+        }
+    }
+
+    /// A straight line is its own natural spline, whatever the knots.
+    #[test]
+    fn a_line_stays_straight() {
+        let times = vec![-1.0, 0.0, 0.1, 7.0];
+        let values: Vec<f64> = times.iter().map(|t| 3.0 - 2.0 * t).collect();
+        let spline = Spline::new(times, vec![values]).unwrap();
+        for t in [-1.0, -0.4, 0.05, 3.3, 7.0] {
+            let [value, first, second] = at(&spline, t);
+            assert!((value - (3.0 - 2.0 * t)).abs() < 1e-13 && (first + 2.0).abs() < 1e-13);
+            assert!(second.abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@
 
 use nalgebra::DMatrix;
 
-/// Sweeps after which the rotations stop in any case; regular matrices need about eight.
+/// The rotations stop after so many sweeps in any case; regular matrices need about eight.
 const MAX_SWEEPS: usize = 40;
 
 /// `A V = U Σ` of an m × n matrix, with one singular value a column (zeros where n > m).
@@ -51,8 +51,8 @@ impl Svd {
     }
 }
 
-/// The singular values alone, in no order, and not those that are zero for want of rows. Quicker: the
-/// rows of a triangular factor with pivots are nearly orthogonal already (Z. Drmač and K. Veselić, "New fast
+/// The singular values alone, in no order, without those that are zero for want of rows. This is quicker
+/// than [`Svd::new`]: the rows of a triangular factor with pivots are nearly orthogonal already (Z. Drmač and K. Veselić, "New fast
 /// and accurate Jacobi SVD algorithm", SIAM J. Matrix Anal. Appl. 29, 2008).
 pub(crate) fn singular_values(matrix: DMatrix<f64>) -> Vec<f64> {
     if matrix.is_empty() {
@@ -73,50 +73,99 @@ fn count_above(values: &[f64], tolerance: f64) -> usize {
     values.iter().filter(|&&value| value > tolerance * largest).count()
 }
 
-/// Rotates the columns of `image` until they are orthogonal, and those of `right` with them.
+/// Rotates the columns of a matrix of any scale until they are orthogonal, and those of `right` with them.
 fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f64>>) {
-    let n = image.ncols();
     let negligible = (f64::EPSILON * image.norm()).powi(2);
+    let [rows, columns] = [image.nrows(), image.ncols()];
+    let orthogonal = |Products { pp, qq, pq }: &Products| {
+        pp.min(*qq) <= negligible || pq.abs() <= f64::EPSILON * (pp * qq).sqrt()
+    };
+    let rotated = |p: usize, q: usize, rotation: Rotation| {
+        if let Some(right) = &mut right {
+            rotation.apply(right.as_mut_slice(), columns, p, q);
+        }
+    };
+    // `hypot` does not overflow, whatever the scale.
+    let secant = |tan: f64| tan.hypot(1.0);
+    jacobi(image.as_mut_slice(), [rows, columns], orthogonal, secant, rotated);
+}
+
+/// The inner products of two columns `p` and `q`.
+pub(crate) struct Products {
+    /// `p · p`.
+    pub pp: f64,
+    /// `q · q`.
+    pub qq: f64,
+    /// `p · q`.
+    pub pq: f64,
+}
+
+/// The rotation that makes two columns orthogonal.
+#[derive(Clone, Copy)]
+pub(crate) struct Rotation {
+    cos: f64,
+    sin: f64,
+}
+
+impl Rotation {
+    /// Rotates columns `p < q` of a matrix with so many rows, whose columns follow each other.
+    #[inline(always)]
+    fn apply(self, matrix: &mut [f64], rows: usize, p: usize, q: usize) {
+        let Self { cos, sin } = self;
+        let (p, q) = pair(matrix, rows, p, q);
+        for (x, y) in p.iter_mut().zip(q) {
+            (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);
+        }
+    }
+}
+
+/// One-sided Jacobi rotations: the columns of a matrix, which follow each other in `matrix`, are rotated
+/// pair by pair until all are `orthogonal`. Nothing is allocated.
+///
+/// `secant` is the square root of `1 + tan²`; every rotation is shown to `rotated` with the numbers of
+/// its columns.
+#[inline(always)]
+pub(crate) fn jacobi(
+    matrix: &mut [f64],
+    [rows, columns]: [usize; 2],
+    orthogonal: impl Fn(&Products) -> bool,
+    secant: impl Fn(f64) -> f64,
+    mut rotated: impl FnMut(usize, usize, Rotation),
+) {
     for _ in 0..MAX_SWEEPS {
-        let mut rotated = false;
-        for p in 0..n {
-            for q in p + 1..n {
-                let [mut pp, mut qq, mut pq] = [0.0; 3];
-                let (column_p, column_q) = columns(image, p, q);
+        let mut settled = true;
+        for p in 0..columns {
+            for q in p + 1..columns {
+                let mut products = Products { pp: 0.0, qq: 0.0, pq: 0.0 };
+                let (column_p, column_q) = pair(matrix, rows, p, q);
                 for (&mut x, &mut y) in column_p.iter_mut().zip(column_q) {
-                    (pp, qq, pq) = (pp + x * x, qq + y * y, pq + x * y);
+                    products.pp += x * x;
+                    products.qq += y * y;
+                    products.pq += x * y;
                 }
-                let aligned = f64::EPSILON * (pp * qq).sqrt();
-                if pp.min(qq) <= negligible || pq.abs() <= aligned {
+                if orthogonal(&products) {
                     continue;
                 }
-                rotated = true;
+                settled = false;
+                let Products { pp, qq, pq } = products;
                 let zeta = (qq - pp) / (2.0 * pq);
-                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / tan.hypot(1.0);
-                rotate(image, p, q, cos, cos * tan);
-                if let Some(right) = &mut right {
-                    rotate(right, p, q, cos, cos * tan);
-                }
+                let tan = zeta.signum() / (zeta.abs() + secant(zeta));
+                let cos = 1.0 / secant(tan);
+                let rotation = Rotation { cos, sin: cos * tan };
+                rotation.apply(matrix, rows, p, q);
+                rotated(p, q, rotation);
             }
         }
-        if !rotated {
+        if settled {
             break;
         }
     }
 }
 
-fn rotate(matrix: &mut DMatrix<f64>, p: usize, q: usize, cos: f64, sin: f64) {
-    let (p, q) = columns(matrix, p, q);
-    for (x, y) in p.iter_mut().zip(q) {
-        (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);
-    }
-}
-
 /// Two columns, `p < q`, as slices.
-fn columns(matrix: &mut DMatrix<f64>, p: usize, q: usize) -> (&mut [f64], &mut [f64]) {
-    let rows = matrix.nrows();
-    let (before, after) = matrix.as_mut_slice().split_at_mut(q * rows);
+#[inline(always)]
+fn pair(matrix: &mut [f64], rows: usize, p: usize, q: usize) -> (&mut [f64], &mut [f64]) {
+    let (before, after) = matrix.split_at_mut(q * rows);
     (&mut before[p * rows..][..rows], &mut after[..rows])
 }
 

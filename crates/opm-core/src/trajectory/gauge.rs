@@ -1,4 +1,4 @@
-//! What is watched along a motion, and what is told of it.
+//! What is watched along a motion, and the violations that are found.
 
 use crate::manipulator::{Manipulator, Section};
 use crate::numeric::Quantity;
@@ -8,29 +8,30 @@ use crate::numeric::Quantity;
 pub enum Bound {
     /// The lowest value allowed.
     Lowest,
-    /// The highest.
+    /// The highest value allowed.
     Highest,
 }
 
 /// A continuous function of time that is positive where the motion can be followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Gauge {
-    /// How far a leg is from the end of its reach: the smaller of its sections' serial singularity
-    /// measures; out of reach the gap, over the characteristic length where it is one, negative.
+    /// How far a leg is from the end of its reach. In reach this is the smaller of its sections' serial
+    /// singularity measures. Out of reach it is minus the gap: an angle in radians, or a length divided
+    /// by the characteristic length.
     Reach {
-        /// Number of the leg.
+        /// The number of the leg.
         leg: usize,
     },
     /// How far a joint coordinate is from one of its limits, radians or metres.
     Limit {
-        /// Number of the coordinate.
+        /// The number of the joint coordinate.
         coordinate: usize,
-        /// Which limit.
+        /// Which of the two limits.
         bound: Bound,
     },
     /// A parallel singularity measure: either sign is good, zero is not.
     Parallel {
-        /// Of which part of the mechanism.
+        /// The part of the mechanism that is measured.
         part: Part,
     },
 }
@@ -40,7 +41,7 @@ pub enum Gauge {
 pub enum Part {
     /// One section.
     Section(Section),
-    /// The whole mechanism: watched where a section alone has no measure.
+    /// The whole mechanism, which is watched where one of the sections has no measure.
     Whole,
 }
 
@@ -50,29 +51,29 @@ pub struct Violation {
     /// What is violated: a leg's reach, a joint's limit or a section's regularity. A leg's reach with
     /// `end` equal to `start` and no gap is a serial singularity that the leg touches.
     pub gauge: Gauge,
-    /// When it begins, seconds.
+    /// The time when it begins, seconds.
     pub start: f64,
-    /// When it ends; of a singularity that is passed through, when it begins.
+    /// The time when it ends, seconds. A singularity that is passed through ends when it begins.
     pub end: f64,
-    /// When it is worst.
+    /// The time when it is worst, seconds.
     pub worst: f64,
-    /// By how much, there: how far out of reach or past the limit; of a singularity what is left of the
-    /// measure. Never negative.
+    /// How bad it is at worst, in the unit of `quantity`: how far out of reach or past the limit; for a
+    /// singularity what is left of its measure. It is never negative.
     pub amount: f64,
-    /// What the amount measures; `None` for a measure, which has no unit.
+    /// What the amount is, an angle or a length; `None` for a singularity measure, which has no unit.
     pub quantity: Option<Quantity>,
-    /// Which section of the leg is out of reach, or singular.
+    /// The section that is out of reach or singular; `None` for a joint limit.
     pub section: Option<Section>,
 }
 
 impl Violation {
-    /// It is a singularity, not a stretch of time.
+    /// Whether it is a singularity, and not a stretch of time.
     pub fn is_singularity(&self) -> bool {
         self.quantity.is_none()
     }
 }
 
-/// What there is to be watched of a manipulator.
+/// The gauges of a manipulator: the reach of every leg, all joint limits, and parallel singularities.
 pub(super) fn gauges(manipulator: &Manipulator) -> Vec<Gauge> {
     let reach = (0..manipulator.mechanism().legs.len()).map(|leg| Gauge::Reach { leg });
     let limits = manipulator.limits().iter().enumerate().filter(|(_, limits)| limits.any());

@@ -3,36 +3,34 @@
 use super::{Jacobians, SingularCause, SingularLeg};
 use crate::manipulator::Manipulator;
 use crate::numeric::Quantity;
+use crate::numeric::svd::{Products, jacobi};
 use nalgebra::SMatrix;
 
-/// Most components of a section twist: two subspaces of three dimensions that share one.
+/// Most freedoms of a platform: two subspaces of three dimensions that share one.
 const MOST: usize = 5;
 
 /// A singular value below this share of the largest is zero: rounding of the few dozen operations that
 /// lead to it.
 const RANK: f64 = 1e-13;
 
-/// Two columns whose cosine is less are square: what is left shows in no more digits of a singular
+/// Two columns whose cosine is at most this are orthogonal: what is left shows in no digit of a singular
 /// value.
-const SQUARE: f64 = 1e-12;
-
-/// The most rotations' sweeps; regular matrices need about six.
-const MAX_SWEEPS: usize = 30;
+const ORTHOGONAL: f64 = 1e-12;
 
 type Square = SMatrix<f64, MOST, MOST>;
 
 /// The conditioning of the actuated joints' Jacobian by the platform's twist.
 ///
-/// Lengths are over the characteristic length: the velocity of the platform's reference point, and
-/// the rates of sliders. Then it has no dimension, and is the same for whatever coordinates the
-/// pose is written in, wherever the mechanism stands and however large it is.
+/// The velocity of the platform's reference point and the rates of sliders are divided by the
+/// characteristic length. So both numbers have no unit. They do not depend on the coordinates that the
+/// pose is written in, on where the mechanism stands, nor on how large it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditioning {
     /// Largest over smallest singular value, at least one: how unevenly joint rates move the
     /// platform. Infinite at a singularity, serial or parallel, and where fewer joints are actuated
     /// than the platform has freedoms; of more, all count.
     pub condition: f64,
-    /// Inverse of the product of the singular values: the volume of the platform's twists for unit
+    /// The inverse of the product of the singular values: the volume of the platform's twists for unit
     /// rates of the actuated joints (Yoshikawa's measure). Zero at a serial singularity, infinite at a
     /// parallel one.
     pub manipulability: f64,
@@ -44,12 +42,12 @@ impl Conditioning {
 }
 
 impl Manipulator {
-    /// How well conditioned the actuated joints' Jacobian is, at the pose of `jacobians`; with a
-    /// characteristic length in metres, usually [`Manipulator::characteristic_length`]. Nothing is
+    /// How well conditioned the actuated joints' Jacobian is at the pose of `jacobians`. The
+    /// characteristic `length`, metres, is usually [`Manipulator::characteristic_length`]. Nothing is
     /// allocated.
     ///
     /// # Panics
-    /// If the length is not a positive number.
+    /// The length is not a positive number.
     pub fn conditioning(&self, jacobians: &Jacobians, length: f64) -> Conditioning {
         assert!(length > 0.0 && length.is_finite(), "characteristic length {length}");
         // A spherical joint at a whole turn is measured badly, which is nothing to the platform unless
@@ -175,32 +173,11 @@ fn divide(matrix: &mut Square, r: &Square, n: usize) {
     }
 }
 
-/// Singular values by one-sided Jacobi rotations, as in `svd.rs`, which would allocate.
+/// Singular values of the first `n` columns, by the rotations of [`crate::svd`]. Entries are near one, so
+/// that squares do not overflow.
 fn singular_values(mut m: Square, n: usize) -> [f64; MOST] {
-    for _ in 0..MAX_SWEEPS {
-        let mut rotated = false;
-        for p in 0..n {
-            for q in p + 1..n {
-                let (pp, qq) = (m.column(p).norm_squared(), m.column(q).norm_squared());
-                let pq = m.column(p).dot(&m.column(q));
-                if pq * pq <= SQUARE * SQUARE * pp * qq {
-                    continue;
-                }
-                rotated = true;
-                let zeta = (qq - pp) / (2.0 * pq);
-                let tan = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
-                let cos = (1.0 + tan * tan).sqrt().recip();
-                let sin = cos * tan;
-                for i in 0..MOST {
-                    let (x, y) = (m[(i, p)], m[(i, q)]);
-                    m[(i, p)] = cos * x - sin * y;
-                    m[(i, q)] = sin * x + cos * y;
-                }
-            }
-        }
-        if !rotated {
-            break;
-        }
-    }
+    let orthogonal = |p: &Products| p.pq * p.pq <= ORTHOGONAL * ORTHOGONAL * p.pp * p.qq;
+    let secant = |tan: f64| (1.0 + tan * tan).sqrt();
+    jacobi(m.as_mut_slice(), [MOST, n], orthogonal, secant, |_, _, _| {});
     std::array::from_fn(|i| m.column(i).norm())
 }

@@ -1,4 +1,4 @@
-//! What the colours of a section mean.
+//! The legend of a section's colours.
 
 use super::Measure;
 use crate::axis::{self, Axis};
@@ -8,20 +8,20 @@ use crate::font::CAPITALS;
 use crate::frame::{NAME, NUMBERS_BELOW, TICK, ticks_in};
 use crate::time::Scale;
 
-/// The colours of a section, from the lowest value to the highest.
+/// The legend of a section's colours: a bar from the lowest value to the highest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// What the colours show.
+    /// The meaning of the values.
     pub measure: Measure,
-    /// Values at the two ends.
+    /// The values at the two ends.
     pub range: [f64; 2],
     /// The colours.
     pub map: Map,
-    /// How values are laid out along it.
+    /// How values are laid out along the bar.
     pub scale: Scale,
 }
 
-/// Width of the colours.
+/// The width of the colours.
 const BAR: f64 = 14.0;
 
 impl Bar {
@@ -39,12 +39,12 @@ impl Bar {
         }
     }
 
-    /// Its width with its numbers and its name.
+    /// The width of the bar with its numbers and its name.
     pub(super) fn room(&self) -> f64 {
         BAR + 10.0 + self.axis(200.0).label_width(TICK.face, TICK.size) + 10.0 + NAME.size
     }
 
-    /// The colours with their numbers, from this corner down.
+    /// The bar with its numbers, from this corner down.
     pub(super) fn draw(&self, [x, y]: [f64; 2], height: f64) -> Shape {
         const SHADES: usize = 64;
         let place = Rect { x, y, width: BAR, height };
@@ -54,7 +54,7 @@ impl Bar {
         for i in 0..SHADES {
             let color = self.map.color((i as f64 + 0.5) / SHADES as f64);
             let y = place.bottom() - piece * (i + 1) as f64;
-            // Pieces lie over each other a little, so that no ground shows between them.
+            // Pieces overlap a little, so that no background shows between them.
             let height = (piece + 0.5).min(place.bottom() - y);
             shapes.push(Shape::Area(Path::rect(Rect { y, height, ..place }), color));
         }

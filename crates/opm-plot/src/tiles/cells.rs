@@ -1,73 +1,84 @@
-//! Which cells of a plane grid have something in them.
+//! Cells of a plane grid that have something in them.
 
 use crate::MOST_SHAPES;
 use crate::color::{Color, INK, Map, WHITE};
 use crate::drawing::{Image, Path, Pen, Rect, Shape, Step};
 use crate::frame::Frame;
 
-/// Most cells in a row or column; on a finer grid, several values share a cell.
+/// The most cells in a row or column. On a finer grid, several values share a cell.
 const MOST_CELLS: usize = 600;
-/// Pixels in a row or column of an image: two for a pixel of the screen, so that smoothing, which some
-/// programs do and some do not, makes no difference.
+/// The number of pixels in a row or column of an image: two for a pixel of the screen, so that it makes no
+/// difference whether a program smoothes images.
 const FINE: usize = 1200;
 
 /// Equally spaced values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
-    /// The first one.
+    /// The first value.
     pub first: f64,
-    /// From one to the next.
+    /// The distance from one value to the next.
     pub step: f64,
-    /// How many there are.
+    /// The number of values.
     pub count: usize,
 }
 
 impl Spacing {
-    /// Values from `first` to `last`.
+    /// `count` values from `first` to `last`.
     pub fn between([first, last]: [f64; 2], count: usize) -> Self {
         let step = (last - first) / count.saturating_sub(1).max(1) as f64;
-        // A value alone gets a cell as wide as it is large.
+        // A single value gets a cell of a tenth of its size.
         let step = if step > 0.0 { step } else { (0.1 * first.abs()).max(1.0) };
         Self { first, step, count }
     }
 
-    /// The number of the value that is nearest; `None` outside, or for no number.
+    /// The number of the nearest value; `None` outside the range, or for NaN.
     pub fn nearest(&self, value: f64) -> Option<usize> {
         let number = ((value - self.first) / self.step).round();
         (number >= 0.0 && number < self.count as f64).then_some(number as usize)
     }
 
-    /// Value number `i`.
+    /// Value number `i`, from 0 on.
     pub fn value(&self, i: usize) -> f64 {
         self.first + self.step * i as f64
     }
 }
 
-/// A plane grid, of whose cells those that were hit are drawn.
+/// The cells of a plane grid that were hit by points. [`TileFigure`](crate::TileFigure) has an example.
 #[derive(Clone, Debug)]
 pub struct Cells {
     spacing: [Spacing; 2],
-    /// Grid values that share a cell.
+    /// The number of grid values that share a cell, along both axes.
     together: [usize; 2],
     cells: [usize; 2],
     counts: Vec<u32>,
-    /// Sums of the values that colour the cells.
+    /// The sums of the values that colour the cells.
     sums: Option<Vec<f64>>,
-    /// Closed lines around them.
+    /// Closed lines over the cells.
     lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// What the cells' colours say.
+/// The colours of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
-    /// Nothing.
+    /// All cells have this colour.
     Plain(Color),
-    /// The mean value in a cell, by its place between the two ends.
+    /// The colour of a cell shows the mean of its values, between the two ends.
     Values(Map, [f64; 2]),
 }
 
 impl Cells {
-    /// No cell hit so far; `values` where values will come with the hits, to colour them by.
+    /// Cells of which none was hit, and which will be drawn in one colour.
+    pub fn plain(x: Spacing, y: Spacing) -> Self {
+        Self::new(x, y, None)
+    }
+
+    /// Cells of which none was hit, and which will be coloured by the values of the hits.
+    pub fn with_values(x: Spacing, y: Spacing) -> Self {
+        Self::new(x, y, Some(()))
+    }
+
+    /// [`Cells::plain`] and [`Cells::with_values`]: an old name, for the crates above.
+    #[doc(hidden)]
     pub fn new(x: Spacing, y: Spacing, values: Option<()>) -> Self {
         let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
         let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
@@ -77,7 +88,7 @@ impl Cells {
         Self { spacing: [x, y], together, cells, counts, sums, lines: vec![] }
     }
 
-    /// Hits the cell of the nearest grid values.
+    /// Adds a hit to the cell of the nearest grid values. A point outside the grid hits no cell.
     pub fn push(&mut self, x: f64, y: f64, value: f64) {
         let [Some(i), Some(j)] = [self.spacing[0].nearest(x), self.spacing[1].nearest(y)] else {
             return;
@@ -94,23 +105,23 @@ impl Cells {
         self.together != [1, 1]
     }
 
-    /// Which values of the grid were hit, row by row; `None` where several share a cell.
+    /// Whether each point of the grid was hit, row by row; `None` if several points share a cell.
     pub fn hits(&self) -> Option<Vec<bool>> {
         (!self.is_coarse()).then(|| self.counts.iter().map(|&count| count > 0).collect())
     }
 
-    /// Draws closed lines over the cells: the boundary of what was hit.
+    /// Sets closed lines to be drawn over the cells: the boundary of what was hit, in the units of the axes.
     pub fn surround(&mut self, lines: Vec<Vec<[f64; 2]>>) {
         self.lines = lines;
     }
 
-    /// The edges of the cells that were hit: left and right, lower and upper.
+    /// The edges of the cells that were hit: left and right, lower and upper; `None` if no cell was hit.
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let [[i0, i1], [j0, j1]] = self.hit()?;
         Some([[self.edge(0, i0), self.edge(0, i1 + 1)], [self.edge(1, j0), self.edge(1, j1 + 1)]])
     }
 
-    /// First and last column and row with a hit.
+    /// The first and the last column, and the first and the last row, with a hit.
     fn hit(&self) -> Option<[[usize; 2]; 2]> {
         let width = self.cells[0];
         let hits = || (0..self.counts.len()).filter(|&cell| self.counts[cell] > 0);
@@ -120,7 +131,7 @@ impl Cells {
         Some([columns, [first, last]])
     }
 
-    /// Where cell number `i` of an axis begins. Where values share cells the last one may be
+    /// The edge at which cell number `i` of an axis begins. If values share cells, the last cell may be
     /// narrower.
     fn edge(&self, axis: usize, i: usize) -> f64 {
         let spacing = self.spacing[axis];
@@ -144,14 +155,14 @@ impl Cells {
             path.0.push(Step::Close);
         }
         if !self.lines.is_empty() {
-            // Seen on any ground.
+            // Two lines, which are seen on every background.
             shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, 2.6)));
             shapes.push(Shape::Line(path, Pen::new(INK, 1.1)));
         }
         shapes
     }
 
-    /// The cells as boxes, one for neighbours in a row; `None` if there are too many.
+    /// The cells as boxes, with one box for neighbours in a row; `None` if there are too many.
     fn outline(&self, frame: &Frame<'_>) -> Option<Path> {
         let mut path = Path::default();
         let mut boxes = 0;
@@ -172,7 +183,7 @@ impl Cells {
         Some(path)
     }
 
-    /// The box around cells, the ends not included.
+    /// The box around cells from `i0` up to, not including, `i1`, and in the same way for rows.
     fn place(&self, frame: &Frame<'_>, [i0, i1]: [usize; 2], [j0, j1]: [usize; 2]) -> Rect {
         let [x, bottom] = frame.at(self.edge(0, i0), self.edge(1, j0));
         let [right, y] = frame.at(self.edge(0, i1), self.edge(1, j1));

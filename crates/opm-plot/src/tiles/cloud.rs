@@ -1,38 +1,47 @@
-//! Points in a plane: dots where they are few, how many there are where they are many.
+//! Points in a plane: few points are drawn as dots, many points as an image of their density.
 
 use crate::MOST_SHAPES;
 use crate::color::{Color, DOT, Map};
 use crate::drawing::{Image, Path, Rect, Shape};
 use crate::frame::Frame;
 
-/// Bins in a row and in a column: points in one bin are one dot.
+/// The number of bins in a row and in a column. Points in one bin are one dot.
 const BINS: usize = 1024;
-/// Bins in a row that share a pixel of the image: the first of these that gives so many points to a
-/// pixel that the image is more than noise.
+/// The numbers of bins in a row that may share a pixel of the image. The first of them is taken that gives a
+/// pixel enough points for the image to be more than noise.
 const POOLS: [usize; 3] = [4, 8, 16];
 const ENOUGH: u64 = 6;
-/// Pixels of the image file in a row.
+/// The number of pixels in a row of the image file.
 const FINE: usize = 768;
-/// Radius of a dot.
+/// The radius of a dot.
 const RADIUS: f64 = 1.6;
 
 /// Points in a plane, in bounded memory.
+///
+/// ```
+/// use opm_plot::Cloud;
+///
+/// let mut cloud = Cloud::new([0.0, 1.0], [0.0, 1.0]);
+/// cloud.push(0.2, 0.3);
+/// assert!(cloud.has_dots());
+/// assert_eq!(cloud.points(), 1);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Cloud {
     range: [[f64; 2]; 2],
     counts: Vec<u32>,
-    /// One point of every bin, while they are few enough.
+    /// One point of every bin, while these are few enough.
     dots: Option<Vec<[f64; 2]>>,
     points: u64,
 }
 
 impl Cloud {
-    /// No points so far; all will be in these ranges.
+    /// A cloud without points. Points outside these ranges are counted at their edge.
     pub fn new(x: [f64; 2], y: [f64; 2]) -> Self {
         Self { range: [x, y], counts: vec![0; BINS * BINS], dots: Some(vec![]), points: 0 }
     }
 
-    /// Adds a point.
+    /// Adds a point. One that is not finite is left out.
     pub fn push(&mut self, x: f64, y: f64) {
         let bin = |value: f64, [low, high]: [f64; 2]| {
             let share = (value - low) / (high - low).max(f64::MIN_POSITIVE);
@@ -54,22 +63,22 @@ impl Cloud {
         *count = count.saturating_add(1);
     }
 
-    /// Points that were added.
+    /// The number of points that were added.
     pub fn points(&self) -> u64 {
         self.points
     }
 
-    /// Whether the points are drawn as dots, each for all points that would cover it.
+    /// Whether the points are drawn as dots. Points that would cover each other are one dot.
     pub fn has_dots(&self) -> bool {
         self.dots.is_some()
     }
 
-    /// Ranges of the points.
+    /// The ranges of both axes; `None` without points.
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         (self.points > 0).then_some(self.range)
     }
 
-    /// How many bins in a row share a pixel, where the points are not dots.
+    /// The number of bins in a row that share a pixel, if the points are not drawn as dots.
     pub(crate) fn pool(&self) -> usize {
         let enough = |pool: &&usize| {
             let filled = self.pools(**pool).iter().filter(|&&count| count > 0).count() as u64;
@@ -78,7 +87,7 @@ impl Cloud {
         POOLS.iter().find(enough).copied().unwrap_or(POOLS[POOLS.len() - 1])
     }
 
-    /// Points in every place of so many bins in a row and in a column, the lowest row first.
+    /// The number of points in every square of `pool` bins in a row and in a column, the lowest row first.
     pub(crate) fn pools(&self, pool: usize) -> Vec<u64> {
         let side = BINS / pool;
         let mut pools = vec![0; side * side];
@@ -88,7 +97,7 @@ impl Cloud {
         pools
     }
 
-    /// The points; where they are many, coloured by the logarithm of their number in a place.
+    /// The points. If they are many, they are an image, coloured by the logarithm of their number in a place.
     pub(crate) fn draw(&self, frame: &Frame<'_>, density: Density) -> Vec<Shape> {
         if let Some(dots) = &self.dots {
             let mut path = Path::default();
@@ -117,11 +126,11 @@ impl Cloud {
     }
 }
 
-/// How dense the clouds of a section are: what their colours are measured by.
+/// The density of the clouds of a section, which gives the scale of their colours.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Density {
-    /// Bins in a row that share a pixel.
+    /// The number of bins in a row that share a pixel.
     pub pool: usize,
-    /// Most points in one place.
+    /// The largest number of points in one place.
     pub most: u64,
 }

@@ -1,33 +1,44 @@
-//! How often a value occurs.
+//! Histograms: how often values occur.
 
 use crate::color::DOT;
 use crate::drawing::{Path, Rect, Shape};
 use crate::frame::Frame;
 use std::collections::BTreeMap;
 
-/// Different values that get a bar each; where there are more, bars are for equal spans.
+/// The largest number of different values that get a bar each. If there are more, bars are for equal spans.
 const MOST_VALUES: usize = 200;
-/// Equal spans.
+/// The number of equal spans.
 const SPANS: usize = 60;
-/// Parts of the range below which values count as one.
+/// The number of parts of the range; values in one part count as equal.
 const FINE: f64 = 65_536.0;
-/// Share of the room that a bar of a single value takes.
+/// The share of the room that a bar of a single value takes.
 const BAR: f64 = 0.8;
 
-/// How often a value occurs, in bounded memory.
+/// A histogram, in bounded memory.
+///
+/// ```
+/// use opm_plot::Histogram;
+///
+/// let mut histogram = Histogram::new([0.0, 1.0]);
+/// for value in [0.0, 0.5, 0.5, 1.0] {
+///     histogram.push(value);
+/// }
+/// assert!(histogram.is_by_value());
+/// assert_eq!(histogram.extent().map(|extent| extent[1]), Some([0.0, 2.0]));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Histogram {
     range: [f64; 2],
-    /// By the value in parts of the range.
+    /// The number of values in each part of the range, while these are few.
     values: Option<BTreeMap<u64, u64>>,
     spans: Vec<u64>,
 }
 
-/// A bar: from and to which value, and how many there are.
+/// A bar: its ends, and the number of values in it.
 type Bar = ([f64; 2], u64);
 
 impl Histogram {
-    /// No values so far; all will be in this range.
+    /// A histogram without values. Values outside this range will not be counted.
     pub fn new(range: [f64; 2]) -> Self {
         Self { range, values: Some(BTreeMap::new()), spans: vec![0; SPANS] }
     }
@@ -76,7 +87,7 @@ impl Histogram {
         values.iter().map(bar).collect()
     }
 
-    /// Range of the bars, and from zero to the longest.
+    /// The ranges of the figure: that of the bars, and from zero to the longest bar; `None` without values.
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let bars = self.bars();
         let most = bars.iter().map(|bar| bar.1).max().filter(|&most| most > 0)?;
@@ -84,7 +95,7 @@ impl Histogram {
         Some([[first, last], [0.0, most as f64]])
     }
 
-    /// The bars, which stand on zero.
+    /// The bars, from zero up.
     pub(crate) fn draw(&self, frame: &Frame<'_>) -> Vec<Shape> {
         let mut path = Path::default();
         for ([left, right], count) in self.bars() {

@@ -34,7 +34,7 @@ const GRID: Spacing = Spacing { first: -100.0, step: 5.0, count: SIDE };
 
 /// A disc with a hole.
 fn ring(radius: f64) -> (Cells, u64) {
-    let mut cells = Cells::new(GRID, GRID, None);
+    let mut cells = Cells::plain(GRID, GRID);
     let mut count = 0;
     for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
         let (x, y) = (GRID.value(i), GRID.value(j));
@@ -95,7 +95,7 @@ fn cells_are_where_the_axes_say() {
 #[test]
 fn too_many_cells_become_an_image() {
     let wide = Spacing { first: 0.0, step: 1.0, count: 300 };
-    let mut board = Cells::new(wide, wide, None);
+    let mut board = Cells::plain(wide, wide);
     for (i, j) in
         (0..300).flat_map(|i| (0..300).map(move |j| (i, j))).filter(|(i, j)| (i + j) % 2 == 0)
     {
@@ -108,7 +108,7 @@ fn too_many_cells_become_an_image() {
     assert!(svg.len() < 400_000, "{} bytes", svg.len());
     // A grid that is finer than a picture.
     let fine = Spacing { first: 0.0, step: 1e-3, count: 100_000 };
-    let mut cells = Cells::new(fine, wide, None);
+    let mut cells = Cells::plain(fine, wide);
     cells.push(50.0, 150.0, 0.0);
     assert!(cells.is_coarse());
     let [[left, right], [low, high]] = cells.extent().unwrap();
@@ -117,7 +117,7 @@ fn too_many_cells_become_an_image() {
 
 #[test]
 fn values_colour_the_cells_by_their_mean() {
-    let mut cells = Cells::new(GRID, GRID, Some(()));
+    let mut cells = Cells::with_values(GRID, GRID);
     for (x, value) in [(0.0, 0.0), (0.0, 2.0), (50.0, 10.0)] {
         cells.push(x, 0.0, value);
     }
@@ -204,8 +204,8 @@ fn bars_are_as_long_as_their_numbers() {
 
 #[test]
 fn nothing_and_one_place_are_drawn_too() {
-    let empty = || Content::Cells(Cells::new(GRID, GRID, None), Paint::Plain([0; 3]));
-    let mut one = Cells::new(Spacing::between([5.0, 5.0], 1), Spacing::between([0.0; 2], 1), None);
+    let empty = || Content::Cells(Cells::plain(GRID, GRID), Paint::Plain([0; 3]));
+    let mut one = Cells::plain(Spacing::between([5.0, 5.0], 1), Spacing::between([0.0; 2], 1));
     one.push(5.0, 0.0, 0.0);
     one.push(f64::NAN, 0.0, 0.0);
     let mut cloud = Cloud::new([3.0, 3.0], [4.0, 4.0]);

@@ -2,43 +2,44 @@
 
 use opm_core::enclosure::MOST;
 
-/// Most splits along one axis: numbers of cells are 32 bits wide.
+/// Most splits along one axis: the numbers of cells have 32 bits.
 const DEEPEST: u8 = 32;
 
-/// In place of the axis of a split: there is none.
+/// Stands for no split, in place of its axis.
 const NO_SPLIT: u8 = u8::MAX;
 
-/// A box: one of the domain's first ones, halved so many times along each axis.
+/// A box of a domain: one of the domain's first boxes, halved a number of times along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// Number of the first box.
+    /// The number of the first box.
     pub(super) first: u32,
-    /// How many times it was halved.
+    /// How many times it was halved along each axis.
     depth: [u8; MOST],
-    /// Which of the parts it is.
+    /// The number of the part along each axis.
     number: [u32; MOST],
 }
 
-/// What is known of a cell.
+/// How much of a cell is in the workspace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Its measure is not less.
+    /// The lower bound of the measure.
     pub lower: f64,
-    /// Its measure is not more.
+    /// The upper bound of the measure.
     pub upper: f64,
-    /// The axis along which it is best split; `None` where it is decided or no split helps.
+    /// The axis along which the cell is best split; `None` if it is decided or no split helps. Axes with a
+    /// width are counted, in their order.
     pub split: Option<usize>,
 }
 
 impl Cell {
-    /// Bytes that it is packed in.
+    /// The number of bytes of a packed cell.
     pub const BYTES: usize = 4 + 5 * MOST;
 
     pub(super) fn new(first: u32) -> Self {
         Self { first, depth: [0; MOST], number: [0; MOST] }
     }
 
-    /// For another process.
+    /// The cell as bytes, for another process.
     pub fn pack(&self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         let (first, rest) = bytes.split_at_mut(4);
@@ -51,7 +52,7 @@ impl Cell {
         bytes
     }
 
-    /// From another process.
+    /// The cell from bytes of another process.
     pub fn unpack(bytes: &[u8; Self::BYTES]) -> Self {
         let word = |at: usize| u32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
         Self {
@@ -61,7 +62,7 @@ impl Cell {
         }
     }
 
-    /// Whether it can be halved along an axis.
+    /// Whether the cell can be halved along an axis.
     pub(super) fn splits(&self, axis: usize) -> bool {
         self.depth[axis] < DEEPEST
     }
@@ -75,7 +76,7 @@ impl Cell {
         })
     }
 
-    /// Its part of the range from 0 to 1: where its middle is, and how far its ends are from there.
+    /// The part of the range from 0 to 1 that it has along an axis: its middle, and half its width.
     pub(super) fn part(&self, axis: usize) -> [f64; 2] {
         let half = 0.5_f64.powi(i32::from(self.depth[axis]) + 1);
         [(2.0 * f64::from(self.number[axis]) + 1.0) * half, half]
@@ -83,10 +84,10 @@ impl Cell {
 }
 
 impl Bounds {
-    /// Bytes that they are packed in.
+    /// The number of bytes of packed bounds.
     pub const BYTES: usize = 17;
 
-    /// For another process, to the last bit.
+    /// The bounds as bytes, for another process, to the last bit.
     pub fn pack(&self) -> [u8; Self::BYTES] {
         let mut bytes = [NO_SPLIT; Self::BYTES];
         bytes[..8].copy_from_slice(&self.lower.to_le_bytes());
@@ -97,7 +98,7 @@ impl Bounds {
         bytes
     }
 
-    /// From another process.
+    /// The bounds from bytes of another process.
     pub fn unpack(bytes: &[u8; Self::BYTES]) -> Self {
         let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
         let split = (bytes[16] != NO_SPLIT).then_some(usize::from(bytes[16]));

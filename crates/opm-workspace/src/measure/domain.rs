@@ -1,4 +1,4 @@
-//! What is measured: a range of every coordinate, and what a part of it weighs.
+//! The domain of a measure: a range of every coordinate, and the weight of its parts.
 
 use super::cell::Cell;
 use crate::grid::Sections;
@@ -9,25 +9,25 @@ use opm_core::number::readable;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
-/// Most first boxes: half turns of tilts.
+/// Most first boxes: a tilt has one for each half turn.
 const MOST_PIECES: usize = 4096;
 
-/// Measures that are numbers in any units of length and angle, too.
+/// Measures that stay finite numbers in any units of length and angle.
 const MEASURES: RangeInclusive<f64> = 1e-280..=1e280;
 
-/// A range of one coordinate, as it is given.
+/// The range of one coordinate that a measure is taken over.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Over {
-    /// The coordinate's name.
+pub struct CoordinateRange {
+    /// The name of the coordinate.
     pub name: String,
-    /// Lowest value, radians or metres.
+    /// The lowest value, radians or metres.
     pub min: f64,
-    /// Highest value, radians or metres; the same where the coordinate has one value.
+    /// The highest value, radians or metres. It equals the lowest if the coordinate has a single value.
     pub max: f64,
 }
 
-impl Over {
-    /// From `min` to `max`.
+impl CoordinateRange {
+    /// The range of coordinate `name` from `min` to `max`, radians or metres.
     pub fn new(name: impl Into<String>, min: f64, max: f64) -> Self {
         Self { name: name.into(), min, max }
     }
@@ -36,26 +36,26 @@ impl Over {
 /// One coordinate of a domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainAxis {
-    /// The coordinate's name.
+    /// The name of the coordinate.
     pub name: String,
-    /// Angle or length.
+    /// Whether it is an angle or a length.
     pub quantity: Quantity,
-    /// Lowest value, radians or metres.
+    /// The lowest value, radians or metres.
     pub min: f64,
-    /// Highest value, radians or metres.
+    /// The highest value, radians or metres.
     pub max: f64,
     kind: Kind,
 }
 
-/// How a coordinate enters a box.
+/// How a coordinate becomes a side of a box.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// As it is.
+    /// The side is the coordinate itself.
     Plain,
-    /// A tilt in a sphere, which is weighed by `|sin α|`, where `α` is the tilt plus this.
+    /// A tilt in a sphere, which is weighted by `|sin α|`, where `α` is the tilt plus this.
     Tilt(f64),
-    /// The value of an imaginary joint: as its displacement along the intersection motion.
-    Cut(ImaginaryJoint),
+    /// The value of an imaginary joint, of which the side is the displacement along the intersection motion.
+    Imaginary(ImaginaryJoint),
 }
 
 impl DomainAxis {
@@ -63,7 +63,8 @@ impl DomainAxis {
         self.min < self.max
     }
 
-    /// What it is weighed by, up to its sign, where that is not one: `home` stands for its value at home.
+    /// The formula of its weight, up to the sign, in which `home` stands for its value at home; `None` if the
+    /// weight is one.
     pub fn weight(&self) -> Option<&'static str> {
         match self.kind {
             Kind::Tilt(shift) if self.has_width() => Some(match &*self.name {
@@ -75,7 +76,7 @@ impl DomainAxis {
         }
     }
 
-    /// Its parts: one, or of a tilt one for every half turn that it is on.
+    /// The sides of its boxes: one, or for a tilt one for every half turn that the range meets.
     fn parts(&self) -> Vec<Side> {
         let (min, max) = (self.min, self.max);
         let plain = |[min, max]: [f64; 2]| {
@@ -84,7 +85,7 @@ impl DomainAxis {
         let shift = match &self.kind {
             Kind::Tilt(shift) if self.has_width() => *shift,
             Kind::Plain | Kind::Tilt(_) => return plain([min, max]),
-            Kind::Cut(joint) => {
+            Kind::Imaginary(joint) => {
                 let [from, to] = [min, max].map(|value| joint.displacement(value));
                 return plain([from.min(to), from.max(to)]);
             }
@@ -111,82 +112,92 @@ impl DomainAxis {
 
 /// Why ranges do not make a domain.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DomainError {
-    /// No such coordinate.
+    /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
-        /// As given.
+        /// The name, as given.
         name: String,
-        /// What is measured.
+        /// The sections that are measured.
         sections: Sections,
-        /// Those that there are.
+        /// The names of all coordinates, separated by commas.
         expected: String,
     },
-    /// One coordinate twice.
+    /// Two ranges are of the same coordinate.
     #[error("{0} is given twice")]
     Twice(String),
-    /// An end that is not a number, or the ends reversed.
+    /// An end of a range is not a finite number, or the ends are reversed.
     #[error(
         "{name}: {} to {}, expected numbers up to {LARGEST:e}, the smaller one first",
         readable(*min),
         readable(*max)
     )]
     Range {
-        /// The coordinate.
+        /// The name of the coordinate.
         name: String,
-        /// As given.
+        /// The lowest value, as given.
         min: f64,
-        /// As given.
+        /// The highest value, as given.
         max: f64,
     },
-    /// A tilt over too many turns.
+    /// The range of a tilt has too many half turns.
     #[error(
         "{name}: {} to {}, expected at most {MOST_PIECES} half turns",
         readable(*min),
         readable(*max)
     )]
     Turns {
-        /// The coordinate.
+        /// The name of the coordinate.
         name: String,
-        /// As given.
+        /// The lowest value, as given.
         min: f64,
-        /// As given.
+        /// The highest value, as given.
         max: f64,
     },
-    /// Ranges whose product is no number of double precision.
+    /// The product of the ranges is too small or too large for double precision.
     #[error("the ranges have the measure {0:e}, out of the range of double precision")]
     Measure(f64),
-    /// Too many coordinates with a range.
+    /// Too many coordinates have a range.
     #[error("{0} coordinates have a range, expected at most {MOST}, and one value for the others")]
     Axes(usize),
+    /// There is not one share for each axis with a width.
+    #[error("{found} shares, expected {expected}: one for each axis with a width")]
+    Shares {
+        /// The number of shares.
+        found: usize,
+        /// The number of axes with a width.
+        expected: usize,
+    },
 }
 
-/// A range or a value for every coordinate of a manipulator's pose, or of one section alone.
+/// The domain of a measure: a range or a value for every coordinate of a manipulator's pose, or of one
+/// section alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain {
     sections: Sections,
     axes: Vec<DomainAxis>,
-    /// Numbers of the axes with a width.
+    /// The numbers of the axes with a width.
     wide: Vec<usize>,
-    /// The first boxes: a side an axis.
+    /// The first boxes, each with one side for each axis.
     first: Vec<Vec<Side>>,
     whole: f64,
 }
 
 impl Domain {
-    /// A domain over these ranges; a coordinate without one stays at its home value.
+    /// A domain over these ranges. A coordinate without a range stays at its home value.
     ///
     /// # Errors
-    /// Unknown or repeated coordinates, ends that are not numbers or reversed, more than [`MOST`] ranges,
-    /// or ranges whose product is no number of double precision.
+    /// [`DomainError`]: unknown or repeated coordinates, ends that are not finite numbers or reversed, more
+    /// than [`MOST`] ranges, or ranges whose product is out of the range of double precision.
     pub fn new(
         manipulator: &Manipulator,
         sections: Sections,
-        given: &[Over],
+        given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
         let mut axes = axes(manipulator, sections);
         let mut seen = vec![false; axes.len()];
-        for Over { name, min, max } in given {
+        for CoordinateRange { name, min, max } in given {
             let Some(number) = axes.iter().position(|axis| axis.name == *name) else {
                 let names: Vec<_> = axes.iter().map(|axis| &*axis.name).collect();
                 let expected = names.join(", ");
@@ -227,12 +238,13 @@ impl Domain {
         Ok(Self { sections, axes, wide, first, whole })
     }
 
-    /// What is measured.
+    /// The sections that are measured.
     pub fn sections(&self) -> Sections {
         self.sections
     }
 
-    pub(super) fn asked(&self) -> Asked {
+    /// The question about each box.
+    pub(super) fn query(&self) -> Asked {
         match self.sections {
             Sections::Whole => Asked::Whole,
             Sections::Upper => Asked::Upper,
@@ -240,24 +252,28 @@ impl Domain {
         }
     }
 
-    /// Its axes, in the order of the coordinates.
+    /// The axes, in the order of the coordinates.
     pub fn axes(&self) -> &[DomainAxis] {
         &self.axes
     }
 
-    /// Its own measure, the product of its ranges; of a tilt `∫ |sin xi| dxi` or
-    /// `∫ |cos(nu - home)| dnu`. One where no axis has a width.
+    /// The measure of the whole domain: the product of its ranges. The range of a tilt counts
+    /// `∫ |sin xi| dxi` or `∫ |cos(nu - home)| dnu`. It is one if no axis has a width.
     pub fn whole(&self) -> f64 {
         self.whole
     }
 
-    /// The pose at these shares, from 0 to 1, of the axes with a width, in their order: drawn evenly, they
-    /// give poses that are even in the measure, of orientations Haar's. In the order of the axes.
+    /// The pose at these shares, from 0 to 1, of the axes with a width, in their order. Shares that are drawn
+    /// evenly give poses that are even in the measure; for orientations that is Haar's. The pose has one
+    /// value for each axis, radians and metres.
     ///
-    /// # Panics
-    /// If there is another number of shares than axes with a width.
-    pub fn pose(&self, shares: &[f64]) -> Vec<f64> {
-        assert_eq!(shares.len(), self.wide.len(), "a share for every axis with a width");
+    /// # Errors
+    /// [`DomainError::Shares`] if there is not one share for each axis with a width.
+    pub fn pose(&self, shares: &[f64]) -> Result<Vec<f64>, DomainError> {
+        if shares.len() != self.wide.len() {
+            let (found, expected) = (shares.len(), self.wide.len());
+            return Err(DomainError::Shares { found, expected });
+        }
         let mut pose: Vec<f64> = self.axes.iter().map(|axis| axis.min).collect();
         for (&number, &share) in self.wide.iter().zip(shares) {
             let axis = &self.axes[number];
@@ -279,15 +295,15 @@ impl Domain {
                 break;
             }
         }
-        pose
+        Ok(pose)
     }
 
-    /// Number of axes with a width.
+    /// The number of axes with a width.
     pub fn dimension(&self) -> usize {
         self.wide.len()
     }
 
-    /// What measures are in: powers of a metre and of a radian.
+    /// The unit of the measure: the powers of a metre and of a radian.
     pub fn powers(&self) -> [(Quantity, usize); 2] {
         [Quantity::Length, Quantity::Angle].map(|quantity| {
             let axes = self.wide.iter().filter(|&&axis| self.axes[axis].quantity == quantity);
@@ -299,7 +315,7 @@ impl Domain {
         (0..self.first.len() as u32).map(Cell::new)
     }
 
-    /// The sides of a cell, a side an axis.
+    /// The sides of a cell, one for each axis.
     pub(super) fn sides(&self, cell: &Cell) -> Vec<Side> {
         let mut sides = self.first[cell.first as usize].clone();
         for (number, &axis) in self.wide.iter().enumerate() {
@@ -318,7 +334,7 @@ impl Domain {
         sides.map(|(number, &axis)| 4.0 * first[axis].half * cell.part(number)[1]).product()
     }
 
-    /// The number among the axes with a width.
+    /// The number of an axis among those with a width.
     pub(super) fn wide_number(&self, axis: usize) -> Option<usize> {
         self.wide.iter().position(|&wide| wide == axis)
     }
@@ -330,7 +346,7 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
     let lower = manipulator.task().lower_count;
     let kind = |number: usize, name: &str, home: f64| match name {
         _ if sections == Sections::Lower && number >= lower => {
-            Kind::Cut(cuts[number - lower].clone())
+            Kind::Imaginary(cuts[number - lower].clone())
         }
         "xi" => Kind::Tilt(0.0),
         "nu" => Kind::Tilt(FRAC_PI_2 - home),

@@ -1,6 +1,6 @@
-//! What is measured over where that is not said.
+//! The ranges that are measured over if they are not given.
 
-use super::Over;
+use super::CoordinateRange;
 use crate::extent::{default_grid, one_turn};
 use crate::grid::Sections;
 use crate::progress::{Cancelled, Progress};
@@ -8,24 +8,24 @@ use crate::sweep::Modes;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 
-/// The ranges that are measured over where some are given, or none, and the names of the coordinates along
-/// which the workspace goes on beyond them.
+/// Completes the ranges that are given, which may be none. Returns the ranges to measure over, and the names of
+/// the coordinates along which the workspace goes on beyond them.
 ///
-/// * Of the upper section alone, an angle without a range takes a whole turn, so that Euler angles take
-///   every orientation once.
-/// * Where none is given, the other task coordinates take ranges that are fitted to the workspace:
+/// * In a measure of the upper section alone, an angle without a range gets a whole turn, so that Euler
+///   angles take every orientation once.
+/// * If no range is given, the other task coordinates get ranges that are fitted to the workspace:
 ///   [`default_grid`].
-/// * All else stays at home.
+/// * All other coordinates stay at home.
 ///
 /// # Errors
-/// When told to stop.
-pub fn ranges(
+/// [`Cancelled`] if [`Progress::cancel`] was called.
+pub fn default_ranges(
     manipulator: &Manipulator,
     sections: Sections,
     modes: Modes,
-    given: &[Over],
+    given: &[CoordinateRange],
     progress: &Progress,
-) -> Result<(Vec<Over>, Vec<&'static str>), Cancelled> {
+) -> Result<(Vec<CoordinateRange>, Vec<&'static str>), Cancelled> {
     let mut over = given.to_vec();
     let coordinates = sections.coordinates(manipulator);
     if sections == Sections::Upper {
@@ -33,11 +33,11 @@ pub fn ranges(
             let turns = c.quantity == Quantity::Angle && !c.counts_turns;
             if turns && given.iter().all(|over| over.name != c.name) {
                 let [min, max] = one_turn(&c.name, c.home);
-                over.push(Over::new(&*c.name, min, max));
+                over.push(CoordinateRange::new(&*c.name, min, max));
             }
         }
     }
-    // Imaginary joints are no task coordinates: they stay at home.
+    // Imaginary joints are not task coordinates: they stay at home.
     let task = manipulator.task_coordinates().iter().filter(|task| {
         coordinates.iter().any(|c| c.name == task.name)
             && over.iter().all(|over| over.name != task.name)
@@ -48,7 +48,7 @@ pub fn ranges(
     }
     let (grid, extents) = default_grid(manipulator, modes, progress)?;
     let fitted = grid.axes().iter().filter(|axis| missing.contains(&&*axis.name));
-    over.extend(fitted.map(|axis| Over::new(&*axis.name, axis.min, axis.max)));
+    over.extend(fitted.map(|axis| CoordinateRange::new(&*axis.name, axis.min, axis.max)));
     let beyond = extents.iter().filter(|extent| extent.unbounded).map(|extent| extent.name);
     Ok((over, beyond.filter(|name| missing.contains(name)).collect()))
 }

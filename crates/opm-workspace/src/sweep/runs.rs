@@ -1,25 +1,25 @@
-//! Poses of a row as runs of their numbers, ascending and apart.
+//! The poses of a row as runs of their numbers, ascending and apart.
 
-/// Numbers from `from` on, before `to`; never empty.
+/// The numbers from `from` up to, not including, `to`. It is not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// The first.
+    /// The first number.
     pub from: u64,
-    /// One more than the last.
+    /// One more than the last number.
     pub to: u64,
 }
 
-/// Every number of some runs.
+/// The numbers in some runs.
 pub fn poses(runs: &[Run]) -> impl Iterator<Item = u64> {
     runs.iter().flat_map(|run| run.from..run.to)
 }
 
-/// Adds a number that is greater than all.
+/// Adds a number that is greater than all others.
 pub fn push(runs: &mut Vec<Run>, pose: u64) {
     append(runs, Run { from: pose, to: pose + 1 });
 }
 
-/// Adds a run whose numbers are greater than all.
+/// Adds a run whose numbers are greater than all others.
 pub fn append(runs: &mut Vec<Run>, run: Run) {
     match runs.last_mut() {
         Some(last) if last.to == run.from => last.to = run.to,
@@ -27,7 +27,7 @@ pub fn append(runs: &mut Vec<Run>, run: Run) {
     }
 }
 
-/// The parts of some runs that are in another.
+/// The parts of some runs that lie in another run.
 pub fn within(runs: &[Run], run: Run) -> impl Iterator<Item = Run> {
     let parts = runs.iter().map(move |r| Run { from: r.from.max(run.from), to: r.to.min(run.to) });
     parts.filter(|part| part.from < part.to)
@@ -38,7 +38,7 @@ pub fn meet(runs: &[Run], run: Run) -> bool {
     runs.iter().any(|other| other.from < run.to && run.from < other.to)
 }
 
-/// What is in any of `parts`, which come in any order and may overlap.
+/// The union of `parts`, which come in any order and may overlap.
 pub fn union(parts: impl Iterator<Item = Run>, out: &mut Vec<Run>) {
     out.clear();
     out.extend(parts);
@@ -52,7 +52,7 @@ pub fn union(parts: impl Iterator<Item = Run>, out: &mut Vec<Run>) {
     });
 }
 
-/// What is in both.
+/// The intersection of two sets of runs.
 pub fn intersection(a: &[Run], b: &[Run], out: &mut Vec<Run>) {
     out.clear();
     let (mut i, mut j) = (0, 0);

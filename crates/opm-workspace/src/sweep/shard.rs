@@ -1,30 +1,40 @@
-//! Shards: the parts into which a sweep is divided among processes or machines.
+//! Shards: the parts into which a sweep is divided for several processes or machines.
 
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// One of several parts of a sweep, which follow each other in the order of the grid. As a text
-/// `3/8`: the third of eight.
+/// One of several parts of a sweep, which follow each other in the order of the grid. Its text is, for
+/// instance, `3/8`: the third of eight.
+///
+/// ```
+/// use opm_workspace::Shard;
+///
+/// let shard: Shard = "3/8".parse()?;
+/// assert_eq!((shard.number(), shard.count()), (3, 8));
+/// assert_eq!(shard.to_string(), "3/8");
+/// assert!("9/8".parse::<Shard>().is_err());
+/// # Ok::<(), opm_workspace::ShardError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Shard {
     number: u64,
     of: u64,
 }
 
-/// What is no shard.
+/// A text or two numbers that do not name a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("shard {0:?}, expected I/N: number I, from 1 on, of N")]
 pub struct ShardError(String);
 
 impl Shard {
-    /// All of it.
+    /// The whole sweep as one shard.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Shard number `number`, from 1 on, of so many.
+    /// Shard number `number`, from 1 on, of `of` shards.
     ///
     /// # Errors
-    /// A number that is not among them.
+    /// [`ShardError`] if `number` is not from 1 to `of`.
     pub fn new(number: u64, of: u64) -> Result<Self, ShardError> {
         match number {
             1.. if number <= of => Ok(Self { number, of }),
@@ -32,12 +42,12 @@ impl Shard {
         }
     }
 
-    /// Its number, from 1 on.
+    /// The number of the shard, from 1 on.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// How many shards there are.
+    /// The number of shards that the sweep is divided into.
     pub fn count(&self) -> u64 {
         self.of
     }

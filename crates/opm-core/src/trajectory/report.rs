@@ -1,28 +1,28 @@
-//! What there is to say of a violation: names instead of numbers.
+//! The report of a violation, with names instead of numbers.
 
 use super::gauge::{Bound, Gauge, Part, Violation};
 use crate::manipulator::{Manipulator, Section};
 use crate::numeric::Quantity;
 
-/// A violation in names.
+/// The report of a violation: the names of what is violated, and its description in words.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told<'a> {
-    /// What is told.
+pub struct ViolationReport<'a> {
+    /// The violation, in numbers.
     pub violation: &'a Violation,
-    /// `reach`, `limit` or `singularity`.
+    /// The kind of violation: `reach`, `limit` or `singularity`.
     pub kind: &'static str,
     /// The leg that is out of reach or singular, or has the joint that is past a limit.
     pub leg: Option<&'a str>,
-    /// The joint that is past a limit.
+    /// The joint coordinate that is past a limit.
     pub joint: Option<&'a str>,
-    /// Which section is out of reach or singular.
+    /// The section that is out of reach or singular.
     pub section: Option<Section>,
-    /// Which limit.
+    /// The limit that a joint is past.
     pub bound: Option<Bound>,
 }
 
 impl Bound {
-    /// `lowest` or `highest`.
+    /// The word for the bound: `lowest` or `highest`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lowest => "lowest",
@@ -31,8 +31,8 @@ impl Bound {
     }
 }
 
-impl<'a> Told<'a> {
-    /// Of a violation on a trajectory of `manipulator`.
+impl<'a> ViolationReport<'a> {
+    /// The report of a violation on a trajectory of `manipulator`.
     pub fn new(violation: &'a Violation, manipulator: &'a Manipulator) -> Self {
         let legs = &manipulator.mechanism().legs;
         let leg_of = |coordinate: usize| {
@@ -56,18 +56,18 @@ impl<'a> Told<'a> {
         Self { violation, kind, leg, joint, section: violation.section, bound }
     }
 
-    /// Of its amount: `rad`, `m` or `1`.
+    /// The unit of the violation's amount: `rad`, `m`, or `1` for a singularity measure.
     pub fn unit(&self) -> &'static str {
         self.violation.quantity.map_or("1", Quantity::unit)
     }
 
-    /// `serial` or `parallel`, of a singularity.
+    /// The kind of singularity, `serial` or `parallel`; `None` of other violations.
     pub fn singularity(&self) -> Option<&'static str> {
         let serial = matches!(self.violation.gauge, Gauge::Reach { .. });
         (self.kind == "singularity").then_some(if serial { "serial" } else { "parallel" })
     }
 
-    /// What is wrong, without when and how much.
+    /// What is wrong, in words: for instance `leg1: out of reach in its lower section`.
     pub fn what(&self) -> String {
         let section = self.section.map_or_else(String::new, |section| format!("{section} "));
         let leg = self.leg.unwrap_or_default();
@@ -85,7 +85,7 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// One line, in SI.
+    /// One line with the amount and the time of the worst point, in SI units.
     pub fn si(&self) -> String {
         let Violation { worst, amount, .. } = *self.violation;
         format!("{} by {amount} {} at t = {worst} s", self.what(), self.unit())

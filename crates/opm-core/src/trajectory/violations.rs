@@ -1,0 +1,128 @@
+//! The record of violations: when they begin and end, and how bad they are at worst.
+
+use super::{Gauge, Part, Sample, Trajectory, Violation};
+use crate::velocity::SINGULAR;
+
+/// A violation begins or ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// The violation begins. Its end and its worst time are not known yet. A singularity ends when it
+    /// begins.
+    Begins(Violation),
+    /// The violation has ended.
+    Ends(Violation),
+}
+
+impl Change {
+    /// The time of the beginning or the end, seconds.
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::Begins(violation) => violation.start,
+            Self::Ends(violation) => violation.end,
+        }
+    }
+}
+
+impl Trajectory<'_> {
+    /// Whether a gauge says that the motion cannot be followed.
+    pub(super) fn violated(&self, number: usize, sample: &Sample) -> bool {
+        match self.solver.gauges[number] {
+            Gauge::Reach { .. } | Gauge::Limit { .. } => {
+                sample.levels[number].is_some_and(|level| level < 0.0)
+            }
+            Gauge::Parallel { .. } => false,
+        }
+    }
+
+    /// Whether a singularity measure is zero as far as it can be known.
+    pub(super) fn is_zero(&self, number: usize, sample: &Sample) -> bool {
+        match self.solver.gauges[number] {
+            Gauge::Limit { .. } => false,
+            Gauge::Reach { .. } | Gauge::Parallel { .. } => {
+                sample.levels[number].is_some_and(|level| level.abs() < SINGULAR)
+            }
+        }
+    }
+
+    /// Opens or closes a violation where a gauge has passed zero between two samples.
+    pub(super) fn switch(&mut self, number: usize, before: &Sample, after: &Sample) {
+        match (self.open[number].is_some(), self.violated(number, after)) {
+            (false, true) => self.begins(number, after.time, after),
+            (true, false) => self.ends(number, before.time),
+            _ => {}
+        }
+    }
+
+    /// Opens a violation.
+    pub(super) fn begins(&mut self, number: usize, time: f64, sample: &Sample) {
+        let mut violation = self.violation(number, sample);
+        (violation.start, violation.end, violation.worst) = (time, time, time);
+        self.open[number] = Some(violation);
+        self.changes.push(Change::Begins(violation));
+    }
+
+    /// Closes a violation.
+    fn ends(&mut self, number: usize, time: f64) {
+        if let Some(mut violation) = self.open[number].take() {
+            violation.end = time.max(violation.start);
+            self.changes.push(Change::Ends(violation));
+        }
+    }
+
+    /// Records a singularity, which begins and ends at once.
+    pub(super) fn touches(&mut self, number: usize, sample: &Sample) {
+        let violation = self.violation(number, sample);
+        self.changes.push(Change::Begins(violation));
+        self.changes.push(Change::Ends(violation));
+    }
+
+    /// Brings the open violations up to the last sample.
+    pub(super) fn worsen(&mut self) {
+        if self.open.iter().all(Option::is_none) {
+            return;
+        }
+        let sample = self.current.clone();
+        for number in 0..self.solver.gauges.len() {
+            if let Some(violation) = &mut self.open[number] {
+                violation.end = sample.time;
+                self.worse(number, &sample);
+            }
+        }
+    }
+
+    /// Brings an open violation up to a sample in it, which may be its worst so far.
+    pub(super) fn worse(&mut self, number: usize, sample: &Sample) {
+        let now = self.violation(number, sample);
+        if let Some(open) = &mut self.open[number]
+            && now.amount > open.amount
+            && sample.levels[number].is_some_and(|level| level < 0.0)
+        {
+            let Violation { amount, quantity, section, worst, .. } = now;
+            *open = Violation { amount, quantity, section, worst, ..*open };
+        }
+    }
+
+    /// The violation of one gauge at one sample.
+    fn violation(&self, number: usize, sample: &Sample) -> Violation {
+        let time = sample.time;
+        let gauge = self.solver.gauges[number];
+        let level = sample.levels[number].unwrap_or_default().abs();
+        let (amount, quantity, section) = match gauge {
+            Gauge::Reach { leg } => {
+                match sample.solution.unreachable.iter().find(|u| u.leg == leg) {
+                    Some(u) => (u.gap.excess, Some(u.gap.quantity), Some(u.section)),
+                    None => {
+                        let section = self.solver.manipulator.serial(&sample.solution, leg).1;
+                        (level, None, Some(section))
+                    }
+                }
+            }
+            Gauge::Limit { coordinate, .. } => {
+                (level, Some(self.solver.manipulator.coordinates()[coordinate].quantity), None)
+            }
+            Gauge::Parallel { part: Part::Section(section) } => (level, None, Some(section)),
+            Gauge::Parallel { part: Part::Whole } => (level, None, None),
+        };
+        Violation { gauge, start: time, end: time, worst: time, amount, quantity, section }
+    }
+}
