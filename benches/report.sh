@@ -15,16 +15,16 @@ from_python=$("$PEERS_PYTHON" benches/peers/inverse.py)
 cat <<END
 # Benchmarks
 
-Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always --dirty 2>/dev/null || echo "of no commit").
+Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always --dirty 2>/dev/null || echo "of an unknown commit").
 
 * Processor: ${processor:-unknown}, $(getconf _NPROCESSORS_ONLN) logical
 * System: $(uname -sm), $(rustc --version)
 
-What a table compares was timed in one run, turn and turn about; each number is a median over the rounds, of inverse
-kinematics from Python the best of them. On another machine the times differ, the ratios hardly. The code is in
+The contenders of a table were timed in one run, alternately. Each number is a median over the rounds; for inverse
+kinematics from Python it is the best round. On another machine the times differ, but the ratios hardly do. The code is in
 \`benches/benches\`, \`cli/benches\` and, for NumPy and numba, \`benches/peers\`.
 END
-# A blank line between paragraphs and tables; a table begins above its rule.
+# Puts a blank line between paragraphs and tables; a table begins one line above its rule.
 printf '%s\n' "$results" "" "$from_python" | awk '
   NF { lines[++count] = $0 }
   END {

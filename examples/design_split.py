@@ -1,8 +1,9 @@
-"""The paper's 5-DoF manipulator designed by decomposition (9 parameters, then 16), and all 25 at once, in the same budget.
+"""Designs the paper's 5-DoF manipulator by decomposition (9 parameters, then 16), and with all 25 at once, in the same budget.
 
-Wanted: places of a square, 200 mm wide, that the platform reaches in every orientation within 20 degrees of level (each of the
-three Euler angles). Both ways start at random places of the same bounds and look at as many designs; several seeds, medians.
-With `--quick` a shorter look, as the tests take it. Needs `pip install 'opm-kinematics[design]'`.
+The goal is a large dexterous area: positions in a square, 200 mm wide, that the platform reaches in every orientation
+within 20 degrees of level (each of the three Euler angles). Both methods start at random designs within the same bounds
+and evaluate the same number of designs. The results are medians over several seeds. `--quick` is a shorter run, which
+the tests use. Needs `pip install 'opm-kinematics[design]'`.
 """
 
 import argparse
@@ -30,7 +31,7 @@ LOWER = design.Variables(
 
 
 def question(points: int, angles: int) -> dict[str, Any]:
-    """The grid of places and the grid of orientations."""
+    """The grid of positions and the grid of orientations."""
     tilt = 20 * DEGREE
     places = {"x": (-0.1, 0.1, points), "y": (-0.1, 0.1, points)}
     return {"places": places, "orientations": {name: (-tilt, tilt, angles) for name in ("zeta", "xi", "psi")}}

@@ -1,8 +1,8 @@
 """Redraws the figures of Selvi's paper that can be redrawn: ``python paper_figures.py [FOLDER]``.
 
 M. Ö. Selvi, "Kinematic analysis of overconstrained manipulators with partial subspaces using decomposition method",
-Robotica. The paper prints curves and not the numbers behind them, nor all lengths of its manipulators: the shipped
-mechanisms have chosen ones, and the shipped motions are sinusoids of the same kind. Not redrawn are the sketches of the
+Robotica. The paper prints curves without the numbers behind them, and not all lengths of its manipulators. The shipped
+mechanisms have chosen lengths, and the shipped motions are sinusoids of the same kind. Not redrawn are the sketches of the
 method (Figs. 2, 3, 5, 6, 12); Fig. 1 is a linkage, which has no platform (``opm linkage``).
 """
 
@@ -41,7 +41,7 @@ def coordinates(
 
 
 def panels(count: int) -> tuple[Figure, list[Axes]]:
-    """A figure with so many panels in a row, marked with letters."""
+    """A figure with several panels in a row, marked with letters."""
     figure = plt.figure(figsize=(3.7 * count, 3.2), layout="constrained")
     return figure, [figure.add_subplot(1, count, i + 1, title=f"({'abc'[i]})") for i in range(count)]
 
@@ -105,7 +105,7 @@ def figure_11() -> Figure:
 
 
 def figure_13() -> Figure:
-    """The 3-DoF manipulator, on rails that are shorter than its own: these would dwarf it."""
+    """The 3-DoF manipulator, on shorter rails than its own, which would dwarf it."""
     figure = plt.figure(figsize=(7, 5), layout="constrained")
     panel = figure.add_subplot(projection="3d", elev=45, azim=-75)
     plot.mechanism(HELICAL.with_parameters({"limits.S": (-0.026, 0.022)}), [0.03, 0.02, 1.0], ax=panel)
@@ -138,7 +138,7 @@ def figure_16() -> Figure:
 
 
 def figure_17() -> Figure:
-    """Workspace of the 3-DoF manipulator, phi = 0, 120, ..., 600 degrees: it moves along with the helical joint."""
+    """Workspace of the 3-DoF manipulator at phi = 0, 120, ..., 600 degrees: it moves with the helical joint."""
     turned = opm.sweep(HELICAL, x=(-0.6, 0.6, 161), y=(-0.6, 0.6, 161), phi=(0.0, np.radians(600), 6))
     figure = plot.workspace(turned, slices="phi")[0].figure
     assert isinstance(figure, Figure)
@@ -161,7 +161,7 @@ FIGURES = (
 
 
 def main(folder: Path) -> None:
-    """Draw all of them as PNG files in a folder."""
+    """Draw all figures as PNG files in a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for draw in FIGURES:
         figure = draw()

@@ -1,4 +1,4 @@
-//! Inverse kinematics of many poses at once against one pose at a time.
+//! Inverse kinematics of many poses at once, compared with one pose at a time.
 
 use opm_benches::{Contender, compare, example};
 use opm_core::manipulator::BatchOutput;

@@ -1,4 +1,5 @@
-//! Forward kinematics of the paper's 5-DoF manipulator, every assembly, against inverse kinematics.
+//! Forward kinematics of the paper's 5-DoF manipulator, every assembly, compared with inverse
+//! kinematics.
 
 use opm_benches::{Contender, compare, example};
 use std::hint::black_box;

@@ -1,4 +1,5 @@
-//! Inverse kinematics of the paper's 5-DoF manipulator against the paper's formulas as plain code.
+//! Inverse kinematics of the paper's 5-DoF manipulator, compared with the paper's formulas as plain
+//! code.
 
 use opm_benches::{Contender, compare, example};
 use opm_tests::paper::{PlanoSpherical, Signs};
@@ -10,7 +11,7 @@ fn main() {
     let signs = Signs { legs: [[true; 2]; 3], arm: true };
     let mode = manipulator.home_mode();
     let mut rng = fastrand::Rng::with_seed(1);
-    // Poses that every leg reaches: what a control loop asks for.
+    // Poses that every leg reaches, as in a control loop.
     let mut poses = Vec::new();
     while poses.len() < 1_000 {
         let pose = [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));

@@ -1,8 +1,8 @@
-//! Sweeps of the paper's 5-DoF manipulator against what counts the same poses otherwise, and against what the
-//! machine could do at most.
+//! Sweeps of the paper's 5-DoF manipulator, compared with other ways to count the same poses, and
+//! with the most that the machine could do.
 //!
-//! `PEERS_PYTHON` names a Python with NumPy, numba and `opm_kinematics`, which `benches/peers/sweep.py` compares
-//! with; without it the table lacks these.
+//! `PEERS_PYTHON` names a Python with NumPy, numba and `opm_kinematics`, for the comparisons in
+//! `benches/peers/sweep.py`. Without it, the table does not contain them.
 
 use opm_benches::peers::Peers;
 use opm_benches::{
@@ -13,7 +13,7 @@ use opm_core::manipulator::{ActuatedJoints, Follow, Manipulator};
 use opm_workspace::{Grid, Modes, Progress, Sweep};
 use rayon::ThreadPool;
 
-/// What the tables call them, and what the script does.
+/// The names in the tables, and what the script does.
 const PEERS: &[(&str, &str)] = &[
     ("opm from Python, one thread", "opm-1"),
     ("opm from Python, two threads", "opm-2"),
@@ -58,7 +58,7 @@ fn per_pose(manipulator: &Manipulator, grid: &Grid) -> u64 {
     reached.count() as u64
 }
 
-/// The upper section once an orientation, then pose by pose.
+/// The upper section once per orientation, then pose by pose.
 fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
     let (task, in_slice) = (manipulator.task(), grid.poses() / grid.slices());
     let mut pose = [0.0; 5];
@@ -74,7 +74,7 @@ fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
     count
 }
 
-/// How each leg follows in a slice, in the home mode; `None` where one does not.
+/// How each leg depends on the slice, in the home mode; `None` if a leg has no such dependence.
 fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<Follow>> {
     let mut pose = [0.0; 5];
     grid.pose_into(slice * (grid.poses() / grid.slices()), &mut pose);
@@ -86,7 +86,7 @@ fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<Follow
     (ways.len() == manipulator.legs()).then_some(ways)
 }
 
-/// A way of counting a grid, held to what it must count.
+/// A way to count a grid; the count is compared with the expected one.
 fn contender<'a>(
     name: &'static str,
     grid: &Grid,
@@ -114,7 +114,7 @@ fn by_opm<'a>(
     ]
 }
 
-/// All ways of counting one grid, and how far the rows are from what the machine can do.
+/// All ways to count one grid, and how far the rows are from what the machine can do.
 fn table(
     manipulator: &Manipulator,
     [points, orientations]: [u64; 2],
@@ -153,8 +153,9 @@ fn table(
     );
 }
 
-/// What a second thread gives where a sweep takes some tenths of a second, longer than threads take to wake up
-/// and than a shared machine takes a processor away; beside what it gives to work that needs nothing but the processor.
+/// The gain by a second thread for sweeps of some tenths of a second, longer than threads take to
+/// start and than a shared machine takes a processor away. It is compared with the gain for work
+/// that needs only the processor.
 fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
     println!("| two threads for one | poses | times as fast |");
     println!("|---|---:|---:|");
@@ -184,7 +185,7 @@ fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
     println!("| nothing but square roots | | {:.2} |", timings[1].ratio.recip());
 }
 
-/// With limits on angles a leg leaves no region of the plane, and rows are decided in pieces.
+/// With limits on angles, no leg leaves a region of the plane, and rows are decided in pieces.
 fn table_of_limits(manipulator: &Manipulator, size: [u64; 2], [one, two]: &[ThreadPool; 2]) {
     let grid = &sweep_grid(manipulator, size);
     let expected = by_rows(manipulator, grid, one);
@@ -201,7 +202,8 @@ fn print_table(title: &str, timings: &[Timing]) {
     }
 }
 
-/// Square roots that the intervals of every row take, from the shapes that the legs leave in a slice.
+/// The number of square roots for the intervals of every row, from the shapes that the legs leave
+/// in a slice.
 fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
     let of = |set: &Convex| match set {
         Convex::Bands(_) => 0,

@@ -1,4 +1,4 @@
-//! Velocities of the paper's 5-DoF manipulator against its plain inverse kinematics.
+//! Velocities of the paper's 5-DoF manipulator, compared with its plain inverse kinematics.
 
 use opm_benches::{Contender, compare, example};
 use std::hint::black_box;
@@ -9,8 +9,8 @@ fn main() {
     let length = manipulator.characteristic_length();
     let mut rng = fastrand::Rng::with_seed(1);
     let mut solution = manipulator.solution();
-    // Poses that every leg reaches: what a control loop asks for. As few as there may be solutions in the
-    // cache, as one is that was just found.
+    // Poses that every leg reaches, as in a control loop. There are only so many that their
+    // solutions are in the cache, like one that was just found.
     let (mut poses, mut solutions) = (Vec::new(), Vec::new());
     while poses.len() < 100 {
         let pose = [0.1, 0.1, 0.4, 0.4, 0.4].map(|half| half * (2.0 * rng.f64() - 1.0));

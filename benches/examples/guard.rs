@@ -1,5 +1,6 @@
-//! `make guard`: whether a change made something slower, by the instructions that it takes, which do not depend on
-//! what else the machine does. valgrind counts them, and they are held against those in `guard.txt`.
+//! `make guard`: whether a change made something slower, by counts of instructions, which do not
+//! depend on other work of the machine. valgrind counts them, and they are compared with those in
+//! `guard.txt`.
 //!
 //! ```text
 //! guard            compares; 1 where something takes more, 2 where that cannot be told
@@ -15,15 +16,15 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
-/// How many more instructions than are stored are put down to chance: another path through libm, the order in
-/// which the compiler inlines.
+/// The share of additional instructions that is attributed to chance: another path through libm, or
+/// another order of inlining by the compiler.
 const TOLERANCE: f64 = 0.05;
 
-/// What is counted.
+/// The pieces of work that are counted.
 const WORKS: [&str; 6] =
     ["rows", "rows-with-limits-on-angles", "inverse", "inverse-drives", "forward", "velocity"];
 
-/// Says what valgrind's processor has.
+/// Prints the capabilities of valgrind's processor.
 const INSTRUCTIONS: &str = "instructions";
 
 fn main() -> ExitCode {
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Does a piece of work in [`counted`]; what it needs is made before.
+/// Does a piece of work inside [`counted`]; its input is prepared before.
 fn perform(work: &str) {
     let manipulator = example("plano-spherical-5dof");
     match work {
@@ -97,7 +98,7 @@ fn solve(work: &str, manipulator: &Manipulator) {
     });
 }
 
-/// What valgrind counts.
+/// The part that valgrind counts.
 #[inline(never)]
 fn counted(work: &mut dyn FnMut()) {
     work();
@@ -156,8 +157,8 @@ fn path() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("guard.txt")
 }
 
-/// What counts depend on beside the code: the compiler, the machine's kind, and the vectors that a sweep uses, as
-/// far as valgrind knows them.
+/// What counts depend on besides the code: the compiler, the kind of machine, and the vectors that
+/// a sweep uses, as far as valgrind knows them.
 fn compiled_for() -> Result<String, String> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(&rustc).arg("--version").output();
@@ -177,7 +178,7 @@ fn count(work: &str) -> Result<u64, String> {
         .ok_or_else(|| format!("{work}: valgrind counted nothing:\n{log}"))
 }
 
-/// Runs this program for a piece of work; gives what it prints, and what valgrind says.
+/// Runs this program for a piece of work; returns its output, and that of valgrind.
 fn under_valgrind(work: &str) -> Result<(String, String), String> {
     let program = std::env::current_exe().map_err(|e| format!("this program: {e}"))?;
     let output = Command::new("valgrind")

@@ -1,11 +1,11 @@
 """Inverse kinematics of a million poses with opm and with NumPy: every joint of the shipped plano-spherical-5dof, actuated,
-passive and imaginary, and which poses are in reach and within limits; one thread, turn and turn about. All must agree; prints a
-table.
+passive and imaginary, and which poses are in reach and within limits. Each uses one thread, and they are timed alternately. All
+must agree. Prints a table.
 
-The NumPy code is the paper's formulas (Selvi, section 3.1; Eqs. 2-3 and 10-16, its errata mended) for the working mode
-`++ ++ ++ +`, and for the passive joints the products of rotations that define them: an array operation a step, angles only where
-an angle is asked for. Once on all poses at a time, as one writes it; once a part at a time, so that what is between stays in the
-cache.
+The NumPy code is the paper's formulas (Selvi, section 3.1; Eqs. 2-3 and 10-16, with its errata corrected) for the working mode
+`++ ++ ++ +`, and for the passive joints the products of rotations that define them: one array operation per step, and angles only
+where an angle is needed. It runs on all poses at once, as one would write it, and in parts, so that intermediate arrays stay in
+the cache.
 """
 
 import math
@@ -15,18 +15,18 @@ import numpy as np
 import opm_kinematics as opm
 
 POSES = 1_000_000
-PART = 2048  # poses; of the powers of two, the one that NumPy is fastest with
+PART = 2048  # poses; the power of two with which NumPy is fastest
 ROUNDS = 7
 BETA, ALPHA_1, ALPHA_2 = math.radians(60), math.radians(75), math.radians(75)
 ETAS = [math.radians(eta) for eta in (0, 120, 240)]
 ALPHAS = [math.radians(alpha) for alpha in (30, 150, 270)]
 H, A1, A2 = 0.12, 0.2, 0.06
 D, B1, B2 = (0.0, 0.075), 0.1, 0.1
-LIMIT = 0.3  # of the sliders
+LIMIT = 0.3  # of the sliders to either side, metres
 
 
 def rotation(zeta, xi, psi):
-    """Rows of Rz(zeta) Ry(xi) Rz(psi)."""
+    """The rows of Rz(zeta) Ry(xi) Rz(psi)."""
     cz, sz, cx, sx, cp, sp = np.cos(zeta), np.sin(zeta), np.cos(xi), np.sin(xi), np.cos(psi), np.sin(psi)
     cz_cx, sz_cx = cz * cx, sz * cx
     return (
@@ -37,12 +37,12 @@ def rotation(zeta, xi, psi):
 
 
 def turned(r, v):
-    """R v, of arrays of rotations and one vector."""
+    """The products R v of an array of rotations and one vector."""
     return [row[0] * v[0] + row[1] * v[1] + row[2] * v[2] for row in r]
 
 
 def slider_leg(x, y, r, eta, alpha):
-    """S, phi_1, phi_2, theta_2, theta_3, and theta_1 of the imaginary joint."""
+    """The joints S, phi_1, phi_2, theta_2, theta_3, and the imaginary joint theta_1."""
     # R Rz(eta) Ry(beta) = Rz(theta_1) Rx(alpha_1) Rz(theta_2) Rx(alpha_2) Rz(theta_3)
     sin_b, cos_b, sin_e, cos_e = math.sin(BETA), math.cos(BETA), math.sin(eta), math.cos(eta)
     first = turned(r, (cos_e * cos_b, sin_e * cos_b, -sin_b))
@@ -68,12 +68,12 @@ def slider_leg(x, y, r, eta, alpha):
 
 
 def arm_leg(x, y, zeta, xi, psi, phi_home):
-    """phi_14, phi_24, and the rotation vector of the ball: Rz(phi_14 + phi_24 - phi_home) exp(ball) = R."""
+    """The joints phi_14, phi_24, and the spherical joint's rotation vector: Rz(phi_14 + phi_24 - phi_home) exp(ball) = R."""
     dx, dy = x - D[0], y - D[1]
     square = dx * dx + dy * dy
     phi_14 = np.arctan2(dy, dx) - np.arccos((B1 * B1 - B2 * B2 + square) / (2 * B1 * np.sqrt(square)))
     phi_24 = np.arccos((square - (B1 * B1 + B2 * B2)) / (2 * B1 * B2))
-    # The quaternion, by half of the Euler angles.
+    # The quaternion, from half the Euler angles.
     rest = zeta + (phi_home - phi_14 - phi_24)
     total, difference, half = 0.5 * (rest + psi), 0.5 * (rest - psi), 0.5 * xi
     c, s = np.cos(half), np.sin(half)
@@ -84,7 +84,7 @@ def arm_leg(x, y, zeta, xi, psi, phi_home):
 
 
 def solve(poses, phi_home, joints, imaginary, reachable, within_limits):
-    """Fills rows of joints, of imaginary joints, and the two answers."""
+    """Fills the rows of joints and of imaginary joints, and the two masks."""
     x, y, zeta, xi, psi = poses.T
     r = rotation(zeta, xi, psi)
     inside, limited = True, True
@@ -116,7 +116,7 @@ def numpy_in_parts(part):
 
 
 def agree(found, expected):
-    """Angles but for whole turns; those of an arm that is stretched out lose half of their digits."""
+    """Compares angles modulo 2π. Those of a stretched arm lose half of their digits."""
     for same in (2, 3):
         if not np.array_equal(found[same], expected[same]):
             raise SystemExit("opm and NumPy differ about what is in reach, or within limits")

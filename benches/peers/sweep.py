@@ -1,8 +1,8 @@
-"""Sweeps of the shipped plano-spherical-5dof with what one writes otherwise: NumPy for every pose, NumPy and numba with the
-orientations factored out; and with opm from Python. For each line `contender points orientations` it answers with the number of
-reachable poses: `benches/benches/sweep.rs` asks, and takes the time.
+"""Sweeps of the shipped plano-spherical-5dof without opm (NumPy for every pose; NumPy and numba with the orientations factored
+out), and with opm from Python. For each input line `contender points orientations` it prints the number of reachable poses.
+`benches/benches/sweep.rs` sends these lines and measures the time.
 
-The formulas are the paper's (Selvi, section 3.1; Eqs. 2-3 and 10-16, its errata mended) for one working mode, `++ ++ ++ +`.
+The formulas are the paper's (Selvi, section 3.1; Eqs. 2-3 and 10-16, with its errata corrected) for one working mode, `++ ++ ++ +`.
 """
 
 import math
@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import opm_kinematics as opm
 
-LIMIT = 0.3  # of the sliders
+LIMIT = 0.3  # of the sliders to either side, metres
 BETA, ALPHA_1, ALPHA_2 = math.radians(60), math.radians(75), math.radians(75)
 ETAS = np.radians([0.0, 120.0, 240.0])
 ALPHAS = np.radians([30.0, 150.0, 270.0])
@@ -21,7 +21,7 @@ D, B1, B2 = (0.0, 0.075), 0.1, 0.1
 
 
 class Grid:
-    """Points in the plane, and orientations."""
+    """The grid of points in the plane, and the grid of orientations."""
 
     def __init__(self, points, orientations):
         self.ranges = {
@@ -37,7 +37,7 @@ class Grid:
 
 
 def imaginary(zeta, xi, psi):
-    """theta_1i for arrays of orientations; NaN where a leg's upper section does not close."""
+    """The imaginary joints theta_1i for arrays of orientations; NaN where a leg's upper section does not close."""
     cz, sz, cx, sx = np.cos(zeta), np.sin(zeta), np.cos(xi), np.sin(xi)
     thetas = []
     for eta in ETAS:
@@ -50,12 +50,12 @@ def imaginary(zeta, xi, psi):
 
 
 def sliders(x, y, thetas):
-    """Whether the three slider legs follow."""
+    """Whether the three slider legs reach."""
     inside = True
     for theta, alpha in zip(thetas, ALPHAS, strict=True):
         qx, qy = x + A2 * np.cos(theta) - H * math.cos(alpha), y + A2 * np.sin(theta) - H * math.sin(alpha)
         along, across = math.cos(alpha) * qx + math.sin(alpha) * qy, math.cos(alpha) * qy - math.sin(alpha) * qx
-        s = across + np.sqrt(A1 * A1 - along * along)  # NaN out of reach, which no comparison holds of
+        s = across + np.sqrt(A1 * A1 - along * along)  # NaN out of reach, so that every comparison is false
         inside &= (s >= -LIMIT) & (s <= LIMIT)
     return inside
 
@@ -66,7 +66,7 @@ def arm(x, y):
 
 
 def numpy_per_pose(grid):
-    """Every formula for every pose, a sheet of points at a time."""
+    """Every formula for every pose, for all points of one orientation at a time."""
     count = 0
     x, y = (a.ravel() for a in np.meshgrid(grid.x, grid.y))
     with np.errstate(invalid="ignore"):
@@ -77,7 +77,7 @@ def numpy_per_pose(grid):
 
 
 def numpy_factorised(grid):
-    """The imaginary joints once an orientation, the arm once a point."""
+    """The imaginary joints once per orientation, the arm once per point."""
     count = 0
     x, y = np.meshgrid(grid.x, grid.y)
     reached = arm(x, y)

@@ -1,5 +1,5 @@
-//! What the benchmarks share: timing two things in one run, turn and turn about, since on a machine
-//! that others use only their ratio means anything.
+//! What the benchmarks share: alternating the timing of several things in one run. On a machine
+//! that is used by others too, only the ratio of times is meaningful.
 
 pub mod peers;
 pub mod square_roots;
@@ -10,47 +10,48 @@ use opm_core::mechanism::{examples, file};
 use opm_workspace::{Axis, Grid};
 use std::time::{Duration, Instant};
 
-/// Rounds of a comparison, where they are short; the median of an odd number is one of them.
+/// The number of rounds of a comparison if they are short. The number is odd, so that the median is
+/// one of them.
 const ROUNDS: usize = 41;
 
-/// Rounds of a comparison, however long one takes.
+/// The least number of rounds of a comparison, however long one takes.
 const LEAST_ROUNDS: usize = 9;
 
-/// About as long as all rounds may take, where that is more than the least.
+/// The approximate time for all rounds, if it allows more than the least number.
 const ALL_ROUNDS: Duration = Duration::from_secs(60);
 
-/// A round is to last about this long, far above the clock's grain.
+/// The approximate time for one round, far above the resolution of the clock.
 const ROUND: Duration = Duration::from_millis(10);
 
-/// One piece of work, to be timed.
+/// One piece of work to be timed.
 pub struct Contender<'a> {
-    /// What the table calls it.
+    /// The name in the table.
     pub name: &'static str,
-    /// Operations in one call of `run`.
+    /// The number of operations in one call of `run`.
     pub operations: u64,
     /// The work.
     pub run: Box<dyn FnMut() + 'a>,
 }
 
 impl<'a> Contender<'a> {
-    /// Work of so many operations a call.
+    /// Work with this number of operations per call.
     pub fn new(name: &'static str, operations: u64, run: impl FnMut() + 'a) -> Self {
         Self { name, operations, run: Box::new(run) }
     }
 }
 
-/// What a contender took.
+/// The timing of a contender.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing {
-    /// The contender.
+    /// The name of the contender.
     pub name: &'static str,
-    /// Median over the rounds, seconds an operation.
+    /// The median over the rounds, in seconds per operation.
     pub seconds: f64,
-    /// Median of the rounds' ratios of its time to the first contender's.
+    /// The median over the rounds of its time divided by the first contender's.
     pub ratio: f64,
 }
 
-/// Times the contenders in turn, round after round, and compares each with the first.
+/// Times the contenders alternately, round after round, and compares each with the first.
 pub fn compare(mut contenders: Vec<Contender<'_>>) -> Vec<Timing> {
     let mut round = Duration::ZERO;
     let calls: Vec<u32> = contenders
@@ -91,18 +92,18 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// A shipped mechanism.
+/// The shipped mechanism with this name.
 ///
 /// # Panics
-/// If there is none of this name.
+/// If there is no mechanism with this name.
 pub fn example(name: &str) -> Manipulator {
     let text = examples::find(name).expect("a shipped mechanism").text;
     let file = file::read(text).expect("shipped mechanisms are read");
     Manipulator::new(file.mechanism).expect("shipped mechanisms decompose")
 }
 
-/// `points` a row and column in the plane of the 5-DoF manipulator, and as many of each Euler angle as
-/// `orientations` says.
+/// A grid with `points` values in each direction of the plane of the 5-DoF manipulator, and
+/// `orientations` values of each Euler angle.
 ///
 /// # Panics
 /// If the manipulator has other coordinates.
@@ -117,7 +118,7 @@ pub fn sweep_grid(manipulator: &Manipulator, [points, orientations]: [u64; 2]) -
     Grid::new(manipulator, axes).expect("a grid")
 }
 
-/// Random poses of the 5-DoF manipulator that every leg reaches: what a control loop asks for.
+/// Random poses of the 5-DoF manipulator that every leg reaches, as in a control loop.
 ///
 /// # Panics
 /// If the manipulator has other coordinates.
@@ -132,7 +133,7 @@ pub fn reached(manipulator: &Manipulator, count: usize) -> Vec<[f64; 5]> {
         .collect()
 }
 
-/// The same mechanism, no passive revolute joint of which turns by more than a radian.
+/// The same mechanism with limits of a radian to either side on every passive revolute joint.
 ///
 /// # Panics
 /// Never: limits change nothing else.

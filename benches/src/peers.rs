@@ -1,11 +1,12 @@
-//! What is compared with in Python: a program that answers a line with a line, so that all take turns.
+//! Comparison with programs in Python. Such a program answers a line with a line, so that all
+//! contenders alternate.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-/// A script that counts when asked; it ends when this is dropped.
+/// A script that counts on request; it ends when this is dropped.
 #[derive(Debug)]
 pub struct Peers {
     child: Child,
@@ -13,8 +14,8 @@ pub struct Peers {
 }
 
 impl Peers {
-    /// Starts a script, a path in this package, in the Python that `PEERS_PYTHON` names; `None` where it
-    /// names none.
+    /// Starts a script, given by its path in this package, in the Python that `PEERS_PYTHON` names;
+    /// `None` if the variable is not set.
     ///
     /// # Panics
     /// If that Python does not start.
@@ -31,10 +32,10 @@ impl Peers {
         Some(Self { child, pipes })
     }
 
-    /// What the script counts when it is asked this.
+    /// The number that the script counts for this request.
     ///
     /// # Panics
-    /// If it does not answer with a number: it has written why.
+    /// If the script does not answer with a number; it has then written why.
     pub fn ask(&self, question: &str) -> u64 {
         let mut pipes = self.pipes.as_ref().expect("a script that runs").borrow_mut();
         let mut answer = String::new();
@@ -46,7 +47,7 @@ impl Peers {
 
 impl Drop for Peers {
     fn drop(&mut self) {
-        // The end of what it reads is its end.
+        // The script ends when its input ends.
         self.pipes = None;
         let _ = self.child.wait();
     }

@@ -1,25 +1,27 @@
-//! How many square roots a second the machine takes, with the vectors that a sweep uses.
+//! The number of square roots per second that the machine computes, with the vectors that a sweep
+//! uses.
 
 use pulp::{Arch, Simd, WithSimd};
 use std::hint::black_box;
 
-/// Numbers that are held together, as many as a sweep cuts rows together.
+/// The number of values that are computed together: as many as the rows that a sweep clips
+/// together.
 const TOGETHER: usize = 64;
 
 const PASSES: usize = 50_000;
 
-/// Roots that one call of [`take`] takes.
+/// The number of roots that one call of [`take`] computes.
 pub const EACH: u64 = (TOGETHER * PASSES) as u64;
 
-/// Takes [`EACH`] square roots, and does nothing else.
+/// Computes [`EACH`] square roots, and nothing else.
 pub fn take() {
     let numbers = std::array::from_fn(|i| 1.0 + 0.618 * i as f64);
     let roots = Arch::new().dispatch(Roots { numbers: &numbers });
     black_box(roots);
 }
 
-/// The instructions that the sweep and this are compiled for here, as pulp calls them: `V3` are those of
-/// x86-64-v3, `V4` of x86-64-v4.
+/// The instruction set for which the sweep and this function are compiled here, in pulp's names:
+/// `V3` is x86-64-v3, `V4` is x86-64-v4.
 pub fn instructions() -> String {
     let name = format!("{:?}", Arch::new());
     name.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()

@@ -63,11 +63,11 @@ def test_its_text_and_its_pickle_are_it_to_the_bit(name):
 
 def test_what_cannot_be_is_told(manipulator):
     for changes, message in [
-        ({"leg1.hh": 1.0}, "`leg1.hh` is no parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, a1"),
+        ({"leg1.hh": 1.0}, "`leg1.hh` is not a parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, a1"),
         ({"h": -1.0}, "leg1: `h` is -1 m, expected a length of at least 0; leg2"),
         ({"h": float("nan")}, "`h` is NaN, expected a finite number"),
         ({"limits.S": (0.3, -0.3)}, "`limits.S` are reversed: 0.3 m is above -0.3 m"),
-        ({"limits.S": (0.2, 0.3)}, "leg1: `limits` leave out home: S1 is "),
+        ({"limits.S": (0.2, 0.3)}, "leg1: `limits` exclude home: S1 is "),
         ({"h": "long"}, "`h` is 'long', expected a number, a pair of numbers, or None"),
         ({"base": (1, 2, 3)}, r"`base` is \(1, 2, 3\), expected a number, a pair"),
         ({"b1": 9.0}, "leg4: home is out of this leg's reach by 8"),

@@ -145,7 +145,7 @@ def test_the_screws_of_a_mechanism_make_it_again():
         ({"home": [[0, 0, np.inf], [0] * 3, [0] * 3]}, "leg1, joint 3: home is inf"),
         ({"limits": [[None, (0, np.nan), None], [None] * 3, [None] * 3]}, "leg1, joint 2: limits are 0 and NaN"),
         ({"limits": [[(1, 0), None, None], [None] * 3, [None] * 3]}, "leg1, joint 1: .*reversed"),
-        ({"limits": [[(1, 2), None, None], [None] * 3, [None] * 3]}, "leg1, joint 1: .*leave out home"),
+        ({"limits": [[(1, 2), None, None], [None] * 3, [None] * 3]}, "leg1, joint 1: .*exclude home"),
         ({"joints": [["a", "b", "a"], ["c", "d", "e"], ["f", "g", "h"]]}, "leg1, joint 3: .*a"),
         ({"joints": [["x", "b", "a"], ["c", "d", "e"], ["f", "g", "h"]]}, "leg1, joint 1: .*x"),
         ({"joints": [["a\nb", "b", "a"], ["c", "d", "e"], ["f", "g", "h"]]}, "leg1, joint 1: .*name"),

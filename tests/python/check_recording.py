@@ -25,12 +25,12 @@ COLORS = ["red", "green", "blue", "alpha"]
 NUMERIC_TYPES = {1: "u1", 2: "i1", 3: "<u2", 4: "<i2", 5: "<u4", 6: "<i4", 7: "<f4", 8: "<f8"}
 # A float32 is within half a unit in its last place; the expected value may be rounded once more.
 RELATIVE, ABSOLUTE = 2.0**-23, 1e-12
-# Luminance (0 to 255) may waver by this along the colour map, by its rounding to bytes.
+# Luminance (0 to 255) may vary by this along the colour map, by rounding to bytes.
 LUMINANCE_WAVER = 1.5
 
 
 class Failure(Exception):
-    """What a recording is not."""
+    """A recording does not meet a requirement."""
 
 
 def require(condition, what):
@@ -58,7 +58,7 @@ def points(cloud):
 
 
 def check_cloud(topic, message, cloud, scalars):
-    """One message: its frame, its stamps, its fields, its numbers."""
+    """Checks one message: its frame, its time stamps, its fields and its numbers."""
     at = f"{topic} at {message.log_time} ns"
     stamp = cloud.timestamp.seconds * 1_000_000_000 + cloud.timestamp.nanos
     require(stamp == message.log_time == message.publish_time, f"{at}: stamped {stamp} ns")
@@ -78,7 +78,7 @@ def check_cloud(topic, message, cloud, scalars):
 
 
 def check_colors(array, clouds):
-    """Lighter is larger, along the whole map, and the ends of the range are its ends."""
+    """Checks that larger values are lighter, and that the range covers the whole colour map."""
     axes = dict(zip(clouds["axes"].split(","), "xyz"))
     field = axes.get(clouds["color"], clouds["color"])
     if field not in array.dtype.names or len(array) == 0:
@@ -155,7 +155,7 @@ def main():
         try:
             count, slices = check(path, arguments.points)
             print(f"{path}: {count} points in {slices} slices")
-        except Exception as reason:  # whatever a decoder throws is a finding about the file
+        except Exception as reason:  # any exception of a decoder is a finding about the file
             failed = True
             print(f"{path}: {type(reason).__name__}: {reason}", file=sys.stderr)
     sys.exit(failed)

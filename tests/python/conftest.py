@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).parents[2]
-# The whole workspace at once: what `cargo test --workspace` has built need not be built again.
+# Builds the whole workspace, so that the artefacts of `cargo test --workspace` are reused.
 BUILD = "cargo build --quiet --workspace --bins --examples --message-format=json-render-diagnostics"
 
 

@@ -1,7 +1,7 @@
 """The paper's 5-DoF plano-spherical manipulator (section 3.1) in closed form, for arrays of poses.
 
-Written from the geometry of its legs for these tests alone. Metres and radians; leg by leg in the
-last axis.
+Written from the geometry of its legs, only for these tests. Metres and radians; the last axis of an
+array is the leg.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 # Printed in the paper.
 ETA, BETA, ARC = np.radians([0, 120, 240]), np.radians(60), np.radians(75)
 ARM_BASE, ARM_LINKS = np.array([0, 0.075]), (0.1, 0.1)
-# Chosen by the project, as the paper prints none.
+# Chosen by the project, because the paper prints none.
 ALPHA, OFFSET, LINKS, SLIDER = np.radians([30, 150, 270]), 0.12, (0.2, 0.06), 0.3
 
 
@@ -27,9 +27,9 @@ def platform_axes(zeta, xi, psi):
 
 
 def imaginary(zeta, xi, psi, upper=1):
-    """theta11, theta12, theta13, and how far each leg is within reach: the margin of its sine.
+    """The imaginary joints theta11, theta12, theta13, and each leg's margin of reach (of its sine).
 
-    Of the two solutions the upper, `atan2 + asin`, or the other one, -1.
+    `upper` is 1 for the solution `atan2 + asin` and -1 for the other one.
     """
     x, y, z = platform_axes(zeta, xi, psi)
     sine = (np.cos(ARC) - np.cos(ARC) * z) / (np.sin(ARC) * np.hypot(x, y))
@@ -38,9 +38,9 @@ def imaginary(zeta, xi, psi, upper=1):
 
 
 def sliders(x, y, theta, root=1):
-    """S1, S2, S3, and the smaller margin of reach and of the sliders' limits.
+    """The sliders S1, S2, S3, and the smaller margin of reach and of the sliders' limits.
 
-    With the positive square root, or with the negative one, -1.
+    `root` is 1 for the positive square root and -1 for the negative one.
     """
     link, crank = LINKS
     to_platform = np.stack([x, y], axis=-1)[..., None, :]
@@ -52,7 +52,7 @@ def sliders(x, y, theta, root=1):
 
 
 def arm(x, y):
-    """phi14 and phi24, and the margin of the arm's reach."""
+    """The joints phi14 and phi24, and the margin of the arm's reach."""
     first, second = ARM_LINKS
     dx, dy = x - ARM_BASE[0], y - ARM_BASE[1]
     distance = np.hypot(dx, dy)
@@ -65,18 +65,18 @@ def arm(x, y):
 
 
 def nearest(angle, reference):
-    """The angle's turn that is nearest to a reference."""
+    """The value of an angle, modulo 2π, that is nearest to a reference."""
     return reference + (angle - reference + np.pi) % (2 * np.pi) - np.pi
 
 
 def joints(x, y, zeta, xi, psi):
     """Every imaginary and actuated joint by its name, and the smallest margin of each pose.
 
-    In the working mode `++ ++ ++ +`; angles are of the turn nearest to home. A pose is in the
-    workspace when its margin is not negative.
+    In the working mode `++ ++ ++ +`, with angles nearest to home modulo 2π. A pose is in the
+    workspace if its margin is not negative.
     """
     home = np.zeros(1)
-    theta_home = imaginary(home, home, home)[0][..., :1] + ETA  # the legs are alike
+    theta_home = imaginary(home, home, home)[0][..., :1] + ETA  # the legs are equal
     shoulder_home, elbow_home, _ = arm(home, home)
 
     theta, upper = imaginary(zeta, xi, psi)
@@ -92,7 +92,7 @@ def joints(x, y, zeta, xi, psi):
 
 
 def margins(x, y, zeta, xi, psi):
-    """The smallest margin of each leg, a dictionary by its choices: (1, 1), (1, -1), ... Then that
+    """The smallest margin of each leg, as a dictionary by its choices (1, 1), (1, -1), ...; then that
     of the arm, which is the same for both of its elbows."""
 
     def leg(upper, root):

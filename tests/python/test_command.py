@@ -1,4 +1,4 @@
-"""The command that the Python package brings, against the program that cargo builds."""
+"""The command of the Python package, compared with the program that cargo builds."""
 
 import os
 import pty
@@ -74,7 +74,7 @@ def test_ctrl_c(opm, program):
     try:
         while more := os.read(ours, 1 << 16):
             said += more
-    except OSError:  # the terminal has gone with the process
+    except OSError:  # the terminal closed with the process
         pass
     assert process.wait() == 130
     assert b"opm: interrupted; " in said and b"poses were decided" in said
@@ -83,7 +83,7 @@ def test_ctrl_c(opm, program):
 
 @pytest.mark.parametrize("program", ["cargo", "package"])
 def test_ctrl_c_while_it_waits(opm, program):
-    """Where nothing has to be put in order, it ends as any process does."""
+    """Where nothing needs to be cleaned up, Ctrl-C ends it like any process."""
     command = [opm] if program == "cargo" else SCRIPT
     read, write = os.pipe()
     os.write(write, b"format = 1\n")

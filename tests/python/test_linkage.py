@@ -1,4 +1,4 @@
-"""`opm linkage --sweep` recordings, decoded with public decoders, against its CSV."""
+"""`opm linkage --sweep` recordings, decoded with public decoders, compared with its CSV."""
 
 import csv
 import json
@@ -18,7 +18,7 @@ def run(opm, *arguments):
     return subprocess.run(command, capture_output=True, text=True, check=True)
 
 
-# A crank, and a joint that comes to the ends of its range.
+# A crank, and a joint with a limited range.
 @pytest.mark.parametrize("joint, turns", [("a1", True), ("b1", False)])
 def test_a_recording_holds_the_rows_of_the_csv(opm, tmp_path, joint, turns):
     sweep = ["--input", joint, "--sweep", "--count", "101"]

@@ -1,4 +1,4 @@
-"""What becomes of long runs: killed, interrupted, and how much memory they take."""
+"""Long runs: what happens if they are killed or interrupted, and how much memory they take."""
 
 import json
 import signal
@@ -12,18 +12,18 @@ import pytest
 MECHANISM = "plano-spherical-5dof"
 BEFORE = b"what was recorded before"
 MIB = 1 << 20
-# Seconds in which something must have happened.
+# Time limit in seconds for something to happen.
 PATIENCE = 60
 
-# Counts only: some 10^9 poses.
+# A grid for counting only: some 10^9 poses.
 COUNTED = ("x=-0.25:0.25:251", "y=-0.15:0.30:251", "zeta=-1:1:25", "xi=0:1:26", "psi=-1:1:25")
 # More than twenty million of these are in reach, more than four million a slice.
 RECORDED = ("x=-0.25:0.25:5001", "y=-0.15:0.30:5001", "xi=0:0.6:4")
 
-# All of these are in reach, the most that can wait to be written; several messages a slice.
+# All of these are in reach, which is the most that can wait to be written; several messages per slice.
 REACHABLE = ("x=-0.05:0.05:2201", "y=-0.05:0.05:2201", "xi=0:0.3:5")
 
-# A process of its own, because a child's peak counts the memory of the one that started it.
+# A separate process, because the peak of a child includes the memory of the process that started it.
 MEASURE = """
 import resource, subprocess, sys
 done = subprocess.run(sys.argv[1:], stdout=subprocess.PIPE, check=True)
@@ -39,7 +39,7 @@ def command(opm, grid, *arguments):
 
 
 def measured(command):
-    """What a command printed as JSON, and its peak memory in bytes."""
+    """The JSON output of a command, and its peak memory in bytes."""
     done = subprocess.run([sys.executable, "-c", MEASURE, *command], capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
     return json.loads(done.stdout), int(done.stderr)
@@ -47,7 +47,7 @@ def measured(command):
 
 @pytest.fixture
 def recording(opm, tmp_path):
-    """A long recording over an existing file: the file, its `.partial`, and the process."""
+    """Starts a long recording over an existing file; gives the file, its `.partial`, and the process."""
     target = tmp_path / "w.mcap"
     target.write_bytes(BEFORE)
     partial = tmp_path / "w.mcap.partial"
@@ -75,7 +75,7 @@ def test_a_killed_recording_leaves_the_old_file_and_a_partial_one(opm, recording
     with pytest.raises(check_recording.Failure):
         check_recording.check(partial)
 
-    # The next run takes its place, as if nothing had been.
+    # The next run replaces it, as if nothing had happened.
     small = command(opm, ["x=-0.1:0.1:9"], "-o", target)
     subprocess.run(small, stdout=subprocess.DEVNULL, check=True)
     check_recording.check(target)

@@ -1,4 +1,4 @@
-"""`opm trajectory` recordings, decoded with public decoders: what moves stays connected."""
+"""`opm trajectory` recordings, decoded with public decoders: moving bodies stay connected."""
 
 import csv
 import json
@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 START = 1_000_000_000  # nanoseconds
-# Of the mechanism's size: the rounding of a leg's product of exponentials is far below.
+# Tolerance as a share of the mechanism's size, far above the rounding of a leg's product of exponentials.
 TOGETHER = 1e-9
 
 MOTIONS = {
@@ -54,7 +54,7 @@ class Recorded:
             self.attachments = {a.name: a.data for a in reader.iter_attachments()}
 
     def flat(self, topic):
-        """Times, and a column a field."""
+        """The times, and one column per field."""
         messages = self.topics[topic]
         names = [field.name for field in messages[0][1].DESCRIPTOR.fields]
         columns = {name: np.array([getattr(m, name) for _, m in messages]) for name in names}
@@ -68,7 +68,7 @@ class Recorded:
                 stamp = one.timestamp.seconds * 1_000_000_000 + one.timestamp.nanos
                 assert stamp == time
                 assert one.child_frame_id not in absolute, "a frame has two places"
-                # Parents come first: so there is no cycle, and all hangs from the base.
+                # Parents come first, so there is no cycle, and every frame descends from the base.
                 parent = absolute[one.parent_frame_id]
                 absolute[one.child_frame_id] = parent @ matrix(one.translation, one.rotation)
             yield absolute
@@ -119,12 +119,12 @@ def mechanisms():
 
 
 def distance(kind, one, other, size):
-    """How far apart two bodies' views of their common joint are, as a share of the size."""
+    """The distance between a joint's poses in its two bodies, as a share of the mechanism's size."""
     (c1, a1, r1), (c2, a2, r2) = one, other
     offset, turned = c2 - c1, np.linalg.norm(np.cross(a1, a2))
     if kind == "turn":
         return np.linalg.norm(offset) / size + turned
-    if kind == "slide":  # the centres are on one line, which is the axis of both
+    if kind == "slide":  # the centres are on the common axis
         return np.linalg.norm(np.cross(offset, a1)) / size + turned
     if kind == "ball":
         return np.linalg.norm(offset) / size
@@ -158,8 +158,8 @@ def test_link_ends_coincide_at_every_frame(record, mechanism):
     for joint, shares in seats.items():
         assert len(shares) == 2, f"{joint} joins {len(shares)} bodies"
         for frame, kind, numbers in shares:
-            # What is drawn goes to where the joint is: an end, the middle of a pin, or the line of a
-            # rail.
+            # The drawn solids extend to the joint: to the end or middle of a pin, or to the line of
+            # a rail.
             centre, axis = numbers[:3], numbers[3:]
             offset = ends[frame] - centre
             across = np.linalg.norm(np.cross(offset, axis), axis=1)
@@ -185,7 +185,7 @@ def test_link_ends_coincide_at_every_frame(record, mechanism):
             travelled[frame].append(place)
     assert frames > 90
     print(f"{mechanism}: {frames} frames, joints within {worst:.1e} of the size")
-    # It moves, and the base does not.
+    # The mechanism moves, and the base does not.
     moved = {frame: np.ptp(np.array(places), axis=0).max() for frame, places in travelled.items()}
     assert moved.pop("base") == 0
     assert max(moved.values()) > 0.01 and sum(m > 1e-6 for m in moved.values()) > len(moved) / 2
@@ -213,7 +213,7 @@ def test_every_topic_has_every_sample(record):
     for topic in ["imaginary_joints", "imaginary_velocities", "condition"]:
         times, tables[topic] = recorded.flat(f"/{topic}")
         assert (times == expected).all()
-    # Each is the other's derivative, whichever wrote it.
+    # Velocities are derivatives of positions.
     for value, rate in [
         ("pose", "pose_velocities"),
         ("joints", "velocities"),
@@ -222,14 +222,14 @@ def test_every_topic_has_every_sample(record):
     ]:
         assert list(tables[value]) == list(tables[rate])
         for name, column in tables[value].items():
-            # The step's square, 1e-4 s², times a third derivative of a few units.
+            # The error is the step's square, 1e-4 s², times a third derivative of a few units.
             difference = (column[2:] - column[:-2]) / 0.02
             assert np.abs(difference - tables[rate][name][1:-1]).max() < 2e-3, (value, name)
     condition = tables["condition"]
     measures = ["upper_serial", "upper_parallel", "lower_serial", "lower_parallel"]
     assert list(condition) == ["condition", *measures, "valid"]
     assert (condition["valid"] == 1).all() and (condition["condition"] >= 1).all()
-    # The motion of the file, by its formula.
+    # The motion by the formula in its file.
     t = (expected - START) / 1e9
     formula = 0.025 * np.sin(2 * np.pi * 0.3 * t + np.pi / 3)
     assert np.abs(tables["pose"]["y"] - formula).max() < 1e-12
@@ -265,7 +265,7 @@ def test_the_recording_is_what_inverse_kinematics_says(opm, record, tmp_path):
 
 
 def test_what_cannot_be_followed_is_marked(opm, record, tmp_path):
-    """Down past the reach of the arm, whose links of 100 mm hang at (0, 75): y = -125 mm at most."""
+    """A motion beyond the reach of the arm, whose two links of 100 mm start at (0, 75): down to y = -125 mm."""
     motion = tmp_path / "down.toml"
     motion.write_text(
         'format = 1\nname = "down"\nunits = { length = "mm", angle = "deg" }\nduration = 2\n'

@@ -1,4 +1,4 @@
-"""A recording of known points, checked with public decoders: see `check_recording.py`."""
+"""A recording of known points, checked with public decoders (see `check_recording.py`)."""
 
 import csv
 import subprocess
@@ -69,7 +69,7 @@ def test_the_check_finds_a_wrong_point(recording, tmp_path):
 
 
 def test_a_recording_cut_short_is_recovered(recording, tmp_path):
-    """What `pymcap-cli recover` makes of the first part is readable, and not called complete."""
+    """`pymcap-cli recover` makes the first part readable, and it is not marked as complete."""
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(recording.read_bytes()[:-20_000])
     with pytest.raises(check_recording.Failure, match="doctor"):

@@ -30,7 +30,7 @@ def parts(opm, tmp_path_factory):
 
 
 def test_the_runs_are_the_poses_that_are_in_reach(opm, parts, tmp_path):
-    """Held against inverse kinematics pose by pose."""
+    """The shards are compared with inverse kinematics pose by pose."""
     counts = [ends[2] for ends in AXES.values()]
     mask = np.zeros(counts, bool, order="F")
     flat = mask.reshape(-1, order="F")
@@ -74,7 +74,7 @@ def test_a_shard_says_what_it_is_of(opm, parts):
 
 
 def scripts(heading):
-    """The shell scripts of a section of docs/scaling.md, as they stand there."""
+    """The shell scripts of a section of docs/scaling.md, unchanged."""
     text = (REPOSITORY / "docs" / "scaling.md").read_text()
     section = re.search(rf"^## {heading}\n(.*?)(?=^## )", text, re.DOTALL | re.MULTILINE)
     assert section, heading
@@ -141,7 +141,7 @@ def test_what_the_document_gives_to_parallel(shell, one_run, tmp_path):
 
 
 def test_what_the_document_gives_to_slurm(shell, one_run, tmp_path):
-    """Without Slurm: a process for each number of the array, as it would start them."""
+    """Without Slurm: starts one process for each number of the array, as Slurm would."""
     task, submission = scripts("With Slurm")
     assert task.startswith("#!/bin/sh\n")
     first, last = map(int, re.search(r"^#SBATCH --array=(\d+)-(\d+)$", task, re.MULTILINE).groups())

@@ -1,4 +1,4 @@
-"""Points as tables, read by NumPy and plyfile, against the recording of the same run."""
+"""Points as tables, read by NumPy and plyfile and compared with the recording of the same run."""
 
 import subprocess
 
@@ -43,7 +43,7 @@ def test_an_array_has_the_points_in_double_precision(record, cloud):
     assert all(array.dtype[name] == np.float64 for name in array.dtype.names)
     for name, field in zip(array.dtype.names, ("x", "y", "z", "theta11", "S1"), strict=True):
         np.testing.assert_array_equal(array[name].astype(np.float32), cloud[field])
-    # As the grid has them, which single precision does not.
+    # The values of the grid, in double precision.
     assert set(array["y"]) <= {-0.2 * (1 - i / 8) + 0.2 * (i / 8) for i in range(9)}
 
 
@@ -62,7 +62,7 @@ def test_tables_without_flags_or_points(record, cloud, ending):
     table = np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data
     assert len(table) == len(cloud)
     assert {"zeta", "psi"} <= set(table.dtype.names)
-    if ending == "npy":  # What varies, then what does not.
+    if ending == "npy":  # The columns that vary, then the constant ones.
         assert table.dtype.names == ("x", "y", "xi", "zeta", "psi")
     path = record(ending, "--grid", "zeta=0", "--mode", "home", "--max-condition", "1")
     count = len(np.load(path) if ending == "npy" else PlyData.read(path)["vertex"].data)

@@ -1,4 +1,4 @@
-"""`opm workspace` recordings, point by point against the paper's closed form in NumPy."""
+"""`opm workspace` recordings, compared point by point with the paper's closed form in NumPy."""
 
 import csv
 import subprocess
@@ -10,7 +10,7 @@ import pytest
 from conftest import REPOSITORY
 
 MECHANISM = "plano-spherical-5dof"
-# Metres and radians, first axis fastest; no value is on the rim of reach or on a limit.
+# Metres and radians, first axis fastest; no value is on the boundary of reach or on a limit.
 GRID = {
     "x": (-0.23, 0.21, 45),
     "y": (-0.17, 0.29, 47),
@@ -18,7 +18,7 @@ GRID = {
     "xi": (-0.7, 1.7, 7),
     "psi": (-0.8, 1.3, 3),
 }
-# Of the closed form's margins; beyond rounding, a pose is in reach or out of it.
+# Tolerance for the margins of the closed form: a pose with a larger one is clearly in or out of reach.
 ROUNDING = 1e-9
 
 
@@ -27,7 +27,7 @@ def flags(grid):
 
 
 def poses(grid):
-    """All poses of a grid, a column an axis, the first axis fastest."""
+    """All poses of a grid, one column per axis, the first axis fastest."""
     values = [np.linspace(*axis) for axis in reversed(grid.values())]
     columns = [axis.ravel() for axis in np.meshgrid(*values, indexing="ij")]
     return dict(zip(grid, reversed(columns)))
@@ -45,7 +45,7 @@ def expected():
     """The reachable poses of `GRID` with their joint values, by the closed form."""
     grid = poses(GRID)
     joints, margin = plano_spherical.joints(**grid)
-    assert not np.any(np.abs(margin) < ROUNDING), "a pose on the rim: choose another grid"
+    assert not np.any(np.abs(margin) < ROUNDING), "a pose on the boundary of reach: choose another grid"
     inside = margin > 0
     assert 0.1 < inside.mean() < 0.9, "a grid that is all inside or all outside shows little"
     return {name: column[inside] for name, column in (grid | joints).items()}

@@ -1,14 +1,14 @@
-//! A sweep the slow way: one inverse-kinematics call per pose.
+//! A reference implementation of sweeps: one inverse-kinematics call per pose.
 
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_workspace::{Count, Grid, Modes};
 
-/// The reachable poses and imaginary ranges by one IK call per pose and mode.
+/// The reachable poses and the ranges of the imaginary joints, by one call per pose and mode.
 pub fn by_inverse(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> (Vec<Vec<f64>>, Count) {
     by_predicate(manipulator, grid, modes, |_| true)
 }
 
-/// The same, of those solutions that a predicate admits.
+/// The same for those solutions that satisfy a predicate.
 pub fn by_predicate(
     manipulator: &Manipulator,
     grid: &Grid,

@@ -1,21 +1,22 @@
-//! Derivatives by central differences, extrapolated to a step of zero, with a bound on their error.
+//! Derivatives by central differences, extrapolated to step zero, with an error bound.
 
-/// Steps, each `SHRINK` of the one before.
+/// The number of steps; each step is `SHRINK` times the previous one.
 const STEPS: usize = 9;
 const SHRINK: f64 = 0.6;
 
-/// A derivative and how far it may be off.
+/// A derivative, with a bound on its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The derivative.
+    /// The value of the derivative.
     pub value: f64,
-    /// How much the last extrapolations differ.
+    /// The difference of the last extrapolations, as an error bound.
     pub error: f64,
 }
 
-/// First and second derivative at zero of every component of `f`, the largest step being `step`;
-/// `None` where `f` is not defined on the way. Ridders, "Accurate computation of F'(x) and F'(x)
-/// F''(x)", Adv. Eng. Software 4 (1982): Neville's scheme in the square of the step.
+/// The first and second derivative at zero of every component of `f`, with `step` as the largest
+/// step; `None` if `f` is undefined at one of the points. The method is Neville's scheme in the
+/// square of the step: Ridders, "Accurate computation of F'(x) and F'(x) F''(x)", Adv. Eng.
+/// Software 4 (1982).
 pub fn derivatives(
     step: f64,
     mut f: impl FnMut(f64) -> Option<Vec<f64>>,

@@ -1,6 +1,6 @@
 //! Tests that span the crates, and what they share: the paper's formulas as an oracle, random
 //! mechanisms of every pair of partial subspaces, a numeric solver for their legs, central
-//! differences, and sweeps the slow way.
+//! differences, and sweeps by one call per pose.
 
 pub mod by_inverse;
 pub mod differences;
@@ -8,7 +8,7 @@ pub mod newton;
 pub mod paper;
 pub mod random;
 
-/// The README's Rust is compiled with the tests.
+/// Compiles the Rust code in the README with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;

@@ -1,6 +1,6 @@
-//! A solver for one leg that knows nothing of subspaces, cuts or chains: damped Gauss-Newton steps
-//! (Levenberg and Marquardt) on the leg's product of exponentials as it stands, six equations in its
-//! joint coordinates, from many random starts.
+//! A solver for one leg that uses no subspaces, splits or chains: damped Gauss-Newton steps
+//! (Levenberg and Marquardt) on the leg's product of exponentials, six equations in its joint
+//! coordinates, from many random starts.
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix6xX, Point3, Vector3, Vector6};
@@ -8,26 +8,26 @@ use opm_core::joint::{JointKind, Quantity};
 use opm_core::leg::Leg;
 use std::f64::consts::PI;
 
-/// What is left of a solution, in radians and in metres of mechanisms of a few metres: rounding.
+/// Residual of a solution, in radians and in metres for mechanisms of a few metres: rounding.
 const SOLVED: f64 = 1e-11;
-/// Steps from one start.
+/// The largest number of steps from one start.
 const STEPS: usize = 60;
-/// Starts of sliders are within so many metres of home.
+/// Starting values of sliders are within this many metres of home.
 const FAR: f64 = 4.0;
 
-/// A leg that is to bring the platform's point and orientation where `target` takes them.
+/// A leg that shall bring the platform's point and orientation to `target`.
 pub struct Closure<'a> {
     /// The leg.
     pub leg: &'a Leg,
-    /// The platform's point at home.
+    /// The platform's reference point at home.
     pub point: Point3<f64>,
-    /// The platform's displacement.
+    /// The platform's displacement from home.
     pub target: Isometry3<f64>,
 }
 
 impl Closure<'_> {
-    /// Every solution that the starts lead to, as displacements of the joints from home; the same one
-    /// many times.
+    /// Every solution found from the starts, as displacements of the joints from home. The same
+    /// solution may be listed many times.
     pub fn solutions(&self, starts: usize, rng: &mut Rng) -> Vec<DVector<f64>> {
         let quantities: Vec<Quantity> = self.leg.coordinates().map(|c| c.quantity).collect();
         let mut found = Vec::new();
@@ -65,16 +65,16 @@ impl Closure<'_> {
         None
     }
 
-    /// Smallest singular value of the leg's Jacobian: near zero where two solutions meet. A ball counts
-    /// by its angular velocity.
+    /// The smallest singular value of the leg's Jacobian: nearly zero where two solutions meet. A
+    /// spherical joint contributes its angular velocity.
     pub fn sharpness(&self, q: &DVector<f64>) -> f64 {
         let (_, jacobian) = self.linear(q, |_| Matrix3::identity());
         let squares = jacobian.tr_mul(&jacobian).symmetric_eigenvalues();
         squares.min().max(0.0).sqrt()
     }
 
-    /// What is missing to the target, rotation vector and way of the point, and the twist of the
-    /// platform for a unit rate of each coordinate, with the point's velocity.
+    /// The error to the target (a rotation vector and the translation of the point), and the twist
+    /// of the platform for a unit rate of each coordinate, with the point's velocity.
     fn linear(
         &self,
         q: &DVector<f64>,
@@ -125,14 +125,14 @@ impl Closure<'_> {
     }
 }
 
-/// A joint's displacement by amounts from home.
+/// The displacement of a joint by amounts from home.
 pub fn displacement(joint: &opm_core::joint::Joint, amounts: &[f64]) -> Isometry3<f64> {
     let values: Vec<f64> =
         joint.coordinates.iter().zip(amounts).map(|(c, amount)| c.home + amount).collect();
     joint.displacement(&values)
 }
 
-/// Angular velocity for unit rates of a rotation vector, one a column.
+/// The angular velocity for unit rates of a rotation vector, one per column.
 fn rates(r: &Vector3<f64>) -> Matrix3<f64> {
     let angle = r.norm();
     let cross = r.cross_matrix();

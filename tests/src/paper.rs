@@ -1,8 +1,8 @@
-//! The paper's closed forms, corrected: the oracle that the generic solver is held against, and the
-//! plain scalar code that its speed is measured against.
+//! The paper's closed forms, corrected: the oracle for the generic solver, and the plain scalar
+//! code with which its speed is compared.
 //!
-//! Equations are those of M. Ö. Selvi, *Kinematic analysis of overconstrained manipulators with
-//! partial subspaces using decomposition method*, Robotica; docs/errata.md lists the corrections.
+//! The equations are those of M. Ö. Selvi, *Kinematic analysis of overconstrained manipulators with
+//! partial subspaces using decomposition method*, Robotica. docs/errata.md lists the corrections.
 
 mod random;
 mod velocity;
@@ -12,13 +12,13 @@ use std::f64::consts::FRAC_PI_2;
 /// A PRR(RR) leg of the plano-spherical manipulator (section 3.1); metres and radians.
 #[derive(Clone, Copy, Debug)]
 pub struct SliderLeg {
-    /// Direction of the leg's foot in the plane; the slider is square to it.
+    /// Direction of the leg in the plane; the slider moves perpendicular to it.
     pub alpha: f64,
     /// Distance of the slider's line from the origin.
     pub h: f64,
-    /// Link between slider and the second link.
+    /// Length of the link between the slider and the second link.
     pub a1: f64,
-    /// Link to the platform.
+    /// Length of the link at the platform.
     pub a2: f64,
     /// Arc of the first spherical link.
     pub arc1: f64,
@@ -35,29 +35,29 @@ pub struct SliderLeg {
 pub struct PlanoSpherical {
     /// The three PRR(RR) legs.
     pub legs: [SliderLeg; 3],
-    /// Base of the RRS leg.
+    /// Base point of the RRS leg.
     pub d: [f64; 2],
-    /// Its links.
+    /// Lengths of the two links of the RRS leg.
     pub b: [f64; 2],
 }
 
-/// Signs of the working mode: `true` is plus.
+/// Signs of the working mode; `true` is plus.
 #[derive(Clone, Copy, Debug)]
 pub struct Signs {
-    /// Of each slider leg: the spherical choice, the slider's root.
+    /// For each slider leg: the sign of the spherical choice, and that of the slider's root.
     pub legs: [[bool; 2]; 3],
-    /// `sin phi24 > 0`.
+    /// The sign of `sin phi24`.
     pub arm: bool,
 }
 
-/// What the inverse kinematics gives; metres and radians.
+/// A solution of the inverse kinematics; metres and radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joints {
-    /// Imaginary joints `theta_1i`.
+    /// The imaginary joints `theta_1i`.
     pub theta: [f64; 3],
-    /// Sliders `S_i`.
+    /// The sliders `S_i`.
     pub slider: [f64; 3],
-    /// `phi_14`, `phi_24`.
+    /// The angles `phi_14` and `phi_24`.
     pub arm: [f64; 2],
 }
 
@@ -79,7 +79,7 @@ impl SliderLeg {
 }
 
 impl PlanoSpherical {
-    /// The printed parameters, and those chosen where the print gives none.
+    /// The printed parameters, and chosen ones where the paper prints none.
     pub fn printed() -> Self {
         let leg = |i: f64| SliderLeg {
             alpha: (30.0 + 120.0 * i).to_radians(),
@@ -94,7 +94,8 @@ impl PlanoSpherical {
         Self { legs: [leg(0.0), leg(1.0), leg(2.0)], d: [0.0, 0.075], b: [0.1, 0.1] }
     }
 
-    /// Equations 2-3 and 10-16 for the pose `x, y, zeta, xi, psi`; `None` out of reach.
+    /// Solves equations 2-3 and 10-16 for the pose `x, y, zeta, xi, psi`; `None` if it is out of
+    /// reach.
     pub fn inverse(&self, pose: &[f64; 5], signs: &Signs) -> Option<Joints> {
         let [x, y, zeta, xi, psi] = *pose;
         let rho = rotation(zeta, xi, psi);
@@ -118,7 +119,7 @@ impl PlanoSpherical {
         Some(Joints { theta, slider, arm })
     }
 
-    /// Equations 10-12: the two-link arm from D to P.
+    /// Solves equations 10-12: the two-link arm from D to P.
     pub fn arm(&self, p: [f64; 2], plus: bool) -> Option<[f64; 2]> {
         let [b1, b2] = self.b;
         let (dx, dy) = (p[0] - self.d[0], p[1] - self.d[1]);
@@ -135,7 +136,7 @@ impl PlanoSpherical {
     }
 }
 
-/// Eq. 16, divided by two as a whole: `S = (-b ± sqrt(b² - 4c)) / 2`.
+/// Eq. 16, with the whole numerator divided by two: `S = (-b ± sqrt(b² - 4c)) / 2`.
 pub fn slider_root(leg: &SliderLeg, p: [f64; 2], theta: f64, plus: bool) -> Option<f64> {
     let (b, c) = slider_quadratic(leg, p, theta);
     let discriminant = b * b - 4.0 * c;
@@ -146,7 +147,7 @@ pub fn slider_root(leg: &SliderLeg, p: [f64; 2], theta: f64, plus: bool) -> Opti
     Some((-b + if plus { root } else { -root }) / 2.0)
 }
 
-/// The coefficients of Eq. 16's quadratic, as printed.
+/// The coefficients of the quadratic of Eq. 16, as printed.
 pub fn slider_quadratic(leg: &SliderLeg, [x, y]: [f64; 2], theta: f64) -> (f64, f64) {
     let SliderLeg { alpha, h, a1, a2, .. } = *leg;
     let (sa, ca) = alpha.sin_cos();
@@ -161,7 +162,7 @@ pub fn slider_quadratic(leg: &SliderLeg, [x, y]: [f64; 2], theta: f64) -> (f64, 
     (b, c)
 }
 
-/// Rows of `Rz(zeta) Ry(xi) Rz(psi)`.
+/// The rows of `Rz(zeta) Ry(xi) Rz(psi)`.
 pub fn rotation(zeta: f64, xi: f64, psi: f64) -> [[f64; 3]; 3] {
     let ((sz, cz), (sx, cx), (sp, cp)) = (zeta.sin_cos(), xi.sin_cos(), psi.sin_cos());
     [
@@ -174,13 +175,13 @@ pub fn rotation(zeta: f64, xi: f64, psi: f64) -> [[f64; 3]; 3] {
 /// A leg of the translational-helical manipulator (section 3.2); metres and radians.
 #[derive(Clone, Copy, Debug)]
 pub struct TranslationalLeg {
-    /// Direction of the leg; the slider is square to it.
+    /// Direction of the leg; the slider moves perpendicular to it.
     pub alpha: f64,
-    /// From it to the common axis.
+    /// Angle from the leg's direction to the common axis.
     pub beta: f64,
     /// Offset along the common axis.
     pub k: f64,
-    /// Metres a radian; zero for a PPR leg.
+    /// Pitch in metres per radian; zero for a PPR leg.
     pub pitch: f64,
 }
 
@@ -200,20 +201,20 @@ impl TranslationalLeg {
         ]
     }
 
-    /// The slider, `S_i = n(alpha) . P + sin(beta) (k + S)`, `S = p phi` (Eqs. 24, 27, 28 without
-    /// the printed divisor).
+    /// The slider, `S_i = n(alpha) . P + sin(beta) (k + S)` with `S = p phi` (Eqs. 24, 27, 28
+    /// without the printed divisor).
     pub fn slider(&self, [x, y]: [f64; 2], phi: f64) -> f64 {
         let (sa, ca) = self.alpha.sin_cos();
         y * ca - x * sa + self.beta.sin() * (self.k + self.pitch * phi)
     }
 }
 
-/// `e(t)`.
+/// The unit vector `e(t)` of the angle t.
 pub fn e(t: f64) -> [f64; 2] {
     [t.cos(), t.sin()]
 }
 
-/// `n(t) = e(t + pi/2)`.
+/// The unit vector `n(t) = e(t + pi/2)`.
 pub fn n(t: f64) -> [f64; 2] {
     e(t + FRAC_PI_2)
 }

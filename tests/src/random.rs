@@ -1,5 +1,4 @@
-//! Random mechanisms of every pair of partial subspaces, with the decomposition that they were made
-//! from.
+//! Random mechanisms of every pair of subspaces, with the decomposition from which they were built.
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -10,7 +9,8 @@ use opm_core::mechanism::{Mechanism, TaskHints};
 use opm_core::subspace::SubspaceClass;
 use std::f64::consts::{PI, TAU};
 
-/// Every pair of subspaces with closed-form chains that meets in one dimension: lower, upper.
+/// Every pair of subspaces (lower, upper) that has closed-form chains and a one-dimensional
+/// intersection.
 pub const PAIRS: [[Kind; 2]; 16] = {
     use Kind::{Cylindrical, Planar, Spherical, TranslationalPlane};
     use Meet::{Rotation, Translation};
@@ -34,7 +34,7 @@ pub const PAIRS: [[Kind; 2]; 16] = {
     ]
 };
 
-/// What the intersection motion is.
+/// The intersection motion of a pair, before it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meet {
     /// A rotation about z.
@@ -43,16 +43,16 @@ pub enum Meet {
     Translation,
 }
 
-/// A subspace, before it is displaced.
+/// A kind of subspace, placed relative to the intersection motion along or about z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// With its normal along z, or with z in the plane.
+    /// A plane with its normal along z, or a plane that contains z.
     Planar(Meet),
-    /// With its centre on z.
+    /// A sphere with its centre on z.
     Spherical,
-    /// Along z, or parallel to it.
+    /// A cylinder with its axis along z or parallel to it.
     Cylindrical(Meet),
-    /// With z in the plane.
+    /// A translational plane that contains z.
     TranslationalPlane,
 }
 
@@ -73,24 +73,25 @@ impl Kind {
     }
 }
 
-/// A subspace of random geometry.
+/// A subspace with random geometry.
 struct Place {
     kind: Kind,
-    /// Normal of a plane, axis of a cylinder.
+    /// Normal of a plane, or axis of a cylinder.
     normal: Vector3<f64>,
     point: Point3<f64>,
 }
 
-/// How to draw a mechanism.
+/// Options for drawing a mechanism.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Most limits: each coordinate gets some with this probability.
+    /// The probability with which each coordinate gets limits.
     pub limited: f64,
-    /// Spherical, universal and cylindrical joints in place of revolutes and sliders, where they fit.
+    /// Whether spherical, universal and cylindrical joints replace revolutes and sliders where they
+    /// fit.
     pub balls: bool,
 }
 
-/// The kinds of joints in a section of a leg, base first: `RPR`, `UR`, `S`, ...
+/// The kinds of joints in a section of a leg, from base to platform: `RPR`, `UR`, `S`, ...
 pub fn order(leg: &Leg, section: &[Freedom]) -> String {
     let mut joints: Vec<usize> = section.iter().map(|freedom| freedom.joint).collect();
     joints.dedup();
@@ -106,7 +107,7 @@ pub fn order(leg: &Leg, section: &[Freedom]) -> String {
 }
 
 /// Every order of kinds that a section can have, if it has as many freedoms as its subspace, or one
-/// less where the cut, a joint along the intersection motion, takes one.
+/// less if the imaginary joint takes one.
 pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
     use Meet::{Rotation, Translation};
     match (kind, cut) {
@@ -123,12 +124,12 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
     }
 }
 
-/// What the two subspaces of a pair have in common.
+/// The motion that the two subspaces of a pair share.
 pub fn meet(pair: [Kind; 2]) -> Meet {
     pair[0].meet().or(pair[1].meet()).unwrap_or(Meet::Translation)
 }
 
-/// A random mechanism of a pair of subspaces, and its decomposition.
+/// A random mechanism of a pair of subspaces, with its decomposition.
 pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism, Decomposition) {
     let meet = meet(pair);
     let azimuth = rng.f64() * PI;
@@ -201,7 +202,7 @@ pub fn displacement(rng: &mut Rng) -> Isometry3<f64> {
     )
 }
 
-/// A mechanism, rigidly displaced as a whole, with how its pose is measured.
+/// The mechanism displaced as a rigid body, including its task hints.
 pub fn displace(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
     let mut displaced = mechanism.clone();
     for joint in displaced.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
@@ -279,7 +280,8 @@ impl Place {
     }
 }
 
-/// Joints that make a full chain with the cut, which is last in a lower section, first in an upper.
+/// Joints that form a full chain with the imaginary joint, which is last in a lower section and
+/// first in an upper one.
 fn section_joints(
     rng: &mut Rng,
     place: &Place,
@@ -310,7 +312,7 @@ fn section_joints(
                 } else {
                     Vector3::zeros()
                 };
-                // Neighbours at least 20 degrees from parallel.
+                // Neighbouring axes are at least 20 degrees from parallel.
                 if before.dot(&axis).abs().max(after.dot(&axis).abs()) < 0.94 {
                     joints.push(joint(revolute, axis, place.point + axis * rng.f64()));
                 }
@@ -355,7 +357,8 @@ fn section_joints(
             joints
         }
         Kind::Cylindrical(meet) => {
-            // With a revolute cut the joint must advance, with a prismatic one it must turn.
+            // With a revolute imaginary joint the other joint must advance; with a prismatic one it
+            // must rotate.
             let kinds: &[JointKind] = match (cut, meet) {
                 (Some(_), Meet::Rotation) => &[prismatic, JointKind::Helical { pitch: 0.2 }],
                 (Some(_), Meet::Translation) => &[revolute, JointKind::Helical { pitch: 0.2 }],
@@ -423,14 +426,14 @@ fn displaced(
     displaced
 }
 
-/// Two directions that make a right-handed triad with a third.
+/// Two directions that form a right-handed triad with a third one.
 fn beside(normal: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let base = if normal.x.abs() > 0.9 { Vector3::y() } else { Vector3::x() };
     let u = (base - normal * normal.dot(&base)).normalize();
     (u, normal.cross(&u))
 }
 
-/// A uniform direction.
+/// A direction with uniform distribution on the sphere.
 pub fn direction(rng: &mut Rng) -> Unit<Vector3<f64>> {
     loop {
         let v = vector(rng);
@@ -440,7 +443,7 @@ pub fn direction(rng: &mut Rng) -> Unit<Vector3<f64>> {
     }
 }
 
-/// Uniform in a cube of side two about the origin.
+/// A vector with uniform distribution in a cube of side two about the origin.
 pub fn vector(rng: &mut Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| rng.f64() * 2.0 - 1.0)
 }

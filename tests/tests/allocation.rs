@@ -1,5 +1,5 @@
-//! Inverse kinematics does not allocate, nor do velocities or a linkage's position: all may run in a
-//! control loop.
+//! Inverse kinematics, velocities and the positions of a linkage do not allocate: all of them may
+//! run in a control loop.
 
 use allocation_counter::measure;
 use fastrand::Rng;

@@ -1,4 +1,5 @@
-//! Inverse kinematics of many poses at once, held against one at a time: the same to the bit.
+//! Inverse kinematics of many poses at once, compared with one pose at a time: the results are
+//! bitwise equal.
 
 use fastrand::Rng;
 use opm_core::manipulator::{BatchError, BatchOutput, Manipulator, Mode, PoseError};
@@ -7,7 +8,8 @@ use opm_tests::random::{Options, PAIRS, mechanism};
 
 const OPTIONS: Options = Options { limited: 0.3, balls: true };
 
-/// What one at a time gives, and how many poses were solved, out of reach, and outside of limits.
+/// The results of one pose at a time, and how many poses were solved, out of reach, and outside
+/// limits.
 #[derive(Default)]
 struct Tally {
     reached: usize,
@@ -15,10 +17,10 @@ struct Tally {
     outside: usize,
 }
 
-/// Compares the two on these poses.
+/// Compares both ways on these poses.
 fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut Tally) {
     let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
-    // What is not written must not pass for an answer.
+    // Values that are not written must not pass for results.
     let mut joints = vec![1e99; poses.len() * widths[0]];
     let mut imaginary = vec![1e99; poses.len() * widths[1]];
     let (mut reachable, mut within) = (vec![false; poses.len()], vec![true; poses.len()]);
@@ -38,7 +40,7 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
         let joints = &joints[row * widths[0]..][..widths[0]];
         let imaginary = &imaginary[row * widths[1]..][..widths[1]];
         if reached {
-            // No tolerance: it is the same arithmetic.
+            // There is no tolerance: it is the same arithmetic.
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
             assert_eq!(bits(joints), bits(solution.joints()), "{name}: {pose:?}");
             assert_eq!(bits(imaginary), bits(solution.imaginary()), "{name}: {pose:?}");
@@ -51,8 +53,9 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
     }
 }
 
-/// Near home and far from it, on the axes of the sections' chains and on the grid of quarter turns, where
-/// sliders come to be parallel and arms straight; a few that count a million turns.
+/// Poses near home and far from it, on the axes of the sections' chains, and on the grid of quarter
+/// revolutions, where sliders are parallel and arms are straight; a few count a million
+/// revolutions.
 fn poses(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<Vec<f64>> {
     let home = manipulator.task().home();
     (0..count)
@@ -80,7 +83,7 @@ fn many_poses_are_solved_as_one_is() {
         for _ in 0..60 {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            // Whole blocks and what is left of one.
+            // Numbers of poses that fill whole blocks, and numbers with a remainder.
             let count = [1, 63, 64, 65, 150][rng.usize(..5)];
             let poses = poses(&mut rng, &manipulator, count);
             let signs = |rng: &mut Rng| -> String {
@@ -97,7 +100,7 @@ fn many_poses_are_solved_as_one_is() {
     }
 }
 
-/// Every mode of the shipped mechanisms.
+/// Every working mode of the shipped mechanisms.
 #[test]
 fn shipped_mechanisms_are_solved_as_one_is() {
     let mut rng = Rng::with_seed(4);
@@ -118,7 +121,7 @@ fn shipped_mechanisms_are_solved_as_one_is() {
     }
 }
 
-/// The first pose that is no pose is told, by its number.
+/// The first invalid pose is reported by its index.
 #[test]
 fn a_wrong_pose_is_told() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;

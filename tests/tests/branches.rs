@@ -1,6 +1,5 @@
-//! The number of branches: what the closed forms give for a leg, against what a numeric solver finds
-//! from many random starts on the leg as it stands, for every pair of subspaces and every order of
-//! joints in both sections.
+//! The number of branches of a leg: the closed forms are compared with what a numeric solver finds
+//! from many random starts, for every pair of subspaces and every order of joints in both sections.
 
 use fastrand::Rng;
 use nalgebra::{DVector, Isometry3};
@@ -15,19 +14,21 @@ use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orde
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-/// Starts for each leg: it has at most four solutions, which these find but for one leg in thousands.
+/// Random starts per leg. A leg has at most four solutions, and these starts find all of them
+/// except for one leg in thousands.
 const STARTS: usize = 80;
-/// Starts where they find fewer than there are branches.
+/// Random starts if fewer solutions are found than there are branches.
 const MORE: usize = 5_000;
-/// Poses that are compared, for each pair and each section that the cut can be in.
+/// The number of poses compared, for each pair and each section that the imaginary joint can be in.
 const POSES: usize = 150;
-/// Two solutions whose joints' displacements differ by less, as matrices, are one.
+/// Two solutions are the same if their joints' displacements, as matrices, differ by less.
 const SAME: f64 = 1e-5;
-/// Where the leg's Jacobian is nearer to singular, two solutions are about to meet (a fold), and
-/// neither solver can be held to how many there are. Radians and metres, legs of the size of one.
+/// If the smallest singular value of the leg's Jacobian is below this, two solutions nearly meet (a
+/// fold), and neither solver can be expected to find the right number. Radians and metres, for legs
+/// of unit size.
 const FOLD: f64 = 2e-2;
 
-/// A leg, alone.
+/// A single leg.
 struct Alone {
     manipulator: Manipulator,
     cylindrical: [bool; 2],
@@ -49,8 +50,8 @@ impl Alone {
         &self.manipulator.mechanism().legs[0]
     }
 
-    /// What each joint does, whole turns aside. Joints on one axis, a screw and a slider for instance,
-    /// can do the same a turn apart: they count together.
+    /// The displacement of each joint, modulo 2π. Joints on one axis, such as a screw and a slider,
+    /// can give the same displacement a revolution apart, so they are compared together.
     fn parts(&self, q: &DVector<f64>) -> Vec<Isometry3<f64>> {
         let mut rest = q.as_slice();
         let each: Vec<_> = self.leg().joints.iter().map(|joint| take(joint, &mut rest)).collect();
@@ -66,8 +67,9 @@ impl Alone {
             .collect()
     }
 
-    /// A screw that is alone on a cylinder's axis follows the pose's angle, whole turns and all; the
-    /// platform's displacement does not hold these, and a solution a turn on is of another pose.
+    /// A screw that is alone on a cylinder's axis follows the pose's angle, including full
+    /// revolutions. The platform's displacement does not contain these, so a solution with another
+    /// revolution belongs to another pose.
     fn of_this_turn(&self, q: &DVector<f64>) -> bool {
         let mut rest = q.as_slice();
         let sections = [&self.split.lower, &self.split.upper];
@@ -120,7 +122,7 @@ fn take(joint: &Joint, rest: &mut &[f64]) -> Isometry3<f64> {
     displacement(joint, own)
 }
 
-/// What was compared of a pair, with the cut in one section.
+/// The counts for a pair, with the imaginary joint in one section.
 #[derive(Default)]
 struct Tally {
     compared: usize,
@@ -175,7 +177,7 @@ fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
             }
             assert_eq!(branches.len(), solutions.len(), "{pair:?}, {found:?} at {pose:?}");
             let count = solutions.len();
-            // None of the numeric ones is new.
+            // The numeric solver finds no other solution.
             for q in &closed {
                 alone.add(&mut solutions, q);
             }
@@ -192,7 +194,8 @@ fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
     tally
 }
 
-/// The orders of joints in both sections, with the cut above or below.
+/// The orders of joints in both sections, with the imaginary joint in the upper or in the lower
+/// one.
 fn expected(pair: [Kind; 2], above: bool) -> [BTreeSet<String>; 2] {
     let cut: Option<Meet> = Some(meet(pair));
     let cuts = if above { [None, cut] } else { [cut, None] };
@@ -220,6 +223,6 @@ fn there_are_as_many_branches_as_a_numeric_solver_finds() {
         }
     }
     println!("branches {total:?}");
-    // None, one, two and four; three only where two would meet.
+    // There are no, one, two or four solutions; three only where two would meet.
     assert!([0, 1, 2, 4].iter().all(|&count| total[count] > 20) && total[3] == 0, "{total:?}");
 }

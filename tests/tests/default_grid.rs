@@ -1,4 +1,5 @@
-//! The default grid: it holds the workspace, closely, whatever the workspace's size and place.
+//! The default grid contains the workspace and fits it closely, whatever the workspace's size and
+//! position.
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
@@ -12,7 +13,7 @@ fn example(name: &str, edit: impl Fn(&str) -> String) -> Mechanism {
     file::read(&edit(examples::find(name).unwrap().text)).unwrap().mechanism
 }
 
-/// Limits of this much about home on every joint: metres and radians.
+/// Limits of this size about home on every joint: metres and radians.
 fn limited(mut mechanism: Mechanism, metres: f64, radians: f64) -> Manipulator {
     let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
     for coordinate in joints.flat_map(|joint| &mut joint.coordinates) {
@@ -29,8 +30,8 @@ fn fitted(manipulator: &Manipulator) -> (Grid, Vec<Extent>, u64) {
     (grid, extents, count.reachable)
 }
 
-/// Poses of the second manipulator between its sliders' limits are a parallelepiped, whose corners
-/// are where three sliders are at their ends (NOTES: `S = n·P + sin(beta) (k + [i = 1] p phi)`).
+/// The poses of the second manipulator within its sliders' limits are a parallelepiped. At its
+/// corners three sliders are at their limits (NOTES: `S = n·P + sin(beta) (k + [i = 1] p phi)`).
 #[test]
 fn it_holds_the_second_manipulators_workspace_closely() {
     let manipulator =
@@ -60,7 +61,7 @@ fn it_holds_the_second_manipulators_workspace_closely() {
     }
 }
 
-/// A workspace that fits between the poses of any coarse grid, about a home that is on none.
+/// A workspace that fits between the poses of any coarse grid, about a home that is on no grid.
 #[test]
 fn it_finds_a_small_workspace() {
     for (xi, radians) in [(0.0, 0.05), (7.5, 0.05), (7.5, 0.002), (-40.0, 0.01), (200.0, 0.01)] {
@@ -75,7 +76,8 @@ fn it_finds_a_small_workspace() {
     }
 }
 
-/// No pose of a finer and wider grid that is in reach lies outside, whatever thin parts a workspace has.
+/// No pose of a finer and wider grid that is in reach is outside, however thin parts of the
+/// workspace are.
 #[test]
 fn nothing_in_reach_is_outside_it() {
     const POSES: f64 = 1e7;
@@ -86,7 +88,8 @@ fn nothing_in_reach_is_outside_it() {
         };
         let (fitted, extents, _) = fitted(&manipulator);
         let coordinates = manipulator.task_coordinates();
-        // Even, so that home is not on it, and other values than any grid of the search has.
+        // An even number, so that home is not on the grid and the values differ from those of the
+        // search.
         let count = 2 * (0.5 * POSES.powf(1.0 / coordinates.len() as f64)) as u64;
         let axes =
             fitted.axes().iter().zip(&extents).zip(coordinates).map(|((axis, extent), c)| {
@@ -138,7 +141,7 @@ fn nothing_in_reach_is_outside_it() {
     assert!(checked >= 10, "{checked} mechanisms");
 }
 
-/// Locked joints leave one pose: the grid closes in on it and comes to an end.
+/// Locked joints leave one pose: the grid shrinks around it and stops.
 #[test]
 fn it_ends_at_a_workspace_of_one_pose() {
     let manipulator = limited(example("plano-spherical-5dof", str::to_owned), 0.0, 0.0);
@@ -147,8 +150,8 @@ fn it_ends_at_a_workspace_of_one_pose() {
     assert!(grid.axes()[0].max - grid.axes()[0].min < 1e-5);
 }
 
-/// Without limits many workspaces have no end: then the grid keeps to the mechanism's size, and
-/// angles to one turn unless a helical joint counts them.
+/// Without limits many workspaces are unbounded. The grid is then as large as the mechanism, and
+/// angles cover one revolution unless a helical joint counts revolutions.
 #[test]
 fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
     let mut rng = Rng::with_seed(31);
@@ -159,7 +162,7 @@ fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let mechanism = manipulator.mechanism();
         let distances = mechanism.joints().map(|joint| (joint.point - mechanism.platform).norm());
-        // To both sides of home, and outward to round numbers, a tenth at most.
+        // To both sides of home, and outward to round numbers, by at most a tenth.
         let far = 2.4 * distances.fold(0.0, f64::max);
         let (grid, extents, reachable) = fitted(&manipulator);
         assert!(reachable > 0, "{pair:?}");
@@ -175,7 +178,7 @@ fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
                 assert!(width <= PI + 1e-9, "{pair:?} {axis:?}");
             }
             if extent.unbounded {
-                // An angle that counts turns stays within one, rounded outward.
+                // An angle that counts revolutions stays within one, rounded outward.
                 let most = if angle { 1.1 * TAU } else { far };
                 assert!(width < most, "{pair:?} {axis:?} {far}");
                 told += 1;

@@ -1,5 +1,5 @@
-//! Every shipped mechanism: that it decomposes as its page in docs/gallery says, and that its closed
-//! forms and its sweep are those of its undecomposed legs.
+//! Every shipped mechanism decomposes as its page in docs/gallery says, and its closed forms and
+//! its sweep agree with its undecomposed legs.
 
 use fastrand::Rng;
 use opm_core::decomposition::{DecomposeError, Decomposition, decompose};
@@ -12,21 +12,22 @@ use opm_core::subspace::SubspaceClass;
 use opm_tests::by_inverse::by_inverse;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 
-/// The bound on closure, as a share of the metre: the mechanisms are smaller.
+/// The bound on closure, as a share of a metre: the mechanisms are smaller.
 const CLOSURE: f64 = 1e-10;
 
-/// Home lies well inside of reach, so no digits are lost on the way there and back: 12 decimals of
-/// millimetres and degrees, and what a family computes from its parameters.
+/// Home is well inside reach, so no digits are lost on the way there and back: tolerance for 12
+/// decimals of millimetres and degrees, and for what a family computes from its parameters.
 const HOME: f64 = 1e-12;
 
-/// Poses that must be closed in each mechanism.
+/// The number of poses that must be closed in each mechanism.
 const REACHED: usize = 1_000;
 
 /// Bennett's linkage has no platform to position.
 const LINKAGE: &str = "bennett-double-spherical-6r";
 
-/// What a mechanism's page says: lambda, N, J, M, its subspaces, what they share, and each leg's
-/// freedoms in the lower and in the upper section, `*` where it has an imaginary joint.
+/// The content of a mechanism's page: lambda, N, J, M, the subspaces, the motion they share, and
+/// each leg's freedoms in the lower and in the upper section, with `*` if it has an imaginary
+/// joint.
 struct Page {
     name: &'static str,
     numbers: [usize; 4],
@@ -34,7 +35,7 @@ struct Page {
     shared: &'static str,
     legs: &'static str,
     redundant: usize,
-    /// Motions of the upper section that are not of the imaginary joints.
+    /// Mobility of the upper section without the imaginary joints.
     active: usize,
     coordinates: &'static str,
 }
@@ -186,7 +187,7 @@ fn every_mechanism_decomposes_as_its_page_says() {
     }
 }
 
-/// As many motors as freedoms: no leg works against another.
+/// There are as many actuators as freedoms, so no leg works against another.
 #[test]
 fn every_mechanism_has_as_many_actuators_as_freedoms() {
     for example in EXAMPLES {
@@ -197,7 +198,7 @@ fn every_mechanism_has_as_many_actuators_as_freedoms() {
     }
 }
 
-/// The motor of the upper section is needed: without it the height is loose, and nothing else is.
+/// The actuator of the upper section is needed: without it the height is free, and nothing else.
 #[test]
 fn what_is_driven_above_cannot_be_driven_below() {
     let mut lift = mechanism(find("schoenflies-lift-4dof").unwrap().text);
@@ -241,7 +242,7 @@ fn a_family_s_working_mode_is_that_of_its_joints() {
     assert_eq!(families, 3);
 }
 
-/// The largest distance of a leg's end, by its product of exponentials, from where the platform is.
+/// The largest distance of a leg's end, by its product of exponentials, from the platform.
 fn gap(manipulator: &Manipulator, pose: &[f64], solution: &Solution) -> f64 {
     let target = manipulator.task().displacement(pose).to_homogeneous();
     let mut joints = solution.joints();
@@ -282,14 +283,15 @@ fn every_working_mode_closes_every_leg() {
     }
 }
 
-/// In home's mode and in any, over the workspace's whole extent: neither all nor none of it.
+/// In home's mode and in any mode, over the workspace's whole extent: some poses are reachable, but
+/// not all.
 #[test]
 fn a_sweep_counts_what_inverse_kinematics_finds() {
     for manipulator in manipulators() {
         let name = &manipulator.mechanism().name;
         for modes in [Modes::One(manipulator.home_mode()), Modes::Any] {
             let (grid, _) = default_grid(&manipulator, modes, &Progress::default()).unwrap();
-            // An even number of values, so that the grid does not just probe the symmetric poses.
+            // An even number of values, so that the grid does not contain only the symmetric poses.
             let axes = grid.axes().iter().map(|a| Axis::new(a.name.clone(), a.min, a.max, 6));
             let grid = Grid::new(&manipulator, axes.collect()).unwrap();
             let (reached, expected) = by_inverse(&manipulator, &grid, modes);

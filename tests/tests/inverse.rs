@@ -1,5 +1,5 @@
-//! Inverse kinematics on random mechanisms of every pair of subspaces, held against the legs as they
-//! are: each leg's product of exponentials must bring the platform to the pose.
+//! Inverse kinematics on random mechanisms of every pair of subspaces, compared with the
+//! undecomposed legs: each leg's product of exponentials must bring the platform to the pose.
 
 use fastrand::Rng;
 use opm_core::joint::{JointKind, Quantity};
@@ -8,11 +8,11 @@ use opm_core::manipulator::Manipulator;
 use opm_tests::random::{Options, PAIRS, mechanism, meet, order, orders};
 use std::collections::BTreeSet;
 
-/// The bound on closure, as a share of the size of the mechanism and its joint values.
+/// The bound on closure, as a share of the size of the mechanism and of its joint values.
 const CLOSURE: f64 = 1e-10;
 const OPTIONS: Options = Options { limited: 0.2, balls: true };
 
-/// A pose at random distance from home.
+/// A pose at a random distance from home.
 fn pose(rng: &mut Rng, manipulator: &Manipulator) -> Vec<f64> {
     let reach = 2.0 * rng.f64() * rng.f64();
     let home = manipulator.task().home();
@@ -86,7 +86,8 @@ fn every_branch_closes_every_original_leg() {
         }
         println!("{pair:?}: {reached} of {poses} poses, {solutions} solutions, worst {worst:.1e}");
         assert!(reached > poses / 20, "{pair:?}: hardly any pose was in reach");
-        // Each order of joints in either section, with the cut above and below.
+        // Every order of joints in either section, with the imaginary joint in the upper or in the
+        // lower one.
         for above in [true, false] {
             let cut = Some(meet(pair));
             let cuts = if above { [None, cut] } else { [cut, None] };
@@ -118,7 +119,7 @@ fn home_is_where_the_joints_are() {
             assert!(reached, "{pair:?}: {:?}", solution.unreachable());
             assert!(solution.within_limits());
             for (coordinate, q) in manipulator.coordinates().iter().zip(solution.joints()) {
-                // A home near the rim of a chain's reach loses half of the digits.
+                // A home near the boundary of a chain's reach loses half of the digits.
                 let off = (coordinate.home - q).abs();
                 assert!(off < 1e-6, "{pair:?} {}: off by {off:e}", coordinate.name);
             }
@@ -126,15 +127,15 @@ fn home_is_where_the_joints_are() {
     }
 }
 
-/// The joints of legs with a screw: that may run away near a singularity, and a revolute on its axis
-/// with it.
+/// The joints of legs with a screw. They may be very large near a singularity, together with a
+/// revolute joint on the screw's axis.
 fn screws(manipulator: &Manipulator) -> Vec<&str> {
     let screw = |leg: &&Leg| leg.joints.iter().any(|j| matches!(j.kind, JointKind::Helical { .. }));
     let legs = manipulator.mechanism().legs.iter().filter(screw);
     legs.flat_map(|leg| leg.coordinates().map(|c| c.name.as_str())).collect()
 }
 
-/// Along a smooth path no angle jumps: every step is as short as the path's own speed makes it.
+/// Along a smooth path no angle jumps: every step is as short as the path's own speed allows.
 #[test]
 fn angles_stay_on_their_branch_along_a_path() {
     let mut rng = Rng::with_seed(3);
@@ -176,8 +177,8 @@ fn angles_stay_on_their_branch_along_a_path() {
     assert!(turned > 100, "no path went further than half a turn from home");
 }
 
-/// What `inverse_all` knows of a mode is what `inverse` says of it, the legs out of reach and their
-/// gaps included; a buffer that has seen no pose holds no mode.
+/// `inverse_all` and `inverse` agree on every mode, including the legs out of reach and their reach
+/// deficits. A buffer that has seen no pose contains no mode.
 #[test]
 fn picked_modes_are_those_of_inverse() {
     let mut rng = Rng::with_seed(6);
@@ -217,7 +218,7 @@ fn picked_modes_are_those_of_inverse() {
     assert!(reached > 5_000 && missed > 5_000, "{reached} in reach, {missed} out of it");
 }
 
-/// A new buffer holds home: following a path from there, no joint starts a turn away from home.
+/// A new buffer holds home: along a path from home, no joint starts a revolution away from it.
 #[test]
 fn a_path_starts_at_home() {
     let mut rng = Rng::with_seed(7);
@@ -240,7 +241,7 @@ fn a_path_starts_at_home() {
     }
 }
 
-/// The largest poses that are taken still give numbers that close the legs, to rounding.
+/// The largest accepted poses still give numbers that close the legs, to rounding.
 #[test]
 fn enormous_poses_are_answered_or_refused() {
     let mut rng = Rng::with_seed(8);
@@ -265,7 +266,8 @@ fn enormous_poses_are_answered_or_refused() {
                 for leg in &manipulator.mechanism().legs {
                     let (own, rest) = joints.split_at(leg.coordinates().count());
                     joints = rest;
-                    // Directions only: beside such lengths the legs' own are lost in rounding.
+                    // Only directions are compared: the legs' lengths are lost in the rounding of
+                    // such large ones.
                     let turned = leg.displacement(own).rotation.angle_to(&target.rotation);
                     let helical =
                         leg.joints.iter().any(|j| matches!(j.kind, JointKind::Helical { .. }));
@@ -277,8 +279,8 @@ fn enormous_poses_are_answered_or_refused() {
     assert!(answered > 1_000, "{answered}");
 }
 
-/// A joint that follows a path beyond its limits is told to be there: it does not jump to a turn that
-/// they would allow, and comes back within them where it left them.
+/// A joint that follows a path beyond its limits is reported outside them. It does not jump by a
+/// revolution into them, and it comes back within them where it left them.
 #[test]
 fn a_path_beyond_limits_does_not_jump() {
     const STEP: f64 = 0.01;
@@ -290,7 +292,7 @@ fn a_path_beyond_limits_does_not_jump() {
             let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
             for c in joints.flat_map(|joint| &mut joint.coordinates) {
-                // More than half a turn to either side: both ends have a turn inside beyond them.
+                // More than π to either side: both ends are, modulo 2π, inside the limits.
                 c.limits = Some([c.home - 3.5, c.home + 3.5]);
             }
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();

@@ -1,5 +1,5 @@
-//! Kinds of workspace: sections against the whole, visits against one inverse-kinematics call a pose,
-//! boundaries and components against geometry and flood fills.
+//! Kinds of workspace: sections are compared with the whole, visits with one inverse-kinematics
+//! call per pose, boundaries and components with geometry and flood fills.
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
@@ -34,8 +34,8 @@ fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
     modes.map(|signs| manipulator.parse_mode(&signs).unwrap()).collect()
 }
 
-/// Whether both sections alone reach a pose: the upper one `b` with some cuts, the lower one `v` with
-/// these.
+/// Whether both sections alone reach a pose: the upper one `b` with some values of the imaginary
+/// joints, and the lower one `v` with the same values.
 fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
     let task = manipulator.task();
     let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
@@ -43,7 +43,7 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
     if !manipulator.upper_closes(&b, mode, &mut ways) {
         return false;
     }
-    // No two legs share a cut or a choice.
+    // No two legs share an imaginary joint or a choice.
     (0..manipulator.legs()).all(|leg| {
         ways.clear();
         manipulator.follow(leg, &b, mode, &mut ways);
@@ -59,7 +59,8 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
     })
 }
 
-/// The paper's Discussion: the workspace is what its two sections have in common.
+/// The paper's Discussion: the whole workspace is where its two sections agree on the imaginary
+/// joints.
 #[test]
 fn the_whole_is_what_both_sections_reach() {
     let mut rng = Rng::with_seed(50);
@@ -107,7 +108,8 @@ fn the_whole_is_what_both_sections_reach() {
     assert!(whole > 10_000 && both < poses / 2 && undecided > 100);
 }
 
-/// The lower section alone as a grid, its imaginary joints as axes: against each leg asked alone.
+/// The lower section alone as a grid with its imaginary joints as axes, compared with each leg
+/// alone.
 #[test]
 fn a_grid_of_the_lower_section_has_its_cuts_for_axes() {
     let mut rng = Rng::with_seed(51);
@@ -150,7 +152,8 @@ fn a_grid_of_the_lower_section_has_its_cuts_for_axes() {
     assert!(partly > 200);
 }
 
-/// The upper section alone, whose imaginary joints range as the whole's where the lower one allows all.
+/// The upper section alone: its imaginary joints have the same ranges as in the whole, where the
+/// lower section allows all of them.
 #[test]
 fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations() {
     let manipulator = shipped("plano-spherical-5dof");
@@ -163,7 +166,7 @@ fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations(
     let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
     let set = reached(&sweep);
     assert_eq!(set.count(), sweep.count(&Progress::default()).unwrap().reachable);
-    // A leg closes where its platform axis, w, is more than 30 degrees from -z: data/reference.
+    // A leg closes where its platform axis w is more than 30 degrees from -z (data/reference).
     let (mut ties, mut inside) = (0, 0);
     for number in 0..grid.poses() {
         let pose = grid.pose(number);
@@ -183,7 +186,7 @@ fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations(
     }
     println!("{inside} inside, {ties} ties");
     assert!(inside > 100_000 && ties < 20_000);
-    // All orientations but three caps: one piece.
+    // All orientations except three caps form one component.
     assert_eq!(Components::new(&set).sizes().len(), 1);
 }
 
@@ -248,7 +251,8 @@ fn random_set(rng: &mut Rng, counts: &[u64], circles: &[bool], share: f64) -> (G
     (GridSet::of(axes.collect(), |number| mask[number as usize]).unwrap(), mask)
 }
 
-/// The pieces of a mask by a flood fill, largest first; of one size, in the order of their first points.
+/// The components of a mask by a flood fill, largest first; of equal size, in the order of their
+/// first points.
 fn flood(mask: &[bool], counts: &[u64], circles: &[bool]) -> Vec<Vec<u64>> {
     let mut left = mask.to_vec();
     let mut pieces = vec![];
@@ -312,7 +316,7 @@ fn components_are_those_of_a_flood_fill() {
     assert!(many > 500, "{many}");
 }
 
-/// Pieces of the ground around a mask that meet at corners, too, but for the one outside.
+/// The components of the complement of a mask, joined at corners too, except the outer one.
 fn holes(mask: &[bool], [width, height]: [u64; 2]) -> usize {
     let (w, h) = (width as i64 + 2, height as i64 + 2);
     let mut left: Vec<bool> = (0..w * h)
@@ -339,7 +343,8 @@ fn holes(mask: &[bool], [width, height]: [u64; 2]) -> usize {
     pieces - 1
 }
 
-/// Outer rings are the pieces, holes the holes; with the areas that Pick's theorem gives the rings.
+/// Outer rings correspond to components and inner rings to holes, with the areas that Pick's
+/// theorem gives.
 #[test]
 fn boundaries_of_random_masks_have_their_topology_and_area() {
     let mut rng = Rng::with_seed(54);
@@ -349,13 +354,13 @@ fn boundaries_of_random_masks_have_their_topology_and_area() {
         let (set, mask) = random_set(&mut rng, &counts, &[false; 2], share);
         let outlines = boundary(&set).unwrap();
         let [outline] = &outlines[..] else { panic!("{} outlines", outlines.len()) };
-        // A point alone in a corner of the grid has an area, if a small one.
+        // A single point in a corner of the grid has a small area.
         let outer = outline.rings.iter().filter(|ring| ring.area() > 0.0).count();
         let inner = outline.rings.iter().filter(|ring| ring.area() < 0.0).count();
         assert_eq!(outer, flood(&mask, &counts, &[false; 2]).len(), "round {round}");
         assert_eq!(inner, holes(&mask, counts), "round {round}");
         assert_eq!(outer + inner, outline.rings.len());
-        // Marching squares, square by square: the area that each has within it.
+        // Marching squares, square by square: the area within each of them.
         let has = |i: u64, j: u64| usize::from(mask[(j * counts[0] + i) as usize]);
         let squares = (0..counts[1] - 1).flat_map(|j| (0..counts[0] - 1).map(move |i| (i, j)));
         let expected: f64 = squares
@@ -375,7 +380,7 @@ fn boundaries_of_random_masks_have_their_topology_and_area() {
     }
 }
 
-/// A slice a value of the third axis, whichever axes have one value alone.
+/// One slice for each value of the third axis, whichever axes have a single value.
 #[test]
 fn boundaries_of_solids_are_those_of_their_slices() {
     let mut rng = Rng::with_seed(55);
@@ -396,7 +401,8 @@ fn boundaries_of_solids_are_those_of_their_slices() {
     }
 }
 
-/// Paper, section 3.2: at a fixed phi the workspace is where three strips meet, a convex polygon.
+/// Paper, section 3.2: at a fixed phi the workspace is the intersection of three strips, a convex
+/// polygon.
 #[test]
 fn the_boundary_of_the_helical_mechanism_is_its_polygon() {
     let manipulator = shipped("translational-helical-3dof");
@@ -429,15 +435,15 @@ fn the_boundary_of_the_helical_mechanism_is_its_polygon() {
         assert_eq!(outline.rings.len(), 1);
         assert_eq!(Components::new(&set).sizes(), [set.count()]);
         let step = 1.2 / (count - 1) as f64;
-        // Every corner lies within a step of the polygon, and the areas agree to less than that all
-        // around it.
+        // Every corner is within a grid step of the polygon, and the areas differ by less than such
+        // a step all around it.
         for corner in &outline.rings[0].points {
             let distance = distance_to(&polygon, *corner);
             assert!(distance < step, "{corner:?} is {distance} from the polygon");
         }
         let around: f64 = sides(&polygon).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
         let error = (outline.area() - exact).abs() / (around * step);
-        println!("phi {phi}: {} of {exact} m^2, {error} of the rim", outline.area());
+        println!("phi {phi}: {} of {exact} m^2, {error} of the boundary", outline.area());
         assert!(error < 0.1);
     }
 }
@@ -460,7 +466,7 @@ fn distance_to(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
     sides(polygon).map(to_side).fold(f64::MAX, f64::min)
 }
 
-/// What of a convex polygon has `n · p <= most`.
+/// The part of a convex polygon with `n · p <= most`.
 fn clipped(polygon: &[[f64; 2]], n: [f64; 2], most: f64) -> Vec<[f64; 2]> {
     let over = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - most;
     let mut left = vec![];
@@ -477,7 +483,8 @@ fn clipped(polygon: &[[f64; 2]], n: [f64; 2], most: f64) -> Vec<[f64; 2]> {
     left
 }
 
-/// A disc and a ring of known radii: what a two-link arm reaches, one and both rims.
+/// A disc and a ring of known radii: the reach of a two-link arm, with an outer boundary or with
+/// both.
 #[test]
 fn rings_have_the_areas_of_discs() {
     for (inner, outer) in [(0.0, 1.0), (0.4, 1.0), (0.05, 0.9)] {
@@ -494,12 +501,13 @@ fn rings_have_the_areas_of_discs() {
         let outline = &boundary(&set).unwrap()[0];
         let area = PI * (outer * outer - inner * inner);
         assert_eq!(outline.rings.len(), if inner > 0.0 { 2 } else { 1 });
-        let rim = TAU * (inner + outer) * 2.6 / (count - 1) as f64;
-        assert!((outline.area() - area).abs() < 0.05 * rim, "{} {area}", outline.area());
+        let boundary = TAU * (inner + outer) * 2.6 / (count - 1) as f64;
+        assert!((outline.area() - area).abs() < 0.05 * boundary, "{} {area}", outline.area());
     }
 }
 
-/// The global index is the mean of what one call a pose gives, whatever the threads.
+/// The global conditioning index is the mean of the values by one call per pose, with any number of
+/// threads.
 #[test]
 fn the_global_index_is_the_mean_of_the_local_ones() {
     let manipulator = shipped("plano-spherical-5dof");

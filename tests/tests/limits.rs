@@ -1,4 +1,4 @@
-//! Limits and whole turns, on random mechanisms of every pair of subspaces.
+//! Limits and full revolutions, on random mechanisms of every pair of subspaces.
 
 use fastrand::Rng;
 use opm_core::joint::JointKind;
@@ -6,7 +6,7 @@ use opm_core::manipulator::Manipulator;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::{PI, TAU};
 
-/// Joints that are locked where they are at home, each at zero: home is within the limits.
+/// Joints that are locked at home, each at zero: home is within the limits.
 #[test]
 fn home_is_inside_limits_that_leave_nothing_else() {
     let mut rng = Rng::with_seed(4);
@@ -32,8 +32,9 @@ fn home_is_inside_limits_that_leave_nothing_else() {
     }
 }
 
-/// A turn more or less leaves a revolute joint where it is: it is reported within half a turn of
-/// home, or where its limits allow it, and it is outside them only if no number of turns is inside.
+/// A revolution more or less does not change the displacement of a revolute joint. Its value is
+/// reported within π of home or within its limits, and it is outside its limits only if no number
+/// of revolutions is inside.
 #[test]
 fn revolute_joints_know_no_whole_turns() {
     let mut rng = Rng::with_seed(5);
@@ -44,7 +45,7 @@ fn revolute_joints_know_no_whole_turns() {
                 mechanism(&mut rng, pair, Options { limited: 0.3, balls: true });
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
-            // The first coordinate of these turns about the axis, whatever the second does.
+            // The first coordinate of these rotates about the axis, whatever the second one does.
             let kinds = manipulator.mechanism().joints().flat_map(|joint| {
                 let turns = |i| match joint.kind {
                     JointKind::Revolute | JointKind::Universal { .. } => true,

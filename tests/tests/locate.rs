@@ -1,4 +1,4 @@
-//! From displacements of the platform to task coordinates and back.
+//! Conversion of displacements of the platform to task coordinates and back.
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -33,8 +33,9 @@ fn poses_come_back_from_their_displacements() {
     }
 }
 
-/// A pose of the motion, moved out of it: along directions that the motion lacks, the distance is
-/// the one moved, for the paper's pair: planar and spherical lack the plane's normal.
+/// A pose of the motion subspace is moved out of it. Along directions that the motion lacks, the
+/// distance is the one moved; for the paper's pair, planar and spherical, that is the plane's
+/// normal.
 #[test]
 fn outside_says_how_far_and_where() {
     let mut rng = Rng::with_seed(41);
@@ -60,7 +61,7 @@ fn outside_says_how_far_and_where() {
             Translation3::from(direction(&mut rng).into_inner() * 0.7),
             UnitQuaternion::from_axis_angle(&direction(&mut rng), 1.0),
         );
-        // Five freedoms at most: a random displacement is outside.
+        // At most five freedoms: a random displacement is outside the motion subspace.
         let outside = manipulator.locate(&anywhere).unwrap_err();
         let nearest = manipulator.task().displacement(&outside.nearest);
         let turn = (anywhere.rotation * nearest.rotation.inverse()).scaled_axis();
@@ -69,8 +70,9 @@ fn outside_says_how_far_and_where() {
     }
 }
 
-/// The platform's place in SE(3) is its point and its orientation: for the paper's pair `(x, y, 0)`
-/// and `Rz(zeta) Ry(xi) Rz(psi)`, whatever they are at home; and it leads back to the pose.
+/// The platform's pose in SE(3) is its reference point and its orientation: for the paper's pair
+/// `(x, y, 0)` and `Rz(zeta) Ry(xi) Rz(psi)`, whatever they are at home. It leads back to the task
+/// coordinates.
 #[test]
 fn the_platforms_place_is_its_point_and_its_orientation() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;

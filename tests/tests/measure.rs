@@ -1,5 +1,5 @@
-//! Measures with guaranteed bounds: against geometry, against the exact predicate at random poses, and
-//! against Monte-Carlo estimates.
+//! Measures with guaranteed bounds: compared with geometry, with the exact predicate at random
+//! poses, and with Monte-Carlo estimates.
 
 use fastrand::Rng;
 use opm_core::joint::Quantity;
@@ -20,7 +20,7 @@ fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measu
     measure(m, domain, modes, &goal, &Progress::default())
 }
 
-/// Whether a pose of a domain counts, by the chains themselves.
+/// Whether a pose of a domain counts, decided by the chains themselves.
 fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
     let mut ways: Vec<Follow> = Vec::new();
     let lower = m.task().lower_count;
@@ -42,7 +42,7 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
     })
 }
 
-/// Of so many poses drawn evenly, those that count.
+/// How many of this number of uniformly drawn poses count.
 fn hits(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>, draws: u32) -> u32 {
     let mut shares = vec![0.0; domain.dimension()];
     let mut hit = || {
@@ -52,8 +52,8 @@ fn hits(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>, dra
     (0..draws).map(|_| u32::from(hit())).sum()
 }
 
-/// A bound on the chance that so few of the draws hit a set of at least this share, or so many one of
-/// at most this share (Chernoff).
+/// A bound on the probability that so few of the draws hit a set of at least this share, or so many
+/// hit one of at most this share (Chernoff).
 fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
     let (n, seen) = (f64::from(draws), f64::from(hits) / f64::from(draws));
     let share = seen.clamp(lower, upper);
@@ -61,7 +61,7 @@ fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
     (-n * (term(seen, share) + term(1.0 - seen, 1.0 - share))).exp()
 }
 
-/// The caps that the platform's axes must not be in are 30 degrees wide, disjoint, and three.
+/// The three caps that the platform's axes must avoid are 30 degrees wide and disjoint.
 #[test]
 fn all_orientations_of_the_paper() {
     let m = example("plano-spherical-5dof");
@@ -80,11 +80,11 @@ fn all_orientations_of_the_paper() {
     }
 }
 
-/// At a given rotation three strips are left of the plane: their polygon, clipped.
+/// At a given rotation three strips limit the plane: their polygon, by clipping.
 #[test]
 fn the_polygon_of_the_helical_manipulator() {
     let m = example("translational-helical-3dof");
-    // As printed, and the sliders' limits that were chosen.
+    // The printed parameters, and the chosen limits of the sliders.
     let (alpha, beta, k) = ([210.0, 330.0, 90.0], [45.0, 285.0, 165.0], [10.0, 15.0, 25.0]);
     let (pitch, limit) = (0.020, 0.400);
     for phi in [-3.0, 0.0, 0.7, 5.0_f64] {
@@ -94,7 +94,7 @@ fn the_polygon_of_the_helical_manipulator() {
             let along = if leg == 0 { pitch * phi } else { 0.0 };
             let offset = f64::to_radians(beta[leg]).sin() * (k[leg] * 1e-3 + along);
             for side in [1.0, -1.0] {
-                // What is left of the slider's range on this side.
+                // The distance to the slider's limit on this side.
                 let left = |p: &[f64; 2]| limit - side * (-sin * p[0] + cos * p[1] + offset);
                 polygon = clip(&polygon, left);
             }
@@ -116,7 +116,7 @@ fn the_polygon_of_the_helical_manipulator() {
     }
 }
 
-/// What of a convex polygon is on the side where `left` is not negative.
+/// The part of a convex polygon on which `left` is not negative.
 fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let mut clipped = Vec::new();
     for (i, p) in polygon.iter().enumerate() {
@@ -133,8 +133,8 @@ fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> 
     clipped
 }
 
-/// A random manipulator with limits on some of its joints and some values of its pose at home, and what
-/// counts.
+/// A random manipulator with limits on some joints and some coordinates of its pose at home, and
+/// what counts.
 fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
     let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
     let (mut mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
@@ -150,7 +150,8 @@ fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) 
     (m, mode, sections[rng.usize(..4)])
 }
 
-/// A box about some pose near home: a width times `size` along each coordinate, of some none.
+/// A box about a pose near home: its widths are `size` times a scale along each coordinate, and
+/// zero along some.
 fn domain_of(rng: &mut Rng, m: &Manipulator, sections: Sections, size: f64) -> Domain {
     let over: Vec<Over> = sections
         .coordinates(m)
@@ -165,8 +166,8 @@ fn domain_of(rng: &mut Rng, m: &Manipulator, sections: Sections, size: f64) -> D
     Domain::new(m, sections, &over).unwrap()
 }
 
-/// A box about a pose on the boundary of what counts: where the way from a pose of a domain that does to
-/// one that does not leads across. `None` where a few draws do not find both.
+/// A box about a pose on the boundary of what counts: a point on the path from a pose that counts
+/// to one that does not; `None` if a few draws do not find both.
 fn at_the_boundary(
     rng: &mut Rng,
     m: &Manipulator,
@@ -198,7 +199,7 @@ fn at_the_boundary(
     Domain::new(m, domain.sections(), &over).ok()
 }
 
-/// What is said of a box.
+/// The answer for a box.
 #[derive(Debug, PartialEq)]
 enum Judged {
     All,
@@ -206,9 +207,9 @@ enum Judged {
     Partly,
 }
 
-/// What is said of one box holds of poses drawn from it; also gives how many they are.
+/// Checks the answer for one box with poses drawn from it; also returns how many there are.
 fn judge(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>) -> (Judged, u32) {
-    // The first boxes alone: a tilt may have several.
+    // Only the first boxes are used: a range of tilts may consist of several boxes.
     let goal = Goal { tolerance: 0.0, budget: 0 };
     let found = measured(m, domain, mode.map_or(Modes::Any, Modes::One), goal);
     let bounds = [found.lower, found.upper].map(|bound| bound / found.whole);
@@ -230,7 +231,8 @@ fn judge(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>) ->
     (judged, count)
 }
 
-/// Half a turn of a cut is where a helical joint that follows it jumps by a turn: boxes across it.
+/// At π of an imaginary joint, a helical joint that follows it jumps by a revolution: boxes across
+/// that value.
 #[test]
 fn cuts_of_half_a_turn_are_no_exception() {
     let mut rng = Rng::with_seed(34);
@@ -261,7 +263,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
         for _ in 0..10 {
             let size = 10.0_f64.powf(-3.0 * rng.f64());
             let over = m.task_coordinates().iter().zip(&above).enumerate().map(|(i, (c, &at))| {
-                // Where along the axis is free.
+                // The position along the axis is free.
                 let at = if i < lower { c.home + 2.0 * rng.f64() - 1.0 } else { at };
                 let half = size * rng.f64();
                 Over::new(c.name, at - half, at + half)
@@ -275,7 +277,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
     assert!(partly > 100);
 }
 
-/// One box at a time: what is said of it holds of the poses in it.
+/// One box at a time: the answer holds for the poses in it.
 #[test]
 fn boxes_are_never_contradicted() {
     let mut rng = Rng::with_seed(31);
@@ -302,8 +304,8 @@ fn boxes_are_never_contradicted() {
     println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
 }
 
-/// Whole measures of random mechanisms: a Monte-Carlo estimate is outside the bounds by three standard
-/// deviations as seldom as it must be.
+/// Whole measures of random mechanisms: a Monte-Carlo estimate is outside the bounds by three
+/// standard deviations only as often as expected.
 #[test]
 fn estimates_lie_in_the_bounds() {
     const MECHANISMS: usize = 1000;
@@ -330,12 +332,13 @@ fn estimates_lie_in_the_bounds() {
         }
     }
     println!("{off} off, {judged} in part, gaps of {:.4} on average", width / f64::from(judged));
-    // Of estimates of the bound itself, 0.27 % are that far off, 2.7 of 1000: more than 12 have a chance of 1e-5.
+    // Of estimates exactly at a bound, 0.27 % are that far off, 2.7 of 1000. More than 12 have a
+    // probability of 1e-5.
     assert!(off <= 12, "{off} of {MECHANISMS}");
     assert!(judged > 200);
 }
 
-/// With a larger budget the bounds come closer, on whatever number of threads.
+/// With a larger budget the bounds are closer, with any number of threads.
 #[test]
 fn bounds_only_come_closer() {
     let mut rng = Rng::with_seed(33);
@@ -360,12 +363,12 @@ fn bounds_only_come_closer() {
     assert!(closer > 100, "{closer}");
 }
 
-/// Boxes before any split: these are looked at whatever the budget.
+/// The boxes before any split: they are evaluated whatever the budget.
 fn domain_pieces(found: &Measured) -> u64 {
     if found.boxes <= 4 { found.boxes } else { 0 }
 }
 
-/// A search that is told to stop keeps what it has found.
+/// A search that is interrupted keeps its results.
 #[test]
 fn what_was_found_before_a_stop_is_kept() {
     let m = example("plano-spherical-5dof");
@@ -384,7 +387,7 @@ fn what_was_found_before_a_stop_is_kept() {
     progress.cancel();
     assert_eq!(asker.ask(search.round().unwrap(), &progress), Err(Cancelled));
     assert_eq!(search.found(), before);
-    // Of one that is stopped at once nothing is known.
+    // If it is interrupted at once, nothing is known.
     let none = measure(&m, &domain, Modes::Any, &goal, &progress);
     assert_eq!((none.stop, none.boxes), (Stop::Cancelled, 0));
     assert_eq!((none.lower, none.upper), (0.0, none.whole));

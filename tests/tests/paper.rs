@@ -1,5 +1,5 @@
-//! The two manipulators of the paper: against its corrected formulas on random geometries, and
-//! against golden vectors from an independent program.
+//! The two manipulators of the paper: compared with its corrected formulas on random geometries,
+//! and with golden vectors from an independent program.
 
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
@@ -8,12 +8,12 @@ use opm_core::mechanism::{examples, file};
 use opm_tests::paper;
 use std::f64::consts::{PI, TAU};
 
-/// Metres and radians; both sides compute in double precision by different formulas, which near the
-/// rim of a leg's reach lose half of their digits (see `RIM`).
+/// Tolerance in metres and radians. Both sides compute in double precision with different formulas,
+/// which lose half of their digits near the boundary of a leg's reach (see `REACH_MARGIN`).
 const AGREE: f64 = 1e-10;
 
-/// Oracle values this near to the rim, as a share of reach, are compared less strictly.
-const RIM: f64 = 1e-9;
+/// Oracle values this near to the boundary, as a share of reach, are compared less strictly.
+const REACH_MARGIN: f64 = 1e-9;
 
 fn example(name: &str) -> Manipulator {
     let text = examples::find(name).unwrap().text;
@@ -25,7 +25,7 @@ fn close_angle(a: f64, b: f64) -> bool {
     apart.min(TAU - apart) < AGREE
 }
 
-/// The CSV file as rows by column name.
+/// The rows of the CSV file, with their values by column name.
 fn rows(file: &str) -> Vec<std::collections::HashMap<String, String>> {
     let path = format!("{}/../data/reference/independent/{file}", env!("CARGO_MANIFEST_DIR"));
     let mut reader = csv::Reader::from_path(path).unwrap();
@@ -55,7 +55,7 @@ fn golden_vectors_of_the_plano_spherical_manipulator() {
             within += u32::from(solution.within_limits());
             assert_eq!(solution.within_limits(), row["within_limits"] == "1", "{name} {row:?}");
             for (number, theta) in ["theta11", "theta12", "theta13"].iter().enumerate() {
-                // A joint list reports the imaginary joint from home on.
+                // In a joint list, the imaginary joint is zero at home.
                 let found = if name.ends_with("joints") {
                     let home = paper_home().theta[number];
                     home + solution.imaginary()[number]
@@ -113,8 +113,8 @@ fn golden_vectors_of_the_translational_helical_manipulator() {
     }
 }
 
-/// theta_1i of the printed parameters at three orientations, both branches: published values that
-/// an independent public implementation of the coaxial 3-RRR agrees with.
+/// The values of theta_1i for the printed parameters at three orientations, on both branches. They
+/// are published, and an independent public implementation of the coaxial 3-RRR agrees with them.
 #[test]
 fn published_imaginary_joints() {
     let manipulator = example("plano-spherical-5dof");
@@ -189,13 +189,14 @@ fn the_papers_formulas_on_random_geometries() {
             let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some();
             let Some(expected) = oracle.inverse(&pose, &signs) else {
                 outside += 1;
-                let gap = |u: &opm_core::manipulator::Unreachable| u.gap.excess < RIM;
+                let gap = |u: &opm_core::manipulator::Unreachable| u.gap.excess < REACH_MARGIN;
                 assert!(!reached || solution.unreachable().iter().all(gap));
                 continue;
             };
             assert!(reached, "{:?}", solution.unreachable());
             compared += 1;
-            // Derivatives grow like one over the root of the distance to the rim.
+            // Derivatives grow with one over the square root of the distance to the boundary of
+            // reach.
             let near_rim = oracle.legs.iter().zip(expected.theta).any(|(leg, theta)| {
                 let (b, c) = paper::slider_quadratic(leg, [pose[0], pose[1]], theta);
                 b * b - 4.0 * c < 1e-6
@@ -283,7 +284,7 @@ fn family_and_joint_list_agree() {
                 );
                 assert_eq!(a.within_limits(), b.within_limits());
                 for ((p, q), c) in a.joints().iter().zip(b.joints()).zip(family.coordinates()) {
-                    // The list's coordinates are written with twelve digits or more.
+                    // The coordinates of the joint list are written with at least twelve digits.
                     assert!((p - q).abs() < 1e-8 || close_angle(*p, *q), "{} {p} {q}", c.name);
                 }
                 compared += 1;

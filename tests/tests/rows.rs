@@ -1,5 +1,6 @@
-//! Sweeps by intervals against the exact predicate, pose by pose: every pair of subspaces, with the
-//! limits of its sliders or of all its joints, on many long rows, and limits that lie exactly on poses.
+//! Sweeps by intervals compared with the exact predicate, pose by pose: every pair of subspaces,
+//! with limits on its sliders or on all joints, on many long rows, and with limits exactly at
+//! poses.
 
 use fastrand::Rng;
 use opm_core::decomposition::Decomposition;
@@ -12,10 +13,10 @@ use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// Poses that are decided both ways.
+/// The number of poses that are decided both ways.
 const POSES: u64 = 100_000_000;
 
-/// How many poses of the grid every leg follows to.
+/// How many poses of the grid are reachable for every leg.
 fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
     let mode = match modes {
         Modes::One(mode) => Some(mode),
@@ -55,8 +56,8 @@ fn without_limits_on_angles(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
-/// Nothing above drives or limits a leg: one that is cut below follows alike in every slice, if its upper
-/// joints always close.
+/// Frees all upper joints. A leg with an imaginary joint is then independent of the slice, if its
+/// upper joints always close.
 fn with_free_upper_sections(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
     for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
         for freedom in &split.upper {
@@ -84,7 +85,7 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let counts = [50 + rng.u64(..1500), 20 + rng.u64(..200), 1, 1, 1];
         let axes = manipulator.task_coordinates().iter().zip(counts).map(|(c, count)| {
-            // Of angles several turns.
+            // Several revolutions for angles.
             let most = if rng.u8(..4) == 0 { 10.0 } else { 2.0 };
             let (below, above) = (rng.f64() * most, rng.f64() * most);
             match count {
@@ -110,7 +111,8 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
     assert!(partly > 100);
 }
 
-/// The shipped mechanisms have round dimensions: limits, rims and holes that fall on poses.
+/// The shipped mechanisms have round dimensions, so limits, boundaries and holes coincide with
+/// poses.
 #[test]
 fn round_numbers_are_no_exception() {
     for example in examples::EXAMPLES {
@@ -137,8 +139,8 @@ fn round_numbers_are_no_exception() {
     }
 }
 
-/// Limits that joints are exactly at in poses of the grid: on them counts as inside, for every way of
-/// finding out.
+/// Joints are exactly at their limits in poses of the grid. A value on a limit counts as inside,
+/// whichever way it is decided.
 #[test]
 fn limits_that_lie_on_poses_are_no_exception() {
     let mut rng = Rng::with_seed(21);
@@ -185,7 +187,7 @@ fn limits_that_lie_on_poses_are_no_exception() {
     assert!(met > 10_000);
 }
 
-/// Rings whose holes overlap in a row: what two of them take is taken once.
+/// Rings whose holes overlap in a row: what both holes remove is removed once.
 #[test]
 fn holes_overlap() {
     let mut rng = Rng::with_seed(22);
@@ -216,7 +218,7 @@ fn holes_overlap() {
     println!("{reachable} poses");
 }
 
-/// Legs that follow alike in every slice, in either of two ways.
+/// Legs that are independent of the slice, in one of two ways.
 #[test]
 fn ways_of_legs_that_follow_alike_are_joined() {
     let mut rng = Rng::with_seed(25);
@@ -256,7 +258,8 @@ fn ways_of_legs_that_follow_alike_are_joined() {
     assert!(reachable > 0);
 }
 
-/// Grids so fine that rounding decides on poses at the boundary: rows that are in doubt are asked for.
+/// Grids so fine that rounding decides about poses at the boundary: rows in doubt are decided by
+/// the chains.
 #[test]
 fn fine_grids_are_no_exception() {
     const STEP: f64 = 1e-10;
@@ -306,12 +309,12 @@ fn fine_grids_are_no_exception() {
     assert!(judged > 300);
 }
 
-/// Rows that touch the rim of a ring in a pose, to the last digits: where the root that a row's ends are
-/// taken from is all rounding, the chains are asked.
+/// Rows that touch the boundary of a ring in a pose, to the last digits: the root that gives the
+/// row's ends is then only rounding, so the chains decide.
 #[test]
 fn rows_that_touch_a_rim_are_no_exception() {
     const STEP: f64 = 1e-4;
-    /// Rows on either side of the rim.
+    /// Rows on both sides of the boundary.
     const ROWS: f64 = 40.0;
     let mut rng = Rng::with_seed(24);
     let (mut judged, mut parted, mut alike) = (0, 0, 0);
@@ -342,7 +345,7 @@ fn rows_that_touch_a_rim_are_no_exception() {
                 manipulator.follows(way, &manipulator.task().lower(&v))
             };
             let Some([middle, high]) = top(closes, [pose[0], pose[1]]) else { continue };
-            // In a pose that is above the middle, or beside it by less than a step.
+            // At a pose above the centre, or beside it by less than a step.
             let beside = if rng.bool() { 0.0 } else { STEP * 10f64.powf(-4.0 * rng.f64()) };
             let x = middle + beside;
             let [_, y] = edge(closes, [x, high - NEAR], [x, high + NEAR]);
@@ -368,10 +371,10 @@ fn rows_that_touch_a_rim_are_no_exception() {
     assert!(parted > 400 && alike > 70, "{parted} and {alike} of {judged}");
 }
 
-/// How near the highest point of a disc is found, before it is searched for.
+/// How near the highest point of a disc is approximated before it is searched for.
 const NEAR: f64 = 1e-6;
 
-/// The last point that is in, from one that is to one that is not.
+/// The last point inside, between a point inside and one outside.
 fn edge(within: impl Fn([f64; 2]) -> bool, mut inner: [f64; 2], mut outer: [f64; 2]) -> [f64; 2] {
     for _ in 0..100 {
         let middle = [0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])];
@@ -380,8 +383,8 @@ fn edge(within: impl Fn([f64; 2]) -> bool, mut inner: [f64; 2], mut outer: [f64;
     inner
 }
 
-/// The highest point of a disc that a point is in, by two of its chords; `None` where these do not belong to one,
-/// as where there is a hole.
+/// The highest point of a disc that contains a point, from two of its chords; `None` if these do
+/// not belong to one disc, for instance at a hole.
 fn top(within: impl Fn([f64; 2]) -> bool, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
     const BEYOND: f64 = 20.0;
     /// Between two chords.
@@ -398,8 +401,8 @@ fn top(within: impl Fn([f64; 2]) -> bool, [x, y]: [f64; 2]) -> Option<[f64; 2]> 
     found.then_some([middle, top])
 }
 
-/// Rows that run along the edge of a region, or all but along it: a slider of the shipped mechanism has the direction
-/// of the rows, to within a tilt of some size.
+/// Rows that run along the edge of a region, or nearly so: a slider of the shipped mechanism has
+/// the direction of the rows, up to a small tilt.
 #[test]
 fn rows_along_an_edge_are_no_exception() {
     const STEP: f64 = 1e-4;
@@ -411,7 +414,7 @@ fn rows_along_an_edge_are_no_exception() {
     for round in 0..400 {
         let tilt = if round % 4 == 0 { 0.0 } else { 10f64.powf(-5.0 - 8.0 * rng.f64()) };
         let alpha = ParameterValue::Number(FRAC_PI_2 + tilt);
-        // A slider without ends sweeps a band, else half of one with a blunt end.
+        // A slider without limits sweeps a whole band, otherwise half a band with a blunt end.
         let ends =
             if rng.bool() { ParameterValue::None } else { ParameterValue::Pair([-0.3, 0.3]) };
         let family = family.with([("leg3.alpha", alpha), ("leg3.limits.S", ends)]).unwrap();

@@ -1,4 +1,4 @@
-//! Shards of a sweep: together they are the whole, however many they are.
+//! Shards of a sweep: together they are the whole sweep, whatever their number.
 
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
@@ -7,7 +7,7 @@ use opm_workspace::{
     Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Shard, Sweep, replay,
 };
 
-/// The runs of a sweep with their rows, in the order in which they come.
+/// The runs of a sweep with their rows, in the order in which they are reported.
 fn runs(sweep: &Sweep<'_>) -> Vec<(u64, Run)> {
     let mut all = Vec::new();
     sweep
@@ -41,7 +41,7 @@ fn shards_are_the_whole_one_after_the_other() {
         let options = Options { limited: 0.1, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        // Rows of several segments, or several rows a segment.
+        // Rows with several segments, or segments with several rows.
         for counts in [[5_000, 3, 3, 2, 2, 2], [40, 30, 4, 5, 5, 5]] {
             let grid = grid(&manipulator, counts);
             let modes = [Modes::Any, Modes::One(Mode::default())][number % 2];
@@ -68,10 +68,11 @@ fn shards_are_the_whole_one_after_the_other() {
     assert!(shared > 60, "{shared} sweeps had points in several shards");
 }
 
-/// A pose's first coordinate; the numbers of its slice and row, and its other coordinates.
+/// The first coordinate of a pose, the numbers of its slice and row, and its other coordinates.
 type Pose = (f64, (u64, u64, Vec<f64>));
 
-/// What a sweep gives, from the numbers of its poses alone; also where a run goes over many rows.
+/// The results of a sweep, from the numbers of its poses alone, also where a run continues over
+/// many rows.
 #[test]
 fn a_replay_gives_what_the_sweep_gave() {
     let mut rng = Rng::with_seed(41);
@@ -98,7 +99,7 @@ fn a_replay_gives_what_the_sweep_gave() {
                 from: number * row + run.from,
                 to: number * row + run.to,
             });
-            // Whatever touches is one run.
+            // Intervals that touch are one run.
             let mut joined: Vec<Run> = Vec::new();
             for run in numbers {
                 match joined.last_mut() {
@@ -114,7 +115,7 @@ fn a_replay_gives_what_the_sweep_gave() {
     }
 }
 
-/// Of zeros, too: which sign a range has must not depend on what came first.
+/// For zeros too: the sign of a range's end must not depend on the order.
 #[test]
 fn counts_merge_in_any_order() {
     let count = |low: f64, high: f64| Count {

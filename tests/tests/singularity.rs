@@ -1,5 +1,5 @@
-//! Singularities: against the paper's formulas, at poses that are singular by construction, and
-//! against the Jacobians on random mechanisms of every pair of subspaces.
+//! Singularities: compared with the paper's formulas, at poses that are singular by construction,
+//! and with the Jacobians on random mechanisms of every pair of subspaces.
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
@@ -18,10 +18,10 @@ use opm_tests::random::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Two ways to the same number, relative to it.
+/// Relative tolerance for a number that is computed in two ways.
 const AGREE: f64 = 1e-9;
 
-/// Everything at one pose.
+/// All quantities at one pose.
 struct Found {
     at: Solution,
     jacobians: Jacobians,
@@ -47,7 +47,8 @@ fn measure(manipulator: &Manipulator, at: Solution) -> Found {
     Found { at, jacobians, measured, conditioning }
 }
 
-/// A random plano-spherical manipulator, without limits, and the working mode that it is built in.
+/// A random plano-spherical manipulator without limits, and the working mode in which it is
+/// assembled.
 fn random(rng: &mut Rng) -> Option<(PlanoSpherical, Signs, Manipulator)> {
     let paper = PlanoSpherical::random(rng);
     let signs = Signs::random(rng);
@@ -57,7 +58,7 @@ fn random(rng: &mut Rng) -> Option<(PlanoSpherical, Signs, Manipulator)> {
     Some((paper, signs, Manipulator::new(mechanism).ok()?))
 }
 
-/// The paper's quantities at a pose of a leg: `v × w`, and the vector of link a1.
+/// The paper's quantities for a leg at a pose: `v × w`, and the vector of link a1.
 fn leg_vectors(
     paper: &PlanoSpherical,
     pose: &[f64; 5],
@@ -114,7 +115,7 @@ fn the_first_manipulators_are_the_papers() {
         ] {
             assert!((found.abs() - known.abs()).abs() < AGREE, "{found} {known}");
         }
-        // J_s and J_p are the print's.
+        // J_s and J_p are those of the paper.
         let rho = paper::rotation(pose[2], pose[3], pose[4]);
         let [direct, inverse] = paper.spherical_jacobians(&rho, &joints.theta);
         let known = inverse.try_inverse().unwrap() * direct;
@@ -126,21 +127,21 @@ fn the_first_manipulators_are_the_papers() {
     }
 }
 
-/// Poses of a random first manipulator that geometry says are singular, each with the leg and what it
-/// is.
+/// Poses of a random first manipulator that are singular by geometry, each with the leg and the
+/// kind of singularity.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Link a1 square to its slider.
+    /// Link a1 is perpendicular to its slider.
     LinkSquare,
-    /// The arm stretched.
+    /// The arm is stretched.
     ArmStretched,
-    /// The spherical links in one plane.
+    /// The spherical links are in one plane.
     Coplanar,
-    /// Links a1 and a2 in line.
+    /// The links a1 and a2 are in line.
     InLine,
 }
 
-/// A pose at, or (`off`) a little beside, such a singularity, and the cause.
+/// A pose at such a singularity, or slightly beside it (`off`), and the cause.
 fn singular_pose(
     rng: &mut Rng,
     paper: &PlanoSpherical,
@@ -152,7 +153,7 @@ fn singular_pose(
     let mut pose = [near(0.07), near(0.07), near(PI), near(0.6), near(PI)];
     let i = (near(1.5) + 1.5).floor().min(2.0) as usize;
     let leg = &paper.legs[i];
-    // The orientation alone decides the imaginary joint.
+    // The orientation alone determines the imaginary joint.
     let theta = |pose: &[f64; 5]| -> Option<f64> {
         let rho = paper::rotation(pose[2], pose[3], pose[4]);
         let w = leg.platform_axis(&rho);
@@ -163,7 +164,7 @@ fn singular_pose(
     };
     match kind {
         Kind::LinkSquare => {
-            // Q · e(alpha) = a1, Q = P + a2 e(theta) - h e(alpha).
+            // The condition Q · e(alpha) = a1 with Q = P + a2 e(theta) - h e(alpha).
             let along = Vector2::from(e(leg.alpha));
             let p = Vector2::new(pose[0], pose[1]);
             let q = p + leg.a2 * Vector2::from(e(theta(&pose)?)) - leg.h * along;
@@ -179,14 +180,14 @@ fn singular_pose(
             Some((pose, 3))
         }
         Kind::Coplanar => {
-            // w = Rz(zeta) Ry(arc1 + arc2) z.
+            // The condition w = Rz(zeta) Ry(arc1 + arc2) z.
             let farthest = (leg.arc1 + leg.arc2).min(TAU - leg.arc1 - leg.arc2);
             pose[3] = farthest - off - leg.beta;
             pose[4] = -leg.eta;
             Some((pose, i))
         }
         Kind::InLine => {
-            // C - A = a1 e(theta), P = C - a2 e(theta).
+            // The condition C - A = a1 e(theta) with P = C - a2 e(theta).
             let theta = theta(&pose)? + off;
             let slider = near(0.1);
             let a = leg.h * Vector2::from(e(leg.alpha)) + slider * Vector2::from(n(leg.alpha));
@@ -214,7 +215,7 @@ fn measures_vanish_where_geometry_says_so() {
             else {
                 continue;
             };
-            // In line, the slider is where the sign of the root puts it.
+            // In line, the sign of the root decides the slider's position.
             let modes: Vec<Mode> = {
                 let mut all = manipulator.all_modes();
                 manipulator.inverse_all(&pose, &mut all).unwrap();
@@ -240,7 +241,7 @@ fn measures_vanish_where_geometry_says_so() {
                 value(a).abs().total_cmp(&value(b).abs())
             };
             let Some((mode, found)) = founds.min_by(smallest) else { continue };
-            // Other legs near a singularity of their own would blur the picture.
+            // Other legs must not be near singularities of their own.
             let serial = |found: &Found, section: usize| {
                 let others = found.measured.legs.iter().enumerate();
                 others.filter(|(i, _)| *i != leg).map(|(_, m)| m[section].abs()).fold(1.0, f64::min)
@@ -298,7 +299,7 @@ fn measures_vanish_where_geometry_says_so() {
     }
 }
 
-/// At a serial singularity the other legs move as they do next to it, and nothing is not a number.
+/// At a serial singularity the other legs move as they do next to it, and no value is NaN.
 fn only_that_leg_stands_still(manipulator: &Manipulator, found: &Found, beside: &Found) {
     let rates = [0.3, -0.2, 0.5, 0.4, -0.6];
     let (mut motion, mut near) = (manipulator.motion(), manipulator.motion());
@@ -319,8 +320,8 @@ fn only_that_leg_stands_still(manipulator: &Manipulator, found: &Found, beside: 
     assert_eq!(imaginary.is_some(), motion.singular[0].section == Section::Upper);
 }
 
-/// The spherical section's parallel singularity: a root of the paper's determinant, found between two
-/// poses of opposite sign.
+/// The parallel singularity of the spherical section: a root of the paper's determinant, between
+/// two poses of opposite sign.
 #[test]
 fn the_upper_sections_parallel_measure_changes_sign_at_the_papers_root() {
     let mut rng = Rng::with_seed(82);
@@ -401,9 +402,9 @@ fn actuated(rng: &mut Rng, mechanism: &mut Mechanism, count: usize) -> bool {
     left == 0
 }
 
-/// `det J = c · parallel / serial`, with one constant for all poses and modes of a mechanism: the
-/// measures of the closures, which have no poles, against the Jacobian, which is held against
-/// differences elsewhere.
+/// `det J = c · parallel / serial`, with one constant for all poses and modes of a mechanism. The
+/// measures of the closures, which have no poles, are compared with the Jacobian, which is compared
+/// with differences elsewhere.
 #[test]
 fn measures_are_numerator_and_denominator_of_the_jacobian() {
     let mut rng = Rng::with_seed(83);
@@ -422,7 +423,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
                 let joints = &manipulator.mechanism().legs[legs].joints;
                 freedoms.iter().any(|freedom| joints[freedom.joint].actuated)
             };
-            // A section that passes nothing on to an actuator is no part of the Jacobian.
+            // A section that passes no motion on to an actuator is no part of the Jacobian.
             let parts: Vec<[bool; 2]> = (manipulator.decomposition().legs.iter().enumerate())
                 .map(|(i, split)| {
                     let [lower, upper] = [driven(i, &split.lower), driven(i, &split.upper)];
@@ -447,7 +448,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
                     let serial: f64 = (legs.zip(parts.iter().flatten()))
                         .filter_map(|(measure, part)| part.then_some(measure))
                         .product();
-                    // Where nothing but rounding is left there is nothing to compare.
+                    // If only rounding is left, there is nothing to compare.
                     if serial.abs() < 1e-5 || parallel.abs() < 1e-6 {
                         continue;
                     }
@@ -464,7 +465,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
     }
 }
 
-/// The mechanism in another size.
+/// The mechanism scaled by a factor.
 fn scaled(
     mechanism: &Mechanism,
     decomposition: &Decomposition,
@@ -492,8 +493,8 @@ fn scaled(
     (mechanism, decomposition)
 }
 
-/// Wherever the mechanism stands and however large it is: the same measures at the same place, but
-/// for the signs, which turn with the frames.
+/// The measures do not depend on the mechanism's pose in space and on its size, except for their
+/// signs, which depend on the frames.
 #[test]
 fn measures_do_not_depend_on_place_and_size() {
     let mut rng = Rng::with_seed(84);
@@ -518,7 +519,7 @@ fn measures_do_not_depend_on_place_and_size() {
             let Ok(other) = there.locate(&(g * way * g.inverse())) else {
                 panic!("{pair:?}: the displaced platform is not located")
             };
-            // The same configuration: signs of modes depend on how frames lie.
+            // The same configuration: the signs of modes depend on the frames.
             let mut all = there.all_modes();
             there.inverse_all(&other, &mut all).unwrap();
             let off = |at: &Solution| -> f64 {
@@ -526,7 +527,7 @@ fn measures_do_not_depend_on_place_and_size() {
                 let off = |((c, a), b): ((&opm_core::joint::JointCoordinate, &f64), &f64)| {
                     match c.quantity {
                         Quantity::Length => (a - b / size).abs(),
-                        // A rotation vector has its directions from the base.
+                        // The components of a rotation vector are in base coordinates.
                         Quantity::Angle if c.name.ends_with(['x', 'y', 'z']) => 0.0,
                         Quantity::Angle => {
                             let off = (a - b).rem_euclid(TAU);
@@ -564,7 +565,7 @@ fn measures_do_not_depend_on_place_and_size() {
             }
             let [a, b] = [found.conditioning, same.conditioning];
             if here.characteristic_length() == 1.0 && there.characteristic_length() == 1.0 {
-                // Sliders and one axis: no length of the mechanism's own to measure by.
+                // Sliders and a single axis: the mechanism has no length of its own.
                 lengthless += 1;
             } else if a.condition < 1e4 {
                 assert!(close(a.condition / b.condition, 1.0), "{pair:?} {a:?} {b:?}");

@@ -1,5 +1,5 @@
-//! Sweeps against one inverse-kinematics call per pose: the same poses, the same ranges, with one
-//! thread or several.
+//! Sweeps compared with one inverse-kinematics call per pose: the same poses and the same ranges,
+//! with one thread or several.
 
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Solution};
@@ -70,8 +70,8 @@ fn a_sweep_finds_what_inverse_kinematics_finds() {
     assert!(partly > 300, "{partly} grids were reached in part");
 }
 
-/// A sweep with a limit on the condition number finds the poses that one call each admits, in the
-/// modes that they are admitted in, and no others.
+/// A sweep with a limit on the condition number finds exactly the poses that one call per pose
+/// admits, in the modes in which they are admitted.
 #[test]
 fn a_limited_sweep_finds_what_is_conditioned_well_enough() {
     let mut rng = Rng::with_seed(13);
@@ -81,7 +81,7 @@ fn a_limited_sweep_finds_what_is_conditioned_well_enough() {
             let limited = if round % 2 == 0 { 0.0 } else { 0.2 };
             let options = Options { limited, balls: round % 3 != 0 };
             let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
-            // Enough actuators that some pose has a condition number.
+            // There must be enough actuators for some pose to have a condition number.
             mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints).for_each(|joint| {
                 joint.actuated = true;
             });

@@ -1,5 +1,5 @@
-//! What the task coordinates mean, held against the legs as they are: where a solution's joints bring
-//! the platform.
+//! The meaning of the task coordinates, compared with where a solution's joints bring the platform
+//! by the undecomposed legs.
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3, vector};
@@ -16,10 +16,10 @@ use opm_tests::random::{
     Options, PAIRS, direction, displace, displace_decomposition, displacement, mechanism, vector,
 };
 
-/// Poses here are of the size of one; solutions near the rim of a leg's reach lose some digits.
+/// Poses here are of unit size; solutions near the boundary of a leg's reach lose some digits.
 const AGREE: f64 = 1e-9;
 
-/// Where the joints of the first leg bring the platform from home, in any mode that reaches.
+/// The platform's displacement from home by the joints of the first leg, in any mode that reaches.
 fn platform(manipulator: &Manipulator, pose: &[f64]) -> Option<Isometry3<f64>> {
     let mut all = manipulator.all_modes();
     let mut solution = manipulator.solution();
@@ -38,8 +38,8 @@ fn along(axis: Unit<Vector3<f64>>, length: f64) -> Isometry3<f64> {
     Isometry3::translation(axis.x * length, axis.y * length, axis.z * length)
 }
 
-/// The base's x laid into the plane square to `normal` (y where x is nearly normal), and the
-/// direction a quarter turn ahead of it.
+/// The base's x projected into the plane perpendicular to `normal` (y if x is nearly normal), and
+/// the direction π/2 ahead of it.
 fn in_plane(normal: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let base = if normal.x.abs() > 0.995 { Vector3::y() } else { Vector3::x() };
     let first = Unit::new_normalize(base - normal.into_inner() * normal.dot(&base));
@@ -51,7 +51,7 @@ fn upward(v: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     if v.dot(&Vector3::from(UP)) < 0.0 { -v } else { v }
 }
 
-/// The normal for which it and the direction a quarter turn ahead of x together point up.
+/// The normal for which the normal and the direction π/2 ahead of x together point up.
 fn standing(normal: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     let up = |n: &Unit<Vector3<f64>>| {
         let [_, second] = in_plane(*n);
@@ -60,8 +60,8 @@ fn standing(normal: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     [normal, -normal].into_iter().find(up).unwrap()
 }
 
-/// From home, each coordinate alone moves the platform along one screw: the one that the table in
-/// the docs of the module names.
+/// From home, each coordinate alone moves the platform along one screw: the one in the table of the
+/// module's docs.
 #[test]
 fn each_coordinate_moves_along_its_own_screw() {
     let mut rng = Rng::with_seed(41);
@@ -124,8 +124,8 @@ fn each_coordinate_moves_along_its_own_screw() {
     assert!(checked > 1_000, "{checked} coordinates");
 }
 
-/// Euler angles are those of the platform's orientation, and `x y` its place, whatever they are at
-/// home: `P = (x, y, 0)`, `R = Rz(zeta) Ry(xi) Rz(psi)`.
+/// The Euler angles are those of the platform's orientation, and `x y` is its position, whatever
+/// they are at home: `P = (x, y, 0)`, `R = Rz(zeta) Ry(xi) Rz(psi)`.
 #[test]
 fn a_familys_pose_is_absolute_whatever_its_home() {
     let mut rng = Rng::with_seed(42);
@@ -160,7 +160,7 @@ fn a_familys_pose_is_absolute_whatever_its_home() {
     assert!(checked > 100, "{checked} poses");
 }
 
-/// Two spherical subspaces with centres on a line that is level but for rounding.
+/// Two spherical subspaces whose centres are on a line that is level except for rounding.
 fn level(rng: &mut Rng, rise: f64) -> Mechanism {
     let centres = [Point3::origin(), Point3::new(0.6, 0.2, rise)];
     let legs = (1..=4).map(|number| {
@@ -184,8 +184,8 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
     }
 }
 
-/// The positive direction is one, in the decomposition and in the coordinates, and digits beyond the
-/// tolerance do not choose it.
+/// The positive direction is the same in the decomposition and in the coordinates, and digits
+/// beyond the tolerance do not change it.
 #[test]
 fn rounding_does_not_turn_the_positive_direction() {
     let mut compared = 0;
@@ -205,7 +205,8 @@ fn rounding_does_not_turn_the_positive_direction() {
     assert!(compared > 50, "{compared}");
 }
 
-/// `[task] axis` chooses a direction, in the decomposition too; square to the motion it chooses none.
+/// `[task] axis` chooses a direction, in the decomposition too. Perpendicular to the motion, it
+/// chooses none.
 #[test]
 fn the_hint_chooses_the_positive_direction() {
     let text = examples::find("plano-spherical-5dof-joints").unwrap().text;
@@ -230,8 +231,8 @@ fn the_hint_chooses_the_positive_direction() {
     assert!(error.to_string().contains("(1.000000, 0.000000, 0.000000)"), "{error}");
 }
 
-/// Directions whose angles are multiples of 15 degrees, measured about any axis of the base from any
-/// other, and those of the sides and diagonals of a cube.
+/// Directions whose angles are multiples of 15 degrees, measured about any axis of the base from
+/// any other, and those of the edges and diagonals of a cube.
 fn usual_directions() -> Vec<Vector3<f64>> {
     let mut all = Vec::new();
     let turns = |n: i32| f64::from(15 * n).to_radians();
@@ -249,8 +250,8 @@ fn usual_directions() -> Vec<Vector3<f64>> {
     all
 }
 
-/// Usual directions are far from where the rule for "up" turns one round, and it takes them for what
-/// they are: positive along z, else y, else x.
+/// Usual directions are far from where the rule for "up" reverses a direction, and their signs are:
+/// positive along z, else y, else x.
 #[test]
 fn no_usual_direction_is_near_to_turning_round() {
     let up = Vector3::from(UP).normalize();
@@ -271,8 +272,9 @@ fn axes_apart(a: &Subspace, b: &Subspace) -> f64 {
     (a.axes - b.axes).amax()
 }
 
-/// Mechanisms stood up in every usual way, then turned by a little: the frames follow by as much, `w`
-/// and the intersection motion count upwards, and `x y` are the base's where the plane is level.
+/// Mechanisms in every usual orientation, rotated by a small angle: the frames rotate by as much,
+/// `w` and the intersection motion are positive upwards, and `x y` are the base's if the plane is
+/// level.
 #[test]
 fn a_small_turn_turns_no_coordinate_round() {
     const LITTLE: f64 = 0.004;
@@ -309,8 +311,9 @@ fn a_small_turn_turns_no_coordinate_round() {
                 let (task, turned) = (one.task(), other.task());
                 assert!(task.direction.dot(&up) > 0.0);
                 for (frame, after) in [(&task.lower, &turned.lower), (&task.upper, &turned.upper)] {
-                    // A direction laid into a plane moves by more than the plane: at most by the
-                    // inverse of the sine of 6 degrees, the steepest at which x is laid down.
+                    // A direction projected into a plane moves by more than the plane: at most by
+                    // the inverse of the sine of 6 degrees, the steepest angle at which x is
+                    // projected.
                     let off = axes_apart(frame, after);
                     assert!(off < 11.0 * LITTLE, "{name}: {off} {frame:?} {after:?}");
                     let normal = frame.axes.column(2).into_owned();
@@ -333,7 +336,7 @@ fn a_small_turn_turns_no_coordinate_round() {
     assert!(compared == 480 && level > 100, "{compared} {level}");
 }
 
-/// What a file may say of the frame of a section.
+/// The hints that a file may give for the frame of a section.
 fn hints(frame: &Subspace, names: &[&str], rotation: bool) -> FrameHints {
     let axis = |number: usize| Some(frame.axes.column(number).into_owned());
     let plane = matches!(frame.kind, SubspaceKind::Planar | SubspaceKind::TranslationalPlane);
@@ -346,15 +349,15 @@ fn hints(frame: &Subspace, names: &[&str], rotation: bool) -> FrameHints {
     }
 }
 
-/// The frames of a mechanism can be written down and displaced with it: its coordinates are the same
-/// numbers then, wherever it stands, and so are its joints.
+/// The frames of a mechanism can be written down and displaced with it. Its coordinates and its
+/// joints are then the same numbers, wherever it is.
 #[test]
 fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
     let mut rng = Rng::with_seed(44);
     let mut solved = 0;
     for pair in PAIRS {
         for _ in 0..40 {
-            // A ball's rotation vector is in the base's directions, which stay.
+            // A spherical joint's rotation vector is in base coordinates, which do not move.
             let options = Options { limited: 0.0, balls: false };
             let (plain, decomposition) = mechanism(&mut rng, pair, options);
             let here = Manipulator::with_decomposition(plain.clone(), decomposition.clone());
@@ -400,7 +403,7 @@ fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
     assert!(solved > 300, "{solved} solutions");
 }
 
-/// A frame that a file gives is the frame that is used, and home's values are measured in it.
+/// A frame given by a file is used, and home's values are measured in it.
 #[test]
 fn given_frames_shift_home() {
     let text = examples::find("translational-planar-4dof").unwrap().text;

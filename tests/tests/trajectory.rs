@@ -1,4 +1,4 @@
-//! Motions: what is reported of them, against what inverse kinematics says at far more times.
+//! Motions: what is reported about them, compared with inverse kinematics at far more times.
 
 use fastrand::Rng;
 use opm_core::joint::Quantity;
@@ -9,13 +9,13 @@ use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::{PI, TAU};
 
-/// Samples a second of what is tested, and of what it is tested against.
+/// Samples per second of the tested motion, and of the reference.
 const RATE: f64 = 200.0;
 const FINE: f64 = 5000.0;
-/// The two agree on a time up to the finer one's step, where it is on one side of the other.
+/// Both agree on a time up to the reference's step, because it may be on one side or the other.
 const STEP: f64 = 1.0 / FINE;
 
-/// Sinusoids about home, so wide that reach, limits and singularities are met.
+/// Sinusoids about home, so wide that they meet reach, limits and singularities.
 fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
     let harmonics = |c: &opm_core::task::TaskCoordinate| {
         let most = if c.quantity == Quantity::Angle { 0.8 } else { 0.7 };
@@ -26,7 +26,7 @@ fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
         };
         let sinusoids = vec![sinusoid(), sinusoid()];
         let first: f64 = sinusoids.iter().map(|s| s.amplitude * s.phase.sin()).sum();
-        // At home to begin with.
+        // The motion starts at home.
         Harmonics { offset: c.home - first, sinusoids }
     };
     Motion {
@@ -61,7 +61,7 @@ fn violations(manipulator: &Manipulator, motion: &Motion, rate: f64) -> Vec<Viol
     ended
 }
 
-/// What a sweep of single poses says at one time: what is violated, and the sign of each section's
+/// The result of single poses at one time: what is violated, and the sign of each section's
 /// parallel measure.
 struct Seen {
     time: f64,
@@ -104,8 +104,8 @@ fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
             if solution.unreachable().iter().any(|u| u.leg == leg_of[coordinate]) {
                 continue;
             }
-            // Back in reach, an angle is at the turn nearest to where it was lost: half a turn away, that
-            // hangs on the moment at which one looks.
+            // Back in reach, an angle is the one nearest to where it was lost. If it is π away, the
+            // result depends on the exact time.
             if lost[leg_of[coordinate]] && c.quantity == Quantity::Angle {
                 continue;
             }
@@ -185,12 +185,12 @@ fn what_is_violated_is_reported_and_nothing_else() {
             }
         }
     }
-    // They were all met.
+    // All kinds were met.
     assert!(reach > 50 && limit > 50 && crossings > 5, "{reach} {limit} {crossings}");
 }
 
-/// Passages through singularities are at the same times however often one looks, each told once: also
-/// where a sample on the way to one is so near that its measure counts as zero.
+/// Passages through singularities are at the same times whatever the sample rate, and each is
+/// reported once, also if a sample before it is so near that its measure counts as zero.
 #[test]
 fn a_passage_through_a_singularity_is_told_once() {
     let manipulator = shipped("double-spherical-5dof");
@@ -216,8 +216,8 @@ fn a_passage_through_a_singularity_is_told_once() {
     }
 }
 
-/// The helical manipulator's sliders are linear in the pose (Eq. 27 of the paper): a third slider that
-/// passes its limit for 14 ms between two samples that are 100 ms apart, or 0.5 s apart.
+/// The sliders of the helical manipulator are linear in the pose (Eq. 27 of the paper). The third
+/// slider passes its limit for 14 ms between two samples that are 100 ms apart, or 0.5 s apart.
 #[test]
 fn a_dip_between_two_samples_is_found_where_the_slopes_say_so() {
     let manipulator = shipped("translational-helical-3dof");
@@ -240,8 +240,8 @@ fn a_dip_between_two_samples_is_found_where_the_slopes_say_so() {
     }
 }
 
-/// The paper's arm of two links of 100 mm from (0, 75) reaches 200 mm: down to y = -125 mm at x = 0.
-/// On the way there and back it folds up, where y is 75 mm.
+/// The paper's arm of two links of 100 mm from (0, 75) reaches 200 mm: down to y = -125 mm at x =
+/// 0. On the way there and back it folds, at y = 75 mm.
 #[test]
 fn the_end_of_an_arm_is_found_between_two_samples() {
     let manipulator = shipped("plano-spherical-5dof");
@@ -264,7 +264,7 @@ fn the_end_of_an_arm_is_found_between_two_samples() {
         (violation.section, violation.quantity),
         (Some(Section::Lower), Some(Quantity::Length))
     );
-    // 0.1251 sin(π t / 2 + 0.1) = -0.125
+    // The condition 0.1251 sin(π t / 2 + 0.1) = -0.125.
     let half = (0.125 / 0.1251_f64).acos() / (PI / 2.0);
     let lowest = (1.5 * PI - 0.1) / (PI / 2.0);
     assert!((violation.start - (lowest - half)).abs() < 1e-9, "{violation:?}");
@@ -272,7 +272,7 @@ fn the_end_of_an_arm_is_found_between_two_samples() {
     assert!((violation.amount - 1e-4).abs() < 1e-9, "{violation:?}");
 }
 
-/// Rates are derivatives of what is reported, also where an angle passes half a turn.
+/// Rates are derivatives of the reported values, also where an angle passes π.
 #[test]
 fn joints_move_on_as_their_rates_say() {
     for example in motion::examples::MOTIONS {
@@ -294,7 +294,8 @@ fn joints_move_on_as_their_rates_say() {
             if held.len() == 3 {
                 for (i, c) in manipulator.coordinates().iter().enumerate() {
                     let difference = (held[2].0[i] - held[0].0[i]) * 0.5 * rate;
-                    // The step's square times a third derivative of some 10 a second cubed.
+                    // The error is the step's square times a third derivative of some ten per
+                    // second cubed.
                     let off = (difference - held[1].1[i]).abs();
                     assert!(off < 1e-6, "{}: {} is off by {off}", example.name, c.name);
                 }
@@ -304,7 +305,8 @@ fn joints_move_on_as_their_rates_say() {
     }
 }
 
-/// The end is a sample, whether or not a whole number of steps away, and a bad rate is refused.
+/// The end is a sample, even if it is not a whole number of steps away, and an invalid rate is an
+/// error.
 #[test]
 fn samples_go_from_start_to_end() {
     let manipulator = shipped("translational-helical-3dof");

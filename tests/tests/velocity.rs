@@ -1,4 +1,4 @@
-//! Velocities and accelerations on random mechanisms of every pair of subspaces, held against
+//! Velocities and accelerations on random mechanisms of every pair of subspaces, compared with
 //! differences of the inverse kinematics.
 
 use fastrand::Rng;
@@ -11,10 +11,10 @@ use opm_tests::differences::{Estimate, derivatives};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::TAU;
 
-/// Relative to the largest derivative of the same order at the pose.
+/// Tolerance relative to the largest derivative of the same order at the pose.
 const RATE: f64 = 1e-9;
 const ACCELERATION: f64 = 1e-7;
-/// Two ways to the same number, relative to the numbers on the way.
+/// Tolerance for a number that is computed in two ways, relative to the intermediate numbers.
 const ROUNDING: f64 = 1e-11;
 
 /// A motion through a pose: `pose + rates t + accelerations t² / 2`.
@@ -42,7 +42,7 @@ impl Path {
     }
 }
 
-/// Joints, then imaginary joints, on the way through a solution.
+/// The joints, then the imaginary joints, along the motion through a solution.
 fn through(
     manipulator: &Manipulator,
     path: &Path,
@@ -116,8 +116,8 @@ fn rates_and_accelerations_are_the_derivatives_of_inverse_kinematics() {
     }
 }
 
-/// The Jacobians by the rates of the task coordinates give the rates of [`Motion`], which are held
-/// against differences above; the platform's twist is that of its displacement.
+/// The Jacobians by the rates of the task coordinates give the rates of [`Motion`], which are
+/// compared with differences above. The platform's twist is that of its displacement.
 #[test]
 fn jacobians_compose_to_the_rates() {
     let mut rng = Rng::with_seed(71);
@@ -181,7 +181,8 @@ fn jacobians_compose_to_the_rates() {
     }
 }
 
-/// Once round, a passive ball's rotation vector has no derivative; the mechanism knows nothing of it.
+/// After a full revolution the rotation vector of a passive spherical joint has no derivative; the
+/// mechanism does not depend on it.
 #[test]
 fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;
@@ -196,7 +197,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
         assert!(
             manipulator.inverse_near(&pose, manipulator.home_mode(), &mut at).unwrap().is_some()
         );
-        // The ball turns against the arm, so that it is turned by zeta less the arm's angles.
+        // The spherical joint rotates relative to the arm: by zeta minus the arm's angles.
         let turned = ball.iter().map(|&i| at.joints()[i].powi(2)).sum::<f64>().sqrt();
         (turned, at.clone())
     };
@@ -204,7 +205,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     while path(zeta).0 < TAU - 0.1 {
         zeta += 0.01;
     }
-    // What is left is known to the last digit or two.
+    // The rest is exact to the last digit or two.
     for _ in 0..3 {
         zeta += TAU - path(zeta).0 - 1e-9;
     }
@@ -220,7 +221,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     assert!(!manipulator.differentiate(&at, &mut jacobians).unwrap());
     let conditioning = manipulator.conditioning(&jacobians, 0.1);
     assert!(conditioning.condition < 20.0, "{conditioning:?}");
-    // All others move as they do in a solution that has not turned.
+    // All other joints move as they do in a solution without the revolution.
     let (mut fresh, mut known) = (manipulator.solution(), manipulator.motion());
     let pose = [0.01, 0.0, zeta, 0.0, 0.0];
     assert!(manipulator.inverse(&pose, manipulator.home_mode(), &mut fresh).unwrap().is_some());
@@ -231,7 +232,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     }
 }
 
-/// Whatever the pose and the rates, an answer is a number, or it is refused.
+/// For all poses and rates, the answer is a finite number or an error.
 #[test]
 fn enormous_poses_and_rates_give_numbers_or_are_refused() {
     let mut rng = Rng::with_seed(72);
@@ -303,7 +304,7 @@ fn what_is_no_rate_is_refused() {
             error.to_string()
         );
     }
-    // Before any pose a solution is home.
+    // Before any pose, a solution is home.
     assert!(manipulator.velocity(&at, &still, &still, &mut motion).unwrap());
     let text = examples::find("plano-spherical-5dof").unwrap().text;
     let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
@@ -314,9 +315,9 @@ fn what_is_no_rate_is_refused() {
     assert!(manipulator.differentiate(&at, &mut manipulator.jacobians()).is_err());
 }
 
-/// The condition number and the manipulability by another program's singular values, from the platform's
-/// twist and the joints' rates by task coordinates; with fewer actuators than freedoms, with as many,
-/// and with all joints actuated.
+/// The condition number and the manipulability, compared with another program's singular values,
+/// from the platform's twist and the joints' rates by task coordinates: with fewer actuators than
+/// freedoms, with as many, and with all joints actuated.
 #[test]
 fn conditioning_is_that_of_the_singular_values() {
     let mut rng = Rng::with_seed(73);
@@ -356,7 +357,7 @@ fn conditioning_is_that_of_the_singular_values() {
             });
             let mut twists = &jacobians.platform * &jacobians.pose;
             twists.rows_mut(3, 3).scale_mut(1.0 / length);
-            // Directions with the metric's root taken by its eigenvectors.
+            // The square root of the metric by its eigenvectors.
             let metric = (twists.transpose() * &twists).symmetric_eigen();
             if metric.eigenvalues.min() < 1e-4 * metric.eigenvalues.max() {
                 continue; // The coordinates are nearly singular: not what is compared here.

@@ -181,12 +181,15 @@ fn legs_that_cannot_be_solved_are_named() {
         (
             &planar,
             typed(&planar, "universal", ", axis2 = [0, 1, 0]"),
-            &["no partial subspaces", "without joint phi21 of leg leg1 it would have some"],
+            &[
+                "no partial subspaces",
+                "without joint phi21 of leg leg1 there would be such a split",
+            ],
         ),
         (
             &slider,
             typed(&slider, "cylindrical", ", actuated = true"),
-            &["no partial subspaces", "without joint S1 of leg leg1 it would have some"],
+            &["no partial subspaces", "without joint S1 of leg leg1 there would be such a split"],
         ),
         (&planar, planar.replace("phi21", "psi"), &["\"psi\" is the name of a task coordinate"]),
         (&planar, planar.replace("phi21", "tau.leg2"), &["that leg's imaginary joint"]),

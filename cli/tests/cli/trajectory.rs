@@ -192,7 +192,7 @@ fn a_wrong_motion_is_told_with_its_places() {
         ("t,x\n", &["0 times, expected at least 3"]),
         ("t,x\n0,0\n1,0\n", &["poses.csv:3:1: 2 times, expected at least 3"]),
         ("x,y\n", &["poses.csv:1:1: no column t"]),
-        ("t,x,x\n", &["poses.csv:1:5: x is there twice"]),
+        ("t,x,x\n", &["poses.csv:1:5: two columns are called x"]),
         ("t,yaw\n", &["poses.csv:1:3: no coordinate \"yaw\""]),
         (
             "t,x\n0,0\n1,much\n1,inf\n0.5,0,7\n2\n",
@@ -201,7 +201,7 @@ fn a_wrong_motion_is_told_with_its_places() {
                 "poses.csv:4:1: t is 1 after 1, expected a later time",
                 "poses.csv:4:3: \"inf\"",
                 "poses.csv:5:1: 3 cells, expected 2",
-                "poses.csv:6:1: 1 cells, expected 2",
+                "poses.csv:6:1: 1 cell, expected 2",
             ],
         ),
     ] {

@@ -1,14 +1,14 @@
-//! Decomposition of a mechanism into two partial subspaces: every leg is cut into a lower part that
-//! moves in one group `A` and an upper part that moves in another, `B`, with a one-parameter group
-//! of displacements in common: the intersection motion.
+//! Decomposition of a mechanism into two partial subspaces. Every leg is split into a lower part
+//! that moves in one group `A` and an upper part that moves in another group `B`. The two groups
+//! share a one-parameter group of displacements: the intersection motion.
 //!
-//! Where a leg's upper part does not contain that motion, the cut is bridged by an *imaginary
-//! joint*, a joint along the intersection motion that is not there: it splits the leg's kinematics
-//! into two problems in small groups. Selvi, "Kinematic analysis of overconstrained manipulators
+//! Where a leg's upper part does not contain the intersection motion, an *imaginary joint* along it
+//! bridges the split. This joint does not exist physically; it divides the leg's kinematics into
+//! two problems in small groups. See Selvi, "Kinematic analysis of overconstrained manipulators
 //! with partial subspaces using decomposition method", Robotica, section 2.
 //!
-//! That a mechanism's screws at home split this way says so for all of its poses: a leg's lower
-//! part displaces by elements of `A` and its upper part by elements of `B`, whatever the angles.
+//! A split found from the screws at home is valid for all poses: whatever the joint values, a leg's
+//! lower part displaces by elements of `A` and its upper part by elements of `B`.
 
 mod imaginary;
 pub mod mobility;
@@ -18,135 +18,191 @@ mod search;
 pub(crate) mod samples;
 
 use crate::decomposition::mobility::{HomeSingularity, MobilityError, frame, mobility};
-use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
+use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, TOLERANCE, fit};
 use crate::mechanism::Mechanism;
-use crate::mechanism::leg::Leg;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::{Leg, Section};
 use nalgebra::Vector6;
-use search::Cut;
+use search::SplitCandidate;
 use std::cmp::Reverse;
+use std::fmt;
 use thiserror::Error;
 
-/// One freedom of a leg.
+/// One freedom of a leg: a joint, and one of its screws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Freedom {
-    /// Index of the joint in its leg, base first.
+    /// Index of the joint in its leg, counted from the base.
     pub joint: usize,
-    /// Index of the freedom in its joint, as in [`Joint::screws`](crate::mechanism::joint::Joint::screws).
+    /// Index of the freedom in its joint, in the order of
+    /// [`Joint::screws`](crate::mechanism::joint::Joint::screws).
     pub index: usize,
 }
 
-/// Where a leg is cut.
+/// How a leg is split into a lower and an upper part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LegSplit {
-    /// Freedoms that move in the lower subspace, base first.
+    /// The freedoms that move in the lower subspace, from base to platform.
     pub lower: Vec<Freedom>,
-    /// Freedoms that move in the upper subspace, base first.
+    /// The freedoms that move in the upper subspace, from base to platform.
     pub upper: Vec<Freedom>,
-    /// Whether an imaginary joint bridges the cut.
+    /// Whether an imaginary joint bridges the split.
     pub imaginary: bool,
 }
 
-/// One way to see a mechanism as a lower and an upper section.
+/// A split of a mechanism into a lower and an upper section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decomposition {
-    /// Dimension of the span of all joint screws.
+    /// Dimension of the span of all joint screws, `lambda`.
     pub lambda: usize,
     /// Mobility of the mechanism, `N`.
     pub mobility: usize,
-    /// Group that the lower parts of the legs move in, `A`.
+    /// The group `A` in which the lower parts of the legs move.
     pub lower: SubspaceClass,
-    /// Group that the upper parts of the legs move in, `B`.
+    /// The group `B` in which the upper parts of the legs move.
     pub upper: SubspaceClass,
-    /// What both have in common: a rotation, translation or helical motion. Its axis is its positive
-    /// direction: on the side of the mechanism's [`TaskHints`](crate::mechanism::TaskHints), else up.
+    /// The motion that both groups share: a rotation, a translation or a helical motion. Its axis
+    /// points in the positive direction: to the side that the mechanism's
+    /// [`TaskHints`](crate::mechanism::TaskHints) give, or else up.
     pub intersection: SubspaceClass,
-    /// A split a leg, in the order of the mechanism's legs.
+    /// The split of each leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
-    /// Independent motions of the imaginary joints, `J`: the mobility of the upper section with
-    /// them. At most `mobility`.
+    /// The number of independent motions of the imaginary joints, `J`: the mobility of the upper
+    /// section with its imaginary joints, at most `mobility`.
     pub imaginary_joints: usize,
-    /// What is left for the lower section with the imaginary joints held, `M = N − J`.
+    /// The number of motions left to the lower section with the imaginary joints held, `M = N − J`.
     pub first_section_motions: usize,
-    /// Mobility of the upper section without imaginary joints, `F0`; 0 if it is passive, driven by
-    /// the imaginary joints alone.
+    /// Mobility of the upper section without imaginary joints, `F0`. It is 0 if the upper section
+    /// is passive, that is, driven by the imaginary joints alone.
     pub upper_mobility: usize,
-    /// Legs with an imaginary joint beyond the motions that these give to the upper section.
+    /// The number of imaginary joints in excess of the motions that they give to the upper section.
     pub redundancy: usize,
-    /// Largest distance of a joint screw from the group that it was assigned to: the sine of an
-    /// angle, with lengths over the mechanism's size. Rounding only, for exact input.
+    /// The largest distance of a joint screw from the group that it was assigned to: the sine of an
+    /// angle, with lengths divided by the mechanism's size. For exact input it is only rounding.
     pub deviation: f64,
 }
 
-/// Why a mechanism has no decomposition.
+/// Why a mechanism cannot be decomposed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DecomposeError {
-    /// Legs or joints are missing or not numbers.
+    /// Legs or joints are missing, or numbers are not finite.
     #[error(transparent)]
     Mobility(#[from] MobilityError),
-    /// A structure, not a mechanism.
-    #[error("the mechanism cannot move: mobility N = 0 (joint screws of rank lambda = {lambda})")]
+    /// The mechanism is a structure: its mobility is zero.
+    #[error(
+        "the mechanism cannot move: its mobility N is 0 (its joint screws have rank lambda = {lambda})"
+    )]
     NoFreedom {
-        /// Rank of all joint screws.
+        /// Dimension of the span of all joint screws.
         lambda: usize,
     },
-    /// Home says less than, or something else than, all other poses.
-    #[error("the home pose is singular ({}); choose another one", list(singularities))]
+    /// The home pose is singular, so that it does not represent other poses.
+    #[error("the home pose is singular ({}); expected a regular home pose", list(singularities))]
     SingularHome {
-        /// In what respects.
+        /// Every respect in which home is singular.
         singularities: Vec<HomeSingularity>,
     },
-    /// Nothing drives the platform.
-    #[error("no joint is actuated; the mechanism has mobility N = {mobility}")]
+    /// No joint is actuated.
+    #[error("no joint is actuated, expected actuators for a mobility of N = {mobility}")]
     NoActuator {
-        /// `N`.
+        /// Mobility of the mechanism, `N`.
         mobility: usize,
     },
-    /// The actuators do not hold the platform.
+    /// The actuators do not control every motion of the platform.
     #[error(
-        "the actuators leave the platform loose: {actuators} actuated freedoms control {controlled} \
-         of mobility N = {mobility}; with all of them locked these are free: {}",
+        "the actuators do not control the platform: {actuators} actuated {} control {controlled} of \
+         the {mobility} freedoms of the mechanism; with all actuators locked, these motions are \
+         free: {}",
+        if *actuators == 1 { "freedom" } else { "freedoms" },
         list(free)
     )]
     Loose {
-        /// `N`.
+        /// Mobility of the mechanism, `N`.
         mobility: usize,
-        /// Freedoms of the actuated joints.
+        /// The number of freedoms of the actuated joints.
         actuators: usize,
-        /// Freedoms that they control.
+        /// The number of the mechanism's freedoms that they control.
         controlled: usize,
         /// Independent motions of the platform with all actuators locked.
         free: Vec<SubspaceClass>,
     },
-    /// No split of the legs gives two groups that meet in one dimension.
+    /// No split of the legs gives two groups that share exactly a one-parameter group.
     #[error(
-        "no partial subspaces: no split of the legs (lambda = {lambda}, mobility N = {mobility}) \
-         gives two subgroups that are smaller than lambda and meet in one dimension{}",
-        odd.as_ref().map(|[leg, joint]| format!(
-            "; without joint {joint} of leg {leg} it would have some"
+        "no partial subspaces (lambda = {lambda}, mobility N = {mobility}){}; opm needs legs that \
+         split between two subgroups of less than {lambda} dimensions that share a one-parameter \
+         motion{}",
+        subspace.map(|group| format!(": {}", one_group(&group))).unwrap_or_default(),
+        odd.as_ref().zip(miss.as_ref()).map(|([leg, joint], miss)| format!(
+            "; without joint {joint} of leg {leg} there would be such a split: {miss}"
         )).unwrap_or_default()
     )]
     NoPartialSubspaces {
-        /// Rank of all joint screws.
+        /// Dimension of the span of all joint screws.
         lambda: usize,
-        /// `N`.
+        /// Mobility of the mechanism, `N`.
         mobility: usize,
-        /// Leg and joint that alone keep it from having some, if one does.
+        /// The leg and the joint without which there would be such a split, if there is exactly
+        /// one.
         odd: Option<[String; 2]>,
+        /// How far that joint is from the section that it would belong to.
+        miss: Option<JointMiss>,
+        /// The group in which all legs move together; `None` if the span of all joint screws is not
+        /// a subgroup.
+        subspace: Option<SubspaceClass>,
     },
+}
+
+/// How far a joint is from a section of the mechanism without it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointMiss {
+    /// The nearer one of the two sections.
+    pub section: Section,
+    /// The group in which that section moves without the joint.
+    pub subspace: SubspaceClass,
+    /// The largest distance of a screw of the joint from the group: the sine of an angle, with
+    /// lengths divided by the mechanism's size. Up to [`TOLERANCE`], a joint is in the group.
+    pub deviation: f64,
+    /// For a revolute joint and a spherical group: the distance of the axis from the centre, metres.
+    pub distance: Option<f64>,
+}
+
+impl fmt::Display for JointMiss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { section, subspace, deviation, distance } = self;
+        match distance {
+            Some(distance) => write!(
+                f,
+                "its axis misses the centre of the {section} section ({subspace}) by {distance:.3e} m"
+            ),
+            None => write!(
+                f,
+                "it deviates from the {section} section ({subspace}) by {deviation:.3e}, expected \
+                 at most {TOLERANCE:e}"
+            ),
+        }
+    }
+}
+
+/// What a mechanism is whose legs all move in one group.
+fn one_group(group: &SubspaceClass) -> String {
+    match group {
+        SubspaceClass::Full => "the joints of all legs together move in all six dimensions".into(),
+        group => format!("all legs move in one subgroup, {group}"),
+    }
 }
 
 fn list<T: ToString>(items: &[T]) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// All valid decompositions, the preferred one first: a passive upper section, then imaginary
-/// joints without redundancy, then joints left whole, then more freedoms in the lower section; what
-/// is still equal is in the order of the splits of the legs by name. At most
-/// [`MAX_DECOMPOSITIONS`] are listed.
+/// All valid decompositions of a mechanism, the preferred one first.
+///
+/// The order of preference is: a passive upper section, then no redundant imaginary joints, then
+/// fewer joints divided between the sections, then more freedoms in the lower section, then the
+/// order of the splits of the legs by name. At most [`MAX_DECOMPOSITIONS`] are listed.
 ///
 /// # Errors
-/// [`DecomposeError`]: the mechanism is incomplete, cannot move, is in a singular pose at home,
-/// has actuators that do not control the platform, or has no partial subspaces.
+/// [`DecomposeError`] if the mechanism is incomplete, cannot move, is singular at home, has
+/// actuators that do not control the platform, or has no partial subspaces.
 pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     let report = mobility(mechanism)?;
     let (lambda, mobility) = (report.lambda, report.mobility);
@@ -166,48 +222,71 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
     }
     let mut found = search(mechanism, lambda, mobility).0;
     if found.is_empty() {
-        let odd = odd_joint(mechanism, mobility);
-        return Err(DecomposeError::NoPartialSubspaces { lambda, mobility, odd });
+        let (odd, miss) = odd_joint(mechanism, mobility).unzip();
+        let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
+        let subspace = MotionSubspace::span(frame(mechanism), &screws).class();
+        return Err(DecomposeError::NoPartialSubspaces { lambda, mobility, odd, miss, subspace });
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));
     Ok(found)
 }
 
-/// The one joint of which it takes no more than to leave it out for there to be partial subspaces.
-fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<[String; 2]> {
+/// The only joint that must be left out for the mechanism to have partial subspaces; `None` if
+/// there is no such joint, or more than one.
+fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<([String; 2], JointMiss)> {
     let frame = frame(mechanism);
     let mut odd = None;
     for (number, leg) in mechanism.legs.iter().enumerate().filter(|(_, leg)| leg.joints.len() > 1) {
         for joint in 0..leg.joints.len() {
             let mut others = mechanism.clone();
-            let left_out = others.legs[number].joints.remove(joint).name;
+            let left_out = others.legs[number].joints.remove(joint);
             let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
             let lambda = MotionSubspace::span(frame, &screws).dimension();
-            if !search(&others, lambda, mobility).0.is_empty() {
+            let found = search(&others, lambda, mobility).0;
+            let misses = found.iter().flat_map(|split| joint_misses(&left_out, split, frame));
+            if let Some(miss) = misses.min_by(|a, b| a.deviation.total_cmp(&b.deviation)) {
                 if odd.is_some() {
                     return None;
                 }
-                odd = Some([leg.name.clone(), left_out]);
+                odd = Some(([leg.name.clone(), left_out.name], miss));
             }
         }
     }
     odd
 }
 
-/// Decompositions listed at most: a joint along the intersection motion can go to either section,
-/// in every leg, so that their number can grow with a power of the number of legs.
+/// How far a joint is from either section of a decomposition.
+fn joint_misses(joint: &Joint, split: &Decomposition, frame: Frame) -> [JointMiss; 2] {
+    [(Section::Lower, split.lower), (Section::Upper, split.upper)].map(|(section, subspace)| {
+        let group = MotionSubspace::span(frame, &subspace.screws());
+        let screws = joint.screws();
+        let deviation = screws.iter().map(|screw| group.distance(screw)).fold(0.0, f64::max);
+        let distance = match (subspace, joint.kind) {
+            (SubspaceClass::Spherical { centre }, JointKind::Revolute) => {
+                Some((centre - joint.point).cross(&joint.axis).norm())
+            }
+            _ => None,
+        };
+        JointMiss { section, subspace, deviation, distance }
+    })
+}
+
+/// The largest number of decompositions that are listed. A joint along the intersection motion can
+/// belong to either section, in every leg, so their number can grow exponentially with the number
+/// of legs.
 ///
-/// Where there are more, those that were found first are listed, in order of preference among
-/// themselves. The search cuts every leg as near to the platform as it can first, which is what the
-/// preferred ones have in common, but not all that counts.
+/// If there are more, the first ones found are listed, sorted by preference. The search splits
+/// every leg as near to the platform as it can first. Preferred decompositions have that in common,
+/// but it is not the only criterion.
 pub const MAX_DECOMPOSITIONS: usize = 1024;
 
-/// All decompositions, and how many partial splits were looked at.
+/// All decompositions, and the number of partial splits that were visited.
 fn search(mechanism: &Mechanism, lambda: usize, mobility: usize) -> (Vec<Decomposition>, usize) {
     let frame = frame(mechanism);
-    let cuts: Vec<Vec<Cut>> = mechanism.legs.iter().map(|leg| search::cuts(leg, &frame)).collect();
+    let candidates: Vec<Vec<SplitCandidate>> =
+        mechanism.legs.iter().map(|leg| search::candidates(leg, &frame)).collect();
     let mut found = vec![];
-    let visited = search::splits(&cuts, lambda, &mut |split| {
+    let visited = search::splits(&candidates, lambda, &mut |split| {
         let sections = Sections::new(split, lambda);
         found.extend(sections.map(|s| s.decomposition(mechanism, &frame, lambda, mobility)));
         found.len() < MAX_DECOMPOSITIONS
@@ -215,23 +294,24 @@ fn search(mechanism: &Mechanism, lambda: usize, mobility: usize) -> (Vec<Decompo
     (found, visited)
 }
 
-/// A split of every leg whose two sections are groups that meet in one dimension.
+/// A split of every leg whose two sections are groups that share a one-parameter group.
 struct Sections<'a> {
-    legs: &'a [&'a Cut],
+    legs: &'a [&'a SplitCandidate],
     lower: Fit,
     upper: Fit,
     intersection: Fit,
 }
 
 impl<'a> Sections<'a> {
-    fn new(legs: &'a [&'a Cut], lambda: usize) -> Option<Self> {
-        let partial = |screws: fn(&Cut) -> &[Vector6<f64>]| {
-            let all: Vec<_> = legs.iter().flat_map(|cut| screws(cut)).copied().collect();
+    fn new(legs: &'a [&'a SplitCandidate], lambda: usize) -> Option<Self> {
+        let partial = |screws: fn(&SplitCandidate) -> &[Vector6<f64>]| {
+            let all: Vec<_> =
+                legs.iter().flat_map(|candidate| screws(candidate)).copied().collect();
             let dimension = |fit: &Fit| fit.class.dimension();
             fit(&all).filter(|fit| (1..lambda).contains(&dimension(fit)))
         };
-        let lower = partial(Cut::lower_screws)?;
-        let upper = partial(Cut::upper_screws)?;
+        let lower = partial(SplitCandidate::lower_screws)?;
+        let upper = partial(SplitCandidate::upper_screws)?;
         let intersection = lower.basis.intersection(&upper.basis);
         if intersection.dimension() != 1 {
             return None;
@@ -247,19 +327,21 @@ impl<'a> Sections<'a> {
         lambda: usize,
         mobility: usize,
     ) -> Decomposition {
-        let parts: Vec<_> = self.legs.iter().map(|cut| cut.upper_screws()).collect();
+        let parts: Vec<_> = self.legs.iter().map(|candidate| candidate.upper_screws()).collect();
         let section = imaginary::UpperSection {
             basis: &self.upper.basis,
             legs: &parts,
             intersection: self.intersection.basis.vectors()[0],
         };
-        let plain = |leg: &Leg, cut: &Cut| (cut.upper.len(), cut.lower.len(), leg.name.clone());
+        let key = |leg: &Leg, split: &SplitCandidate| {
+            (split.upper.len(), split.lower.len(), leg.name.clone())
+        };
         let order: Vec<_> =
-            mechanism.legs.iter().zip(self.legs).map(|(leg, cut)| plain(leg, cut)).collect();
+            mechanism.legs.iter().zip(self.legs).map(|(leg, split)| key(leg, split)).collect();
         let choice = section.imaginary_joints(mobility, self.lower.class.dimension(), &order);
-        let split = |(i, cut): (usize, &&Cut)| LegSplit {
-            lower: cut.lower.clone(),
-            upper: cut.upper.clone(),
+        let split = |(i, candidate): (usize, &&SplitCandidate)| LegSplit {
+            lower: candidate.lower.clone(),
+            upper: candidate.upper.clone(),
             imaginary: choice.legs.contains(&i),
         };
         let imaginary_joints = choice.mobility.min(mobility);
@@ -283,7 +365,8 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// Sorts decompositions, the preferred one lowest, without regard to the order of the legs.
+/// A sort key: preferred decompositions have smaller keys. It does not depend on the order of the
+/// legs.
 fn preference(decomposition: &Decomposition, mechanism: &Mechanism) -> impl Ord + use<> {
     let divided = |split: &LegSplit| match (split.lower.last(), split.upper.first()) {
         (Some(below), Some(above)) => below.joint == above.joint,

@@ -1,25 +1,25 @@
-//! Position analysis of single loops that decompose: Bennett's double spherical 6R linkage (Selvi,
-//! "Kinematic analysis of overconstrained manipulators with partial subspaces using decomposition
-//! method", Robotica, Fig. 1) as an input-output linkage.
+//! Position analysis of single-loop linkages that decompose: Bennett's double spherical 6R linkage
+//! (Selvi, "Kinematic analysis of overconstrained manipulators with partial subspaces using
+//! decomposition method", Robotica, Fig. 1) as an input-output linkage.
 //!
-//! Two legs close one loop, `L₁U₁ = L₂U₂`, where the lower parts turn about a centre `A` and the
-//! upper parts about a centre `B`. Then
+//! Two legs form one loop, `L₁U₁ = L₂U₂`. The lower parts rotate about a centre `A` and the upper
+//! parts about a centre `B`. Then
 //!
 //! ```text
 //! L₂⁻¹ L₁ = U₂ U₁⁻¹ = exp(I τ)
 //! ```
 //!
-//! lies in both groups of rotations: it is a rotation about the line of the two centres, the
-//! imaginary joint. With three revolutes in each section the loop falls into two spherical
-//! four-bars that share that joint,
-//!
+//! lies in both groups of rotations: it is a rotation about the line through the two centres, and
+//! this line is the axis of the imaginary joint. With three revolutes in each section, the loop
+//! divides into two spherical four-bars that share the imaginary joint,
 //! ```text
 //! exp(-I τ) · L₂⁻¹ L₁ = 1      exp(-I τ) · U₂ U₁⁻¹ = 1
 //! ```
 //!
-//! The one that has the input joint gives `τ`, from which the other follows: two two-valued choices,
-//! so up to four positions an input. In these products a joint that is passed from its platform to
-//! its base side has its axis reversed, so that its rotation is always what the joint reports.
+//! The four-bar with the input joint determines `τ`, and `τ` determines the other one. Each of them
+//! has a two-valued choice, so an input has up to four positions. Where a product passes a joint
+//! from its platform side to its base side, the joint's axis is reversed, so that its rotation is
+//! always the reported one.
 //!
 //! ```
 //! use opm_core::linkage::Linkage;
@@ -57,59 +57,60 @@ use crate::task::{Task, TaskError};
 use four_bar::FourBar;
 use nalgebra::{Unit, Vector3};
 
-/// Why a mechanism is not a linkage that this module covers.
+/// Why a mechanism is not a linkage that this module can solve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinkageError {
-    /// It does not decompose.
+    /// The mechanism cannot be decomposed.
     #[error(transparent)]
     Decompose(#[from] DecomposeError),
-    /// It decomposes otherwise.
+    /// The mechanism decomposes, but not into two spherical four-bars.
     #[error(
-        "{0}; a linkage has two legs, with three revolute axes through each of two centres (two \
-         spherical four-bars that share an imaginary joint)"
+        "the mechanism has {0}, expected a linkage of two legs with three revolute axes through each \
+         of two centres (two spherical four-bars that share an imaginary joint)"
     )]
     NotCovered(Obstacle),
-    /// Two neighbouring axes of a four-bar, the imaginary one among them, are parallel.
+    /// Two neighbouring axes of a four-bar (the imaginary joint's included) are parallel.
     #[error("the {section} four-bar has no closed form: {error}")]
     FourBar {
-        /// Which.
+        /// The section of the four-bar.
         section: Section,
-        /// Why.
+        /// The reason.
         error: ChainError,
     },
-    /// A home value for a coordinate that there is not.
+    /// The home value of a task coordinate is given that the mechanism does not have.
     #[error(transparent)]
     Task(#[from] TaskError),
 }
 
-/// What a mechanism has instead.
+/// What a mechanism has that keeps it from being two spherical four-bars.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Obstacle {
-    /// More than one loop.
+    /// More than one loop; the number of legs.
     #[error("{0} legs")]
     Legs(usize),
     /// Sections that are not spherical.
     #[error("a {lower} and a {upper} section")]
     Subspaces {
-        /// The lower section's subspace.
+        /// The name of the lower section's subspace.
         lower: &'static str,
-        /// The upper section's subspace.
+        /// The name of the upper section's subspace.
         upper: &'static str,
     },
-    /// A loop of more or less than four.
+    /// A section whose loop does not have three freedoms besides the imaginary joint.
     #[error("{count} joint freedoms in the {section} section")]
     Freedoms {
-        /// Which section.
+        /// The section.
         section: Section,
-        /// Of both legs together.
+        /// The number of freedoms of both legs in this section.
         count: usize,
     },
-    /// A joint whose freedoms have no axes of their own.
+    /// A spherical joint, whose freedoms have no axes of their own; its name.
     #[error("the spherical joint {0}")]
     Ball(String),
 }
 
-/// A single loop, decomposed into two spherical four-bars. Immutable; share it between threads.
+/// A single-loop linkage, decomposed into two spherical four-bars. It is immutable and can be
+/// shared between threads.
 #[derive(Clone, Debug)]
 pub struct Linkage {
     mechanism: Mechanism,
@@ -117,25 +118,25 @@ pub struct Linkage {
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
     imaginary: ImaginaryJoint,
-    /// `τ` is the displacement of the first leg's imaginary joint, or the opposite of the second's.
+    /// Whether the imaginary joint belongs to the second leg, so that its displacement is `-τ`.
     reversed: bool,
     sections: [Loop; 2],
 }
 
-/// A four-bar of the linkage: its first joint is the imaginary one.
+/// A four-bar of the linkage. Its first joint is the imaginary one.
 #[derive(Clone, Debug)]
 struct Loop {
     four_bar: FourBar,
-    /// Numbers of the coordinates of the other three.
+    /// Indices of the joint coordinates of the other three joints.
     coordinates: [usize; 3],
 }
 
 impl Linkage {
-    /// Decomposes a mechanism, and compiles the first of its decompositions that is covered.
+    /// Decomposes a mechanism and prepares the first of its decompositions that can be solved.
     ///
     /// # Errors
-    /// Where it does not decompose, or what its preferred decomposition has instead of two spherical
-    /// four-bars.
+    /// [`LinkageError`] if the mechanism cannot be decomposed, or for its preferred decomposition
+    /// if none consists of two spherical four-bars.
     pub fn new(mechanism: &Mechanism) -> Result<Self, LinkageError> {
         let mut refused = None;
         for decomposition in decompose(mechanism)? {
@@ -147,10 +148,10 @@ impl Linkage {
         Err(refused.expect("decompose gives at least one decomposition, or an error"))
     }
 
-    /// Compiles a mechanism by one of its decompositions.
+    /// Prepares a mechanism with one of its decompositions.
     ///
     /// # Errors
-    /// What it has instead of two spherical four-bars.
+    /// [`LinkageError`] if the decomposition does not consist of two spherical four-bars.
     pub fn with_decomposition(
         mechanism: Mechanism,
         decomposition: Decomposition,
@@ -205,12 +206,12 @@ impl Linkage {
         &self.mechanism
     }
 
-    /// How it was decomposed.
+    /// The decomposition of the mechanism.
     pub fn decomposition(&self) -> &Decomposition {
         &self.decomposition
     }
 
-    /// Every joint coordinate, leg by leg: the order of [`Position::joints`].
+    /// Every joint coordinate, leg by leg. [`Position::joints`] has this order.
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
     }
@@ -225,20 +226,20 @@ impl Linkage {
         &self.imaginary
     }
 
-    /// The linkage moved by the joint coordinate of this name; `None` where there is none.
+    /// The linkage driven by the joint coordinate with this name; `None` if there is none.
     pub fn input(&self, name: &str) -> Option<Input<'_>> {
         let coordinate = self.coordinates.iter().position(|c| c.name == name)?;
         self.sections.iter().enumerate().find_map(|(section, four_bar)| {
-            let place = four_bar.coordinates.iter().position(|&c| c == coordinate)? + 1;
-            Some(Input { linkage: self, coordinate, section, place })
+            let loop_index = four_bar.coordinates.iter().position(|&c| c == coordinate)? + 1;
+            Some(Input { linkage: self, coordinate, section, loop_index })
         })
     }
 }
 
-/// A freedom's coordinate number, and its axis.
+/// The index of a freedom's coordinate, and its axis.
 type LoopAxis = (usize, Unit<Vector3<f64>>);
 
-/// A freedom of a leg whose coordinates start with the number `first`.
+/// The axis of a freedom in a leg whose first coordinate has the index `first`.
 fn loop_axis(leg: &Leg, first: usize, freedom: Freedom) -> Result<LoopAxis, LinkageError> {
     let joint = &leg.joints[freedom.joint];
     if joint.kind == JointKind::Spherical {
@@ -250,8 +251,8 @@ fn loop_axis(leg: &Leg, first: usize, freedom: Freedom) -> Result<LoopAxis, Link
 }
 
 impl Loop {
-    /// The imaginary joint's axis as it is in `exp(-I τ)`, then the joints of both legs in the order
-    /// of `L₂⁻¹ L₁` or of `U₂ U₁⁻¹`.
+    /// Builds the loop of a section: the imaginary joint's axis as in `exp(-I τ)`, then the joints
+    /// of both legs in the order of `L₂⁻¹ L₁` or of `U₂ U₁⁻¹`.
     fn new(
         section: Section,
         imaginary: Unit<Vector3<f64>>,

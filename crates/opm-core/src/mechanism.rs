@@ -1,4 +1,4 @@
-//! Mechanisms: legs between one base and one platform, at an assembled home pose.
+//! Mechanisms: legs between one base and one platform, given at an assembled home pose.
 
 pub mod examples;
 pub mod family;
@@ -18,23 +18,24 @@ use nalgebra::Point3;
 /// A parallel mechanism at an assembled home pose, in base coordinates: metres and radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// Name.
+    /// The mechanism's name.
     pub name: String,
     /// The legs, at least two.
     pub legs: Vec<Leg>,
-    /// Reference point of the platform at home.
+    /// The platform's reference point at home, metres.
     pub platform: Point3<f64>,
-    /// How its pose is measured.
+    /// How the platform's pose is measured.
     pub task: TaskHints,
 }
 
 impl Mechanism {
-    /// Every joint, leg by leg.
+    /// Every joint, leg by leg, from base to platform.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {
         self.legs.iter().flat_map(|leg| &leg.joints)
     }
 
-    /// Every joint coordinate, leg by leg: the order of joint vectors everywhere.
+    /// Every joint coordinate, leg by leg, from base to platform. Joint vectors have this order
+    /// everywhere.
     pub fn coordinates(&self) -> impl Iterator<Item = &JointCoordinate> {
         self.legs.iter().flat_map(Leg::coordinates)
     }

@@ -1,8 +1,8 @@
-//! Motions of the platform: its pose as a function of time, twice differentiable.
+//! Motions of the platform: its pose as a twice differentiable function of time.
 //!
-//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a table of
-//! poses ([`table`]: cubic splines). Either way it is a formula in time, whose derivatives are exact:
-//! nothing is sampled until somebody asks for an instant.
+//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a
+//! table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
+//! derivatives. It is evaluated only at the times that are asked for.
 
 pub mod examples;
 pub mod file;
@@ -13,66 +13,67 @@ use crate::manipulator::Mode;
 pub use spline::{Spline, SplineError};
 use std::f64::consts::TAU;
 
-/// `amplitude · sin(2π · frequency · t + phase)`.
+/// A sinusoid `amplitude · sin(2π · frequency · t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid {
-    /// Metres or radians.
+    /// Amplitude, metres or radians.
     pub amplitude: f64,
-    /// Hertz.
+    /// Frequency, hertz.
     pub frequency: f64,
-    /// Radians.
+    /// Phase, radians.
     pub phase: f64,
 }
 
-/// A constant and sinusoids, added up: one task coordinate as time goes on.
+/// A constant plus a sum of sinusoids: one task coordinate as a function of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Harmonics {
-    /// Metres or radians.
+    /// The constant, metres or radians.
     pub offset: f64,
-    /// Any number of them; none for a coordinate that stands still.
+    /// The sinusoids; empty for a coordinate that does not move.
     pub sinusoids: Vec<Sinusoid>,
 }
 
-/// How the task coordinates follow time.
+/// The task coordinates as functions of time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Path {
-    /// Each a sum of sinusoids.
+    /// Every coordinate is a sum of sinusoids.
     Harmonics(Vec<Harmonics>),
-    /// Each a cubic spline, all on the same knots.
+    /// Every coordinate is a cubic spline; all of them have the same knots.
     Spline(Spline),
 }
 
 /// A motion of the platform, in the task coordinates of one manipulator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Name; a table of poses has none of its own.
+    /// The motion's name. For a table of poses it is given by the caller.
     pub name: String,
-    /// When it starts, seconds.
+    /// Start time, seconds.
     pub start: f64,
-    /// How long it lasts, seconds; positive.
+    /// Duration, seconds; positive.
     pub duration: f64,
-    /// Samples a second that its file asks for.
+    /// Samples per second, if the motion's file gives them.
     pub rate: Option<f64>,
-    /// The working mode that its file asks for.
+    /// The working mode, if the motion's file gives one.
     pub mode: Option<Mode>,
-    /// Where it goes.
+    /// The task coordinates as functions of time.
     pub path: Path,
 }
 
-/// Where the platform is, and how that changes: task coordinates in their order, metres and radians
-/// and seconds. Rates of Euler angles are rates of those angles, not an angular velocity.
+/// The pose of the platform at one time, with its derivatives. Vectors are in the order of the task
+/// coordinates; units are metres, radians and seconds. Rates of Euler angles are rates of these
+/// angles, not an angular velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instant {
-    /// The pose.
+    /// The pose: task coordinates, metres or radians.
     pub pose: Vec<f64>,
-    /// Its first derivative by time.
+    /// The first derivative of the pose by time, per second.
     pub velocity: Vec<f64>,
-    /// Its second derivative by time.
+    /// The second derivative of the pose by time, per second squared.
     pub acceleration: Vec<f64>,
 }
 
 impl Instant {
-    /// A buffer for this many task coordinates.
+    /// A buffer for `coordinates` task coordinates, filled with zeros.
     pub fn new(coordinates: usize) -> Self {
         let zeros = || vec![0.0; coordinates];
         Self { pose: zeros(), velocity: zeros(), acceleration: zeros() }
@@ -80,11 +81,11 @@ impl Instant {
 }
 
 impl Motion {
-    /// The pose and its derivatives at time `t`, seconds. Beyond the ends of a spline, whose formula
-    /// ends there, those at the end.
+    /// Writes the pose and its derivatives at time `t`, in seconds, into `out`. Times beyond the
+    /// ends of a spline give the values at its end.
     ///
     /// # Panics
-    /// If `out` is for another number of coordinates.
+    /// If `out` is for a different number of coordinates.
     pub fn at(&self, t: f64, out: &mut Instant) {
         match &self.path {
             Path::Harmonics(coordinates) => {
@@ -100,19 +101,19 @@ impl Motion {
         }
     }
 
-    /// When it ends, seconds.
+    /// End time, seconds.
     pub fn end(&self) -> f64 {
         self.start + self.duration
     }
 }
 
 impl Harmonics {
-    /// Stands still.
+    /// A coordinate that stays constant.
     pub fn constant(offset: f64) -> Self {
         Self { offset, sinusoids: Vec::new() }
     }
 
-    /// Value, first and second derivative by time.
+    /// The value and its first and second derivative by time.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let mut sum = [self.offset, 0.0, 0.0];
         for Sinusoid { amplitude, frequency, phase } in &self.sinusoids {
@@ -130,19 +131,20 @@ impl Harmonics {
 mod tests {
     use super::*;
 
-    /// A pendulum's numbers: a quarter of a period after the middle it is at its end, at rest.
+    /// Values of a pendulum: a quarter of a period after the middle it is at its end, at rest.
     #[test]
     fn a_sinusoid_is_where_a_pendulum_is() {
         let swing = Sinusoid { amplitude: 0.5, frequency: 2.0, phase: TAU / 4.0 };
         let slow = Sinusoid { amplitude: 3.0, frequency: 0.25, phase: 0.0 };
         let harmonics = Harmonics { offset: 1.0, sinusoids: vec![swing, slow] };
         let rate = [2.0 * TAU, 0.25 * TAU];
-        // At t = 1 s the swing has made two periods, from its end; the slow one is at its end.
+        // At t = 1 s the first sinusoid has made two periods, from its end; the slow one is at its
+        // end.
         let [value, first, second] = harmonics.at(1.0);
         assert!((value - (1.0 + 0.5 + 3.0)).abs() < 1e-14);
         assert!(first.abs() < 1e-13);
         assert!((second + 0.5 * rate[0] * rate[0] + 3.0 * rate[1] * rate[1]).abs() < 1e-11);
-        // An eighth of a second later the swing passes the middle, downwards.
+        // An eighth of a second later the first sinusoid passes the middle, downwards.
         let [value, first, _] = harmonics.at(1.125);
         let angle = rate[1] * 1.125;
         assert!((value - (1.0 + 3.0 * angle.sin())).abs() < 1e-14);
@@ -155,7 +157,7 @@ mod tests {
         let harmonics =
             Harmonics { offset: -2.0, sinusoids: (1..5).map(|i| sinusoid(f64::from(i))).collect() };
         const STEP: f64 = 1e-5;
-        // STEP² / 6 times the sum of amplitude · rate⁴, and rounding.
+        // The error is STEP² / 6 times the sum of amplitude · rate⁴, plus rounding.
         const DIFFERENCE: f64 = 1e-7;
         for i in 0..100 {
             let t = 0.173 * f64::from(i);

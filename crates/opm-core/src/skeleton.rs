@@ -1,26 +1,28 @@
-//! The bodies of a mechanism: what there is to draw, and where each body is as the joints move.
+//! The bodies of a mechanism: their shapes for drawing, and their poses as the joints move.
 //!
-//! A mechanism is given by its joint screws alone; its links have no shapes. This module gives them
-//! shapes that follow from the screws: a pin along the axis of a revolute joint, a rail and a slider
-//! where one translates, a ball, and a rod between two successive joints of a leg. A joint is drawn
-//! at its centre, a point of its axis that both of its bodies hold, so that a drawing in which the
-//! centres coincide is an assembled mechanism.
+//! A mechanism is given by its joint screws alone, so its links have no shapes. This module derives
+//! shapes from the screws: a pin along the axis of a revolute joint, a rail and a slider for a
+//! translation, a ball, and a rod between two successive joints of a leg. A joint is drawn at its
+//! centre, a point on its axis that is fixed in both of its bodies. If the centres coincide in a
+//! drawing, the mechanism is assembled.
 //!
 //! | body | what it is |
 //! |---|---|
-//! | `base` | does not move; the parent of all bodies but the imaginary joints' |
-//! | `LEG/JOINT` | the link outward of that joint |
-//! | `platform` | the link outward of every leg's last joint |
+//! | `base` | fixed; the parent of all bodies except the imaginary joints' |
+//! | `LEG/JOINT` | the link on the platform side of that joint |
+//! | `platform` | the link on the platform side of every leg's last joint |
 //! | `lower_platform` | the body that the imaginary joints carry, `v` in `g = v · b` |
 //! | `imaginary/NAME` | the link of an imaginary joint; its parent is `lower_platform` |
 //!
-//! At home every body's frame is parallel to the base's, with its origin at the centre of the body's
-//! inner joint (of the platform: at its reference point).
+//! At home, every body's frame is parallel to the base's. Its origin is at the centre of the body's
+//! joint on the base side; the platform's origin is its reference point.
 
 mod centre;
 mod solid;
 
 pub use solid::{Material, Part, Solid};
+// Old names, for the crates above.
+pub use self::{Configuration as Posture, ImaginaryJoints as Cuts};
 
 use crate::decomposition::{Decomposition, Freedom};
 use crate::group::screw::Screw;
@@ -31,49 +33,50 @@ use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use solid::Sizes;
 
-/// One body.
+/// A rigid body of the mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Name of the body and of its frame, unique.
+    /// Unique name of the body and of its frame.
     pub name: String,
-    /// The body whose frame this one's is placed in; `None` for the base.
+    /// Index of the body in whose frame this body's pose is given; `None` for the base.
     pub parent: Option<usize>,
-    /// Origin of its frame at home, base coordinates.
+    /// Origin of the body's frame at home, in base coordinates, metres.
     pub origin: Point3<f64>,
-    /// What it looks like, in its own frame.
+    /// The solids that the body consists of, in its own frame.
     pub parts: Vec<Part>,
-    /// The joints that it has a share in, in its own frame.
+    /// The joints that connect the body to others, in its own frame.
     pub seats: Vec<Seat>,
 }
 
-/// A body's share in a joint: where in the body it is.
+/// The part of a joint that belongs to one body: where the joint is in that body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seat {
-    /// Name of the joint.
+    /// The name of the joint.
     pub joint: String,
-    /// What it lets the body do.
+    /// The relative motion of the joint's two bodies.
     pub motion: SeatMotion,
-    /// Its centre.
+    /// The centre of the joint in the body's frame, metres.
     pub centre: Point3<f64>,
-    /// Direction of its axis; of a ball or a weld, any.
+    /// Direction of the joint's axis in the body's frame; arbitrary for a ball and a weld.
     pub axis: Unit<Vector3<f64>>,
 }
 
-/// Where the centres of a joint are, as seen from its two bodies.
+/// The relative motion of the two bodies of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeatMotion {
-    /// In one place; the axis is one line (revolute).
+    /// The centre is fixed in both bodies, and so is the axis (revolute).
     Turn,
-    /// On one line, which is the axis of both (prismatic, cylindrical, helical).
+    /// The centre moves along the axis, which is fixed in both bodies (prismatic, cylindrical,
+    /// helical).
     Slide,
-    /// In one place (spherical, universal).
+    /// The centre is fixed in both bodies (spherical, universal).
     Ball,
-    /// In one place, and the two bodies move as one.
+    /// The two bodies move as one.
     Weld,
 }
 
 impl SeatMotion {
-    /// `turn`, `slide`, `ball` or `weld`.
+    /// The name of the motion: `turn`, `slide`, `ball` or `weld`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Turn => "turn",
@@ -94,59 +97,60 @@ impl SeatMotion {
     }
 }
 
-/// Where the joints are: what places the bodies.
+/// The configuration of a mechanism, from which the poses of its bodies follow.
 #[derive(Clone, Copy, Debug)]
-pub struct Posture<'a> {
-    /// Every joint coordinate as it is reported, leg by leg.
+pub struct Configuration<'a> {
+    /// The reported value of every joint coordinate, leg by leg, radians or metres.
     pub joints: &'a [f64],
-    /// Every imaginary joint as it is reported.
+    /// The reported value of every imaginary joint, radians or metres.
     pub imaginary: &'a [f64],
     /// The platform's displacement from home.
     pub platform: Isometry3<f64>,
 }
 
-/// The bodies of a mechanism.
+/// The bodies of a mechanism, and the joints that move them.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     bodies: Vec<Body>,
-    legs: Vec<Vec<Mover>>,
+    legs: Vec<Vec<BodyJoint>>,
     platform: usize,
     imaginary: Vec<ImaginaryBody>,
-    /// Coordinates of all joints together.
+    /// The number of joint coordinates of all legs.
     coordinates: usize,
 }
 
-/// How a joint moves the body outward of it.
+/// A joint, and the body on its platform side that it moves.
 #[derive(Clone, Debug)]
-struct Mover {
-    /// `None` where that is the platform.
+struct BodyJoint {
+    /// Index of the body; `None` for the platform.
     body: Option<usize>,
-    /// A screw and the value at home, a freedom; a ball's three are one rotation vector.
+    /// The screw and the home value of each freedom. The three values of a ball are one rotation
+    /// vector.
     freedoms: Vec<(Screw, f64)>,
     ball: Option<Point3<f64>>,
 }
 
-/// An imaginary joint's link.
+/// The link of an imaginary joint.
 #[derive(Clone, Debug)]
 struct ImaginaryBody {
     joint: ImaginaryJoint,
     screw: Screw,
-    /// Coordinates of the leg's lower section, which are its first.
+    /// The number of coordinates of the leg's lower section, which are the leg's first ones.
     lower: usize,
 }
 
-/// The imaginary joints of a mechanism and the motion that they make.
+/// The imaginary joints of a mechanism, and the decomposition that they belong to.
 #[derive(Clone, Copy, Debug)]
-pub struct Cuts<'a> {
-    /// How the mechanism was decomposed.
+pub struct ImaginaryJoints<'a> {
+    /// The decomposition of the mechanism.
     pub decomposition: &'a Decomposition,
-    /// The imaginary joints as they are reported.
+    /// The imaginary joints.
     pub imaginary: &'a [ImaginaryJoint],
 }
 
 impl Skeleton {
-    /// The bodies of a mechanism and of its imaginary joints.
-    pub fn new(mechanism: &Mechanism, cuts: Cuts<'_>) -> Self {
+    /// Builds the bodies of a mechanism and of its imaginary joints.
+    pub fn new(mechanism: &Mechanism, joints: ImaginaryJoints<'_>) -> Self {
         let size = centre::size(mechanism);
         Builder {
             mechanism,
@@ -155,37 +159,37 @@ impl Skeleton {
             bodies: Vec::new(),
             movers: Vec::new(),
         }
-        .build(cuts)
+        .build(joints)
     }
 
-    /// The bodies; the base is the first.
+    /// The bodies; the first one is the base.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
-    /// The transform of every body's frame to its parent's, in the order of [`Skeleton::bodies`]; the
-    /// base's is the identity.
+    /// Writes the transform from every body's frame to its parent's into `out`, in the order of
+    /// [`Skeleton::bodies`]. The base's is the identity.
     ///
     /// # Panics
-    /// If the posture is of another mechanism.
-    pub fn place(&self, posture: &Posture<'_>, out: &mut Vec<Isometry3<f64>>) {
-        assert_eq!(posture.joints.len(), self.coordinates, "joint coordinates");
-        assert_eq!(posture.imaginary.len(), self.imaginary.len(), "imaginary joints");
+    /// If the configuration does not have as many coordinates as the mechanism.
+    pub fn place(&self, configuration: &Configuration<'_>, out: &mut Vec<Isometry3<f64>>) {
+        assert_eq!(configuration.joints.len(), self.coordinates, "joint coordinates");
+        assert_eq!(configuration.imaginary.len(), self.imaginary.len(), "imaginary joints");
         out.clear();
         out.resize(self.bodies.len(), Isometry3::identity());
         let at = |body: usize, displacement: Isometry3<f64>| {
             displacement * Translation3::from(self.bodies[body].origin.coords)
         };
-        out[self.platform] = at(self.platform, posture.platform);
+        out[self.platform] = at(self.platform, configuration.platform);
         let mut first = 0;
         for (number, leg) in self.legs.iter().enumerate() {
             let mut moved = Isometry3::identity();
             let mut coordinate = 0;
-            // An imaginary joint's link rides on the last displacement of the lower section.
+            // The link of an imaginary joint moves with the last displacement of the lower section.
             let cut = self.imaginary.iter().position(|i| i.joint.leg == number);
             let mut lower = Isometry3::identity();
             for mover in leg {
-                let values = &posture.joints[first + coordinate..];
+                let values = &configuration.joints[first + coordinate..];
                 for taken in 0..mover.freedoms.len() {
                     if cut.is_some_and(|i| self.imaginary[i].lower == coordinate + taken) {
                         lower = moved * mover.part(values, taken);
@@ -199,7 +203,7 @@ impl Skeleton {
             }
             if let Some(i) = cut {
                 let ImaginaryBody { joint, screw, .. } = &self.imaginary[i];
-                let tau = joint.displacement(posture.imaginary[i]);
+                let tau = joint.displacement(configuration.imaginary[i]);
                 let platform = self.platform + 1;
                 if i == 0 {
                     out[platform] = at(platform, lower * screw.exp(-tau));
@@ -213,8 +217,8 @@ impl Skeleton {
     }
 }
 
-impl Mover {
-    /// The displacement by the first so many of its freedoms.
+impl BodyJoint {
+    /// The displacement of the joint's first `freedoms` freedoms.
     fn part(&self, values: &[f64], freedoms: usize) -> Isometry3<f64> {
         let from_home = |i: usize| values[i] - self.freedoms[i].1;
         match self.ball {
@@ -231,18 +235,18 @@ impl Mover {
     }
 }
 
-/// What a skeleton is put together with.
+/// Builds a skeleton.
 struct Builder<'a> {
     mechanism: &'a Mechanism,
     sizes: Sizes,
-    /// Of every joint, leg by leg.
+    /// The centre of every joint, leg by leg.
     centres: Vec<Vec<Point3<f64>>>,
     bodies: Vec<Body>,
-    movers: Vec<Vec<Mover>>,
+    movers: Vec<Vec<BodyJoint>>,
 }
 
 impl Builder<'_> {
-    fn build(mut self, cuts: Cuts<'_>) -> Skeleton {
+    fn build(mut self, joints: ImaginaryJoints<'_>) -> Skeleton {
         let mechanism = self.mechanism;
         self.add("base".into(), None, Point3::origin());
         for (leg, centres) in mechanism.legs.iter().zip(self.centres.clone()) {
@@ -250,9 +254,9 @@ impl Builder<'_> {
             let mut movers = Vec::new();
             for (joint, &centre) in links.unwrap_or_default().iter().zip(&centres) {
                 let body = self.add(format!("{}/{}", leg.name, joint.name), Some(0), centre);
-                movers.push(Mover::new(joint, Some(body)));
+                movers.push(BodyJoint::new(joint, Some(body)));
             }
-            movers.extend(outer.map(|joint: &Joint| Mover::new(joint, None)));
+            movers.extend(outer.map(|joint: &Joint| BodyJoint::new(joint, None)));
             self.movers.push(movers);
         }
         let platform = self.add("platform".into(), Some(0), mechanism.platform);
@@ -262,7 +266,7 @@ impl Builder<'_> {
         }
         let ball = Solid::ball(mechanism.platform, self.sizes.ball);
         self.draw(platform, ball, Material::Platform);
-        let imaginary = self.imaginary(cuts);
+        let imaginary = self.imaginary(joints);
         Skeleton {
             coordinates: mechanism.coordinates().count(),
             bodies: self.bodies,
@@ -278,13 +282,13 @@ impl Builder<'_> {
         self.bodies.len() - 1
     }
 
-    /// Adds a solid, given in base coordinates at home.
+    /// Adds a solid, given in base coordinates at home, to a body.
     fn draw(&mut self, body: usize, solid: Solid, material: Material) {
         let body = &mut self.bodies[body];
         body.parts.push(Part { solid: solid.moved(-body.origin.coords), material });
     }
 
-    /// Two bodies share a joint; its centre is given in base coordinates at home.
+    /// Connects two bodies by a joint. Its centre is given in base coordinates at home.
     fn seat(&mut self, bodies: [usize; 2], seat: &Seat) {
         for body in bodies {
             let body = &mut self.bodies[body];
@@ -299,7 +303,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A ring of rods from leg to leg.
+    /// Draws the base: a ring of rods from leg to leg.
     fn draw_base(&mut self) {
         let feet: Vec<_> = self.centres.iter().filter_map(|leg| leg.first().copied()).collect();
         let feet = centre::around(feet);
@@ -336,18 +340,22 @@ impl Builder<'_> {
         }
     }
 
-    /// The imaginary joints: a shaft on the platform of the lower section, and on it a link for each
-    /// leg, which turns (or slides) by what is reported.
-    fn imaginary(&mut self, cuts: Cuts<'_>) -> Vec<ImaginaryBody> {
-        let (axis, point) = match &cuts.decomposition.intersection {
+    /// Draws the imaginary joints: a shaft on the platform of the lower section, and a link on it
+    /// for each leg. The link rotates, or slides, by the value of the imaginary joint.
+    fn imaginary(&mut self, joints: ImaginaryJoints<'_>) -> Vec<ImaginaryBody> {
+        let (axis, point) = match &joints.decomposition.intersection {
             SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
             SubspaceClass::Translation { axis } => (*axis, None),
             _ => return Vec::new(),
         };
-        let Some(first) = cuts.imaginary.first() else { return Vec::new() };
-        let ends: Vec<_> =
-            cuts.imaginary.iter().map(|joint| self.cut(joint, cuts.decomposition)).collect();
-        // Where a slide has no line of its own, it runs through the first leg's cut.
+        let Some(first) = joints.imaginary.first() else { return Vec::new() };
+        let ends: Vec<_> = joints
+            .imaginary
+            .iter()
+            .map(|joint| self.attachment(joint, joints.decomposition))
+            .collect();
+        // The axis of a translation has no position, so the shaft runs through the first leg's
+        // attachment.
         let line = point.unwrap_or(ends[0].centre);
         let along = |p: &Point3<f64>| (p - line).dot(&axis);
         let platform = self.add("lower_platform".into(), Some(0), line);
@@ -358,8 +366,8 @@ impl Builder<'_> {
         let step = 2.5 * self.sizes.collar;
         let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
         let mut imaginary = Vec::new();
-        for (i, (joint, end)) in cuts.imaginary.iter().zip(&ends).enumerate() {
-            // Next to each other along the axis, so that all of them are seen.
+        for (i, (joint, end)) in joints.imaginary.iter().zip(&ends).enumerate() {
+            // The links are next to each other along the axis, so that all of them are visible.
             let height = along(&end.centre) + step * (i as f64 - 0.5 * (ends.len() - 1) as f64);
             reach = [reach[0].min(height), reach[1].max(height)];
             let centre = line + axis.into_inner() * height;
@@ -378,7 +386,7 @@ impl Builder<'_> {
             let weld = format!("{} on {}", joint.name, self.bodies[end.body].name);
             let (motion, centre) = (SeatMotion::Weld, end.centre);
             self.seat([body, end.body], &Seat { joint: weld, motion, centre, axis });
-            let lower = cuts.decomposition.legs[joint.leg].lower.len();
+            let lower = joints.decomposition.legs[joint.leg].lower.len();
             imaginary.push(ImaginaryBody { joint: joint.clone(), screw, lower });
         }
         let margin = if first.quantity == crate::mechanism::joint::Quantity::Angle {
@@ -391,28 +399,29 @@ impl Builder<'_> {
         imaginary
     }
 
-    /// Where a leg's imaginary joint holds on to it: the outermost joint of its lower section.
-    fn cut(&self, joint: &ImaginaryJoint, decomposition: &Decomposition) -> End {
+    /// The point where a leg's imaginary joint is attached to it: the last joint of its lower
+    /// section.
+    fn attachment(&self, joint: &ImaginaryJoint, decomposition: &Decomposition) -> Attachment {
         let split = &decomposition.legs[joint.leg];
         let leg = &self.mechanism.legs[joint.leg];
         let last = split.lower.last().copied().unwrap_or(Freedom { joint: 0, index: 0 });
         let whole = last.index + 1 == leg.joints[last.joint].freedoms();
         let movers = &self.movers[joint.leg];
-        // A joint that is cut in two has no link after its first freedoms: its centre is held by the
-        // link before it just as well.
+        // A joint that is split between the sections has no link after its first freedoms. The link
+        // before it holds the joint's centre as well.
         let outward = if whole { Some(last.joint) } else { last.joint.checked_sub(1) };
         let body = outward.map_or(Some(0), |joint| movers[joint].body);
-        End { centre: self.centres[joint.leg][last.joint], body: body.unwrap_or(0) }
+        Attachment { centre: self.centres[joint.leg][last.joint], body: body.unwrap_or(0) }
     }
 }
 
-/// Where an imaginary joint holds on to its leg.
-struct End {
+/// Where an imaginary joint is attached to its leg.
+struct Attachment {
     centre: Point3<f64>,
     body: usize,
 }
 
-impl Mover {
+impl BodyJoint {
     fn new(joint: &Joint, body: Option<usize>) -> Self {
         let homes = joint.coordinates.iter().map(|c| c.home);
         Self {

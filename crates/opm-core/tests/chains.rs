@@ -1,6 +1,6 @@
-//! Every closed form against the product of exponentials, on random chains and targets.
+//! Every closed form, compared with the product of exponentials on random chains and targets.
 //!
-//! `forward` knows nothing of the closed forms: it multiplies the joints' displacements.
+//! `forward` does not use the closed forms: it multiplies the joints' displacements.
 
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain};
@@ -12,7 +12,7 @@ use opm_core::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplace
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// The bound, as a share of the target's size.
+/// Tolerance for closure, as a share of the target's size.
 const TOLERANCE: f64 = 1e-10;
 const CASES: u32 = 100_000;
 
@@ -41,8 +41,8 @@ fn distance(a: &PlanarDisplacement, b: &PlanarDisplacement) -> f64 {
     (a.rotation - b.rotation).norm().max((a.translation - b.translation).norm())
 }
 
-/// Both branches return a target that is reached from random amounts; those amounts are one of the
-/// branches; a random target is reached on both branches or on neither.
+/// Both branches reach a target that is built from random joint values, and these values are one of
+/// the branches. A random target is reached on both branches or on neither.
 fn check_planar(
     joints: [PlanarJoint; 3],
     amounts: [f64; 3],
@@ -61,7 +61,7 @@ fn check_planar(
         let solution = chain.inverse(&reached, branch);
         prop_assert!(solution.is_ok(), "{joints:?} {made:?} {branch:?} {solution:?}");
         let solution = solution.unwrap();
-        // Near a parallel pair of sliders the amounts, and so their rounding, grow without bound.
+        // Near parallel sliders, their values grow without bound, and so does the rounding.
         let size = solution.iter().map(|a| a.value().abs()).fold(3.0, f64::max);
         let off = distance(&forward(&joints, &solution), &reached);
         prop_assert!(off <= TOLERANCE * size, "{joints:?} {made:?} {branch:?} off by {off}");
@@ -120,7 +120,8 @@ planar_chains! {
     prp: prismatic revolute prismatic;
 }
 
-/// Whether a chain reaches a wrist, by geometry: which distances its first two joints can give.
+/// Whether a chain reaches a wrist position, by geometry: the range of distances that its first two
+/// joints give.
 #[test]
 fn reach_is_what_geometry_says() {
     let revolute =
@@ -130,7 +131,7 @@ fn reach_is_what_geometry_says() {
         rotation: e(0.3),
         translation: Complex::new(x, y) - e(0.3) * Complex::new(3.0, 0.0),
     };
-    // Links 2 and 1 from the origin: wrist distances 1 to 3.
+    // Links of 2 and 1 from the origin: wrist distances from 1 to 3.
     let rrr =
         PlanarChain::new([revolute(0.0, 0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
     let excess = |chain: &PlanarChain, x, y| {
@@ -150,13 +151,13 @@ fn reach_is_what_geometry_says() {
             assert!((found - expected).abs() < 1e-9, "radius {radius}: {found}, {expected}");
         }
     }
-    // A slide along x with a link of 1: wrists within 1 of the x axis.
+    // A slider along x with a link of 1: wrist positions within 1 of the x axis.
     let prr = PlanarChain::new([prismatic(0.0), revolute(2.0, 0.0), revolute(3.0, 0.0)]).unwrap();
     for (y, expected) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (1.5, 0.5), (-3.0, 2.0)] {
         let found = excess(&prr, 7.0, y);
         assert!((found - expected).abs() < 1e-12, "{y}: {found}");
     }
-    // A telescope whose slide passes the inner pivot at a distance of 1.
+    // A telescope whose slider passes the inner pivot at a distance of 1.
     let rpr = PlanarChain::new([revolute(0.0, 1.0), prismatic(0.0), revolute(3.0, 0.0)]).unwrap();
     for (radius, expected) in [(0.25, 0.75), (1.0, 0.0), (5.0, 0.0)] {
         let found = excess(&rpr, radius * 0.6, 1.0 + radius * 0.8);
@@ -167,8 +168,8 @@ fn reach_is_what_geometry_says() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-    /// The number of branches of an RRR is the number of elbows: crossings of the circle that the
-    /// elbow moves on with the circle about the wrist, counted along the first.
+    /// The number of branches of an RRR chain is the number of elbow positions: crossings of the
+    /// elbow's circle with the circle about the wrist, counted along the first one.
     #[test]
     fn rrr_has_as_many_branches_as_circles_cross(
         joints in (revolute(), revolute(), revolute()), target in target(),
@@ -189,7 +190,8 @@ proptest! {
         let chain = PlanarChain::new(joints).unwrap();
         let branches =
             Branch::BOTH.iter().filter(|&&b| chain.inverse(&target, b).is_ok()).count();
-        // Two crossings within one step of each other are not seen: the rim, left out by distance.
+        // Two crossings within one step are not seen: targets near the boundary of reach are left
+        // out.
         let first = (at[1] - at[0]).norm();
         let distance = (wrist - at[0]).norm();
         let rim = (distance - (first + length).abs()).abs().min((distance - (first - length).abs()).abs());
@@ -232,7 +234,7 @@ proptest! {
             let off = (chain.forward(&solution) - reached).norm();
             prop_assert!(off < TOLERANCE, "{axes:?} {amounts:?} {branch:?}: off by {off}");
             found |= solution.iter().zip(&made).all(|(a, b)| (a.unit_direction() - b.unit_direction()).norm() < 1e-4);
-            // The branch is the sign of the triple product of the axes as they have moved.
+            // The branch is the sign of the triple product of the moved axes.
             let turn = |i: usize| Rotation3::from_axis_angle(&axes[i], solution[i].value());
             let second = turn(0) * axes[1].into_inner();
             let third = turn(0) * turn(1) * axes[2].into_inner();
@@ -240,8 +242,8 @@ proptest! {
             prop_assert!(triple * branch.sign() > -1e-6, "{triple} on {branch:?}");
         }
         prop_assert!(found, "{axes:?} {amounts:?}: made on no branch");
-        // A random rotation is in reach iff the angle from the first axis to the turned third one
-        // is between the difference and the sum of the links' arcs.
+        // A random rotation is in reach exactly if the angle from the first axis to the rotated
+        // third axis is between the difference and the sum of the links' arcs.
         let (a12, a23) = (axes[0].angle(&axes[1]), axes[1].angle(&axes[2]));
         let between = axes[0].angle(&(random * axes[2].into_inner()));
         let (low, high) = ((a12 - a23).abs(), (a12 + a23).min(TAU - a12 - a23));
@@ -285,7 +287,7 @@ proptest! {
         let amounts = chain.inverse(&target);
         let reached = chain.forward(&amounts);
         let size = amounts.iter().map(|a| a.value().abs()).fold(20.0, f64::max);
-        // A revolute joint does not count turns; without one, the chain does.
+        // A revolute joint does not count revolutions; a chain without one does.
         let apart = reached.angle - angle;
         let turns = if kinds.contains(&0) { (apart / TAU).round() } else { 0.0 };
         prop_assert_eq!(chain.counts_turns(), !kinds.contains(&0));
@@ -304,8 +306,8 @@ proptest! {
     }
 }
 
-/// Sliders that are next to parallel close as well as any: what is lost in telling them apart is not
-/// lost in their sum.
+/// Sliders that are nearly parallel close the loop as well as others: digits lost in their
+/// difference are not lost in their sum.
 #[test]
 fn sliders_next_to_parallel_close() {
     let revolute = PlanarJoint::Revolute { at: Complex::new(0.3, -0.2), reversed: false };
@@ -357,7 +359,8 @@ fn the_rim_is_inside_and_both_branches_meet_there() {
     }
     let axes = [Vector3::z_axis(), Vector3::y_axis(), Vector3::x_axis()];
     let chain = SphericalChain::new(axes).unwrap();
-    // Third axis straight up and straight down: on the first axis, in reach with arcs of 90 degrees.
+    // Third axis straight up and straight down: it is on the first axis, and in reach with arcs of
+    // 90 degrees.
     for angle in [-90.0_f64, 90.0] {
         let target =
             Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians()).into_inner();
@@ -371,7 +374,7 @@ fn the_rim_is_inside_and_both_branches_meet_there() {
 #[test]
 fn an_angle_left_free_is_home() {
     let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
-    // Equal links fold back onto the first pivot: the first angle is free.
+    // Equal links fold back onto the first pivot: the first angle is arbitrary.
     let joints = [revolute(0.0), revolute(1.0), revolute(2.0)];
     let chain = PlanarChain::new(joints).unwrap();
     let target =

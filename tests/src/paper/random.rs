@@ -27,7 +27,7 @@ impl PlanoSpherical {
         }
     }
 
-    /// The family with these parameters, at this home in this mode.
+    /// The family with these parameters, at this home and in this mode.
     pub fn family(
         &self,
         home: plano_spherical::Home,
@@ -72,7 +72,7 @@ impl Signs {
         Self { legs: [0; 3].map(|_| [rng.bool(), rng.bool()]), arm: rng.bool() }
     }
 
-    /// The working mode as it is written.
+    /// The working mode in its text form.
     pub fn written(&self) -> String {
         let sign = |plus: bool| if plus { '+' } else { '-' };
         let mut groups: Vec<String> =
@@ -83,12 +83,12 @@ impl Signs {
 }
 
 impl TranslationalLeg {
-    /// Three legs of random geometry, and the number of the helical one.
+    /// Three legs of random geometry, and the index of the helical one.
     pub fn random(rng: &mut Rng) -> ([Self; 3], usize) {
         let direction = rng.f64() * TAU;
         let pitched = rng.usize(..3);
         let legs = [0, 1, 2].map(|i| {
-            // The slider must not run along the common axis.
+            // The slider must not be parallel to the common axis.
             let alpha = 2.0944 * i as f64 + 0.3 * rng.f64();
             let pitch = if i == pitched { 0.005 + 0.05 * rng.f64() } else { 0.0 };
             Self { alpha, beta: direction - alpha, k: 0.03 * rng.f64(), pitch }

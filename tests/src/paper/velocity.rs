@@ -9,13 +9,14 @@ use super::{Joints, PlanoSpherical, SliderLeg};
 use nalgebra::{Matrix3, Matrix5, Vector3};
 
 impl SliderLeg {
-    /// Eq. 19, with its term in `a2 S`: the square of link a1, were the slider at `s`.
+    /// Eq. 19, with its term in `a2 S`: the square of link a1's length for the slider at `s`.
     pub fn link_square(&self, [x, y]: [f64; 2], theta: f64, s: f64) -> f64 {
         let (b, c) = super::slider_quadratic(self, [x, y], theta);
         s * s + b * s + c + self.a1 * self.a1
     }
 
-    /// Eq. 20: the coefficients of the rates of Px, Py and theta on its left, of S on its right.
+    /// Eq. 20: the coefficients of the rates of Px, Py and theta on its left side, and of S on its
+    /// right.
     pub fn rate_coefficients(&self, [x, y]: [f64; 2], theta: f64, s: f64) -> [f64; 4] {
         let Self { alpha, h, a2, .. } = *self;
         let (sa, ca) = alpha.sin_cos();
@@ -41,8 +42,8 @@ impl PlanoSpherical {
         [direct, Matrix3::from_diagonal(&direct.column(2).into_owned())]
     }
 
-    /// `J_x,p` and `J_q,p` of Eq. 23, with the entry (5,4): the first times the rates of
-    /// `theta1..3, Px, Py` is the second times those of `S1..3, phi14, phi24`.
+    /// `J_x,p` and `J_q,p` of Eq. 23, with the entry (5,4). The first one times the rates of
+    /// `theta1..3, Px, Py` equals the second one times the rates of `S1..3, phi14, phi24`.
     pub fn planar_jacobians(&self, p: [f64; 2], joints: &Joints) -> [Matrix5<f64>; 2] {
         let mut direct = Matrix5::zeros();
         let mut inverse = Matrix5::zeros();

@@ -9,16 +9,20 @@ use opm_tests::paper::PlanoSpherical;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use std::f64::consts::TAU;
 
-/// "The range of the imaginary joints is calculated for ±20° in all directions", radians.
+/// "The range of the imaginary joints is calculated for ±20° in all directions": this angle in
+/// radians.
 const PRINTED_RANGES: [[f64; 2]; 3] = [[-0.55, 0.55], [1.4, 3.2], [3.5, 4.9]];
 
-/// With Eq. 2's Euler angles, from the formulas in another language on a grid of 161 values an axis.
+/// Ranges with the Euler angles of Eq. 2, from the formulas in another language on a grid of 161
+/// values per axis.
 const RANGES: [[f64; 2]; 3] = [[-0.709956, 0.913700], [1.337808, 3.090115], [3.613413, 5.247141]];
 
-/// Half a digit of `RANGES`, and what a grid of 41 values an axis may miss of an inner extremum.
+/// Tolerance: half a digit of `RANGES`, plus what a grid of 41 values per axis may miss of an inner
+/// extremum.
 const RANGE_TOLERANCE: f64 = 1e-5;
 
-/// The print gives its ranges to a twentieth of a radian: no range may be as near as twice that.
+/// The paper prints its ranges to a twentieth of a radian. Every range must differ by more than
+/// twice that.
 const NOT_READING: f64 = 0.1;
 
 fn printed_manipulator() -> Manipulator {
@@ -26,8 +30,8 @@ fn printed_manipulator() -> Manipulator {
     Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
 }
 
-/// Imaginary joint of a leg at an orientation that it reaches, where its second arc must be the
-/// angle between the axes at its ends.
+/// The imaginary joint of a leg at an orientation that it reaches. Its second arc must be the angle
+/// between the axes at its ends.
 fn theta(
     manipulator: &Manipulator,
     leg: usize,
@@ -46,13 +50,13 @@ fn theta(
     value
 }
 
-/// How far apart the ranges' ends are, of those that are further apart; whole turns do not count.
+/// The largest difference between the ends of two lists of ranges, modulo 2π.
 fn off(range: [f64; 2], other: [f64; 2]) -> f64 {
     wrapped(range[0] - other[0]).abs().max(wrapped(range[1] - other[1]).abs())
 }
 
-/// The sweep of the whole manipulator at the origin, where every leg closes at all these
-/// orientations, gives the ranges that the formulas give, and not the printed ones.
+/// A sweep of the whole manipulator at the origin, where every leg closes at all these
+/// orientations, gives the ranges of the formulas, not the printed ones.
 #[test]
 fn the_ranges_of_the_imaginary_joints() {
     let manipulator = printed_manipulator();
@@ -71,8 +75,8 @@ fn the_ranges_of_the_imaginary_joints() {
     }
 }
 
-/// The printed ranges are those of no other three successive rotations, on neither branch: of none
-/// of the three legs.
+/// The printed ranges do not belong to any other three successive rotations either, on neither
+/// branch and for none of the three legs.
 #[test]
 fn no_order_of_rotations_gives_the_printed_ranges() {
     const COUNT: usize = 17;
@@ -115,9 +119,9 @@ fn no_order_of_rotations_gives_the_printed_ranges() {
     assert_eq!(orders, 12);
 }
 
-/// A leg's arcs add up to 150 degrees: its platform axis reaches all but a cap of 30 degrees about -z.
-/// The three axes are more than 60 degrees apart, so the caps, seen from the platform, are disjoint,
-/// and of a sphere a cap of angle a is (1 - cos a) / 2.
+/// A leg's arcs add up to 150 degrees, so its platform axis reaches everything except a cap of 30
+/// degrees about -z. The three axes are more than 60 degrees apart, so the caps, seen from the
+/// platform, are disjoint. A cap of angle a is a share of (1 - cos a) / 2 of the sphere.
 #[test]
 fn the_reachable_share_of_all_orientations() {
     const EXPECTED: f64 = 0.799_038_105_676_658;
@@ -129,8 +133,8 @@ fn the_reachable_share_of_all_orientations() {
         assert!(axes[i].dot(&axes[j]).acos() > 2.0 * cap);
     }
 
-    // Haar measure is uniform in zeta, cos xi and psi. Cells of equal measure in (cos xi, psi), the
-    // golden ratio in zeta, which turns the axes about z and so does not matter.
+    // Haar measure is uniform in zeta, cos xi and psi. The cells have equal measure in (cos xi,
+    // psi). Zeta, which rotates the axes about z and so does not matter, follows the golden ratio.
     const CELLS: usize = 1500;
     let manipulator = printed_manipulator();
     let mut ways = Vec::new();
@@ -148,16 +152,17 @@ fn the_reachable_share_of_all_orientations() {
                 ways.clear();
                 manipulator.follow(leg, &b, None, &mut ways);
                 let above = (rotation * axis).z + cap.cos();
-                // Leave the rim to rounding.
+                // The boundary of reach is left to rounding.
                 assert!(above.abs() < 1e-9 || ways.is_empty() == (above < 0.0), "{rotation} {leg}");
                 whole &= !ways.is_empty();
             }
             reached += u64::from(whole);
         }
     }
-    // Only cells that a cap's rim crosses can count wrongly. The rim of a cap 60 degrees off the pole
-    // spans cos 30 - cos 90 in cos xi and 2 asin(sin 30 / sin 60) in psi. It is four monotone arcs,
-    // and such an arc crosses no more cells than it is wide and high, and three.
+    // Only cells that the boundary of a cap crosses can be counted wrongly. The boundary of a cap
+    // 60 degrees from the pole spans cos 30 - cos 90 in cos xi and 2 asin(sin 30 / sin 60) in psi.
+    // It consists of four monotone arcs, each of which crosses no more cells than its width plus
+    // its height in cells, plus three.
     let spans = cap.cos() / 2.0 + 2.0 * (cap.sin() / (2.0 * cap).sin()).asin() / TAU;
     let bound = 3.0 * (2.0 * spans * CELLS as f64 + 12.0) / (CELLS * CELLS) as f64;
     let share = reached as f64 / (CELLS * CELLS) as f64;

@@ -38,7 +38,7 @@ fn phi14_has_plus_for_minus_b2_squared() {
         let link = |phi14: f64| (Vector2::from(p) - elbow(phi14)).norm() - b2;
         let sign = if signs.arm { 1.0 } else { -1.0 };
         let undefined = printed::phi14(paper.d, paper.b, p, sign);
-        // b1² + b2² + d² > 2 b1 d: never a cosine.
+        // b1² + b2² + d² > 2 b1 d, so this is never a cosine.
         assert!(undefined.is_nan());
         print.add(link(undefined));
 
@@ -56,14 +56,14 @@ fn phi14_has_plus_for_minus_b2_squared() {
     ours.hold(ROUNDING);
 }
 
-/// Of a leg whose loop is closed by plain vectors, Eq. 19 must give the link's length.
+/// For a leg whose loop is closed with plain vectors, Eq. 19 must give the link's length.
 #[test]
 fn eq_19_lacks_a_term_in_a2_and_the_slider() {
     let [mut print, mut right, mut ours] = <[Misses; 3]>::default();
     let mut rng = Rng::with_seed(31);
     for sample in samples() {
         for (i, leg) in sample.paper.legs.iter().enumerate() {
-            // Any slider, theta and direction of a1: P is where they lead.
+            // The slider, theta and the direction of a1 are arbitrary; P is where they lead.
             let (s, theta, along) = (rng.f64() - 0.5, TAU * rng.f64(), TAU * rng.f64());
             let closed = sample.a(i, s) + leg.a1 * e(along) - leg.a2 * e(theta);
             let (p, square) = (closed.into(), leg.a1 * leg.a1);

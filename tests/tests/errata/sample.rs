@@ -15,7 +15,7 @@ pub struct Sample {
     manipulator: Manipulator,
     pub signs: Signs,
     pub pose: [f64; 5],
-    /// As the crate finds them.
+    /// The solution that the crate finds.
     pub joints: Joints,
 }
 
@@ -37,7 +37,7 @@ impl Sample {
         let pose =
             [x + near(0.02), y + near(0.02), zeta + near(0.2), xi + near(0.2), psi + near(0.2)];
         let home = plano_spherical::Home { x, y, zeta, xi, psi };
-        // Cheap refusals first.
+        // The cheapest rejections come first.
         regular(&paper, &pose, &paper.inverse(&pose, &signs)?).then_some(())?;
         let mechanism = paper.family(home, &signs).assemble().ok()?;
         let manipulator = Manipulator::new(mechanism).ok()?;
@@ -53,18 +53,18 @@ impl Sample {
         [self.pose[0], self.pose[1]]
     }
 
-    /// The joint between a leg's planar links, from the platform: `P + a2 e(theta)`.
+    /// The joint between a leg's two planar links, from the platform: `P + a2 e(theta)`.
     pub fn c(&self, leg: usize) -> Vector2<f64> {
         Vector2::from(self.p()) + self.paper.legs[leg].a2 * e(self.joints.theta[leg])
     }
 
-    /// A leg's slider, from the base.
+    /// A leg's slider, seen from the base.
     pub fn a(&self, leg: usize, slider: f64) -> Vector2<f64> {
         let leg = &self.paper.legs[leg];
         leg.h * e(leg.alpha) + slider * n(leg.alpha)
     }
 
-    /// The rates of all joints for these rates of the pose.
+    /// The rates of all joints for given rates of the pose.
     fn rates(&self, direction: &[f64; 5]) -> Rates {
         let step = 1e-3;
         let at = |steps: f64| {
@@ -87,19 +87,20 @@ impl Sample {
         }
     }
 
-    /// Rates along one motion, the same at every call.
+    /// Rates along one motion, the same in every call.
     pub fn some_rates(&self) -> Rates {
         self.rates(&[0.03, -0.04, 0.2, 0.3, -0.25])
     }
 }
 
-/// Away from every leg's singularities, where rounding grows and rates grow without bound.
+/// Whether the pose is away from every leg's singularities, where rounding and rates grow without
+/// bound.
 fn regular(paper: &PlanoSpherical, pose: &[f64; 5], joints: &Joints) -> bool {
     let [x, y, zeta, xi, psi] = *pose;
     let rho = paper::rotation(zeta, xi, psi);
     let legs = paper.legs.iter().enumerate().all(|(i, leg)| {
         let (theta, s) = (joints.theta[i], joints.slider[i]);
-        // Along the slider, the link's component is this last coefficient.
+        // The component of the link along the slider is this last coefficient.
         let along = leg.rate_coefficients([x, y], theta, s)[3];
         let v = Vector3::from(leg.proximal_axis(theta));
         let cross = v.cross(&Vector3::from(leg.platform_axis(&rho)));

@@ -10,8 +10,8 @@ use opm_core::subspace::SubspaceClass;
 use opm_tests::paper::TranslationalLeg;
 use std::f64::consts::TAU;
 
-/// Visits legs of random translational manipulators: the leg, its `k` (with S on the helical leg), P,
-/// and the crate's slider, foot, and derivatives of the slider by x, y and S.
+/// Visits legs of random translational manipulators with: the leg, its `k` (with S on the helical
+/// leg), P, and the crate's slider, foot, and derivatives of the slider by x, y and S.
 fn translational_legs(mut visit: impl FnMut(&TranslationalLeg, f64, [f64; 2], [f64; 2], [f64; 3])) {
     let mut rng = Rng::with_seed(32);
     for _ in 0..200 {
@@ -29,7 +29,8 @@ fn translational_legs(mut visit: impl FnMut(&TranslationalLeg, f64, [f64; 2], [f
         let [x, y, phi] = [rng.f64() - 0.5, rng.f64() - 0.5, 10.0 * (rng.f64() - 0.5)];
         let found = at([x, y, phi]);
         let imaginary = legs[pitched].pitch * phi;
-        // The crate counts coordinates leg by leg: S, r, phi. Linear: a difference of any step.
+        // The crate has the coordinates of each leg in the order S, r, phi. They are linear, so a
+        // difference with any step is exact.
         let steps = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0 / legs[pitched].pitch]];
         let moved = steps.map(|[dx, dy, dphi]| at([x + dx, y + dy, phi + dphi]));
         for (i, leg) in legs.iter().enumerate() {
@@ -41,8 +42,8 @@ fn translational_legs(mut visit: impl FnMut(&TranslationalLeg, f64, [f64; 2], [f
     }
 }
 
-/// The loop `O A B C P`: along the slider `n(alpha)`, the foot `e(alpha)`, back along the axis. Turned
-/// as a whole, a manipulator's platform turns with it.
+/// The loop `O A B C P`: along the slider `n(alpha)`, along the foot `e(alpha)`, and back along the
+/// axis. If the whole manipulator is rotated, its platform rotates with it.
 #[test]
 fn eq_28_has_the_wrong_sign_at_the_slider() {
     let [mut print, mut unturned, mut right] = <[Misses; 3]>::default();
@@ -77,7 +78,7 @@ fn the_sliders_are_divided_by_cos_2_alpha() {
         let straight = leg.slider(p, if leg.pitch == 0.0 { 0.0 } else { (k - leg.k) / leg.pitch });
         right.add(off(straight));
         ours.add(slider - straight);
-        // Eqs. 27 and 28 as printed, solved for the foot and the slider, give the other sign.
+        // Eqs. 27 and 28 as printed, solved for the foot and the slider, have the opposite sign.
         let divisor = (2.0 * leg.alpha).cos();
         if divisor.abs() > 0.1 {
             let [zero, foot, slide] =
@@ -96,7 +97,7 @@ fn the_sliders_are_divided_by_cos_2_alpha() {
     ours.hold(ROUNDING);
     opposite.hold(ROUNDING);
 
-    // The printed parameters: twice the slider on two legs, minus it on the third.
+    // With the printed parameters: twice the slider on two legs, minus the slider on the third.
     let shares = TranslationalLeg::printed().map(|leg| {
         let p = [0.03, -0.05];
         printed::slider(&leg, leg.k, p) / leg.slider(p, 0.0)

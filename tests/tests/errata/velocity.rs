@@ -4,8 +4,9 @@ use crate::sample::{Rates, samples};
 use crate::{DIFFERENCED, Misses, ROUNDING, e, printed};
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3, Vector5};
 
-/// Eq. 20's coefficients are the derivatives of the link's square between two points, and relate the
-/// crate's rates. With one letter for both coordinates of P they are neither, whichever it means.
+/// The coefficients of Eq. 20 are the derivatives of the squared distance between two points, and
+/// they relate the crate's rates. With one letter for both coordinates of P they do neither,
+/// whichever coordinate it means.
 #[test]
 fn eq_20_has_one_letter_for_both_coordinates() {
     let [mut right, mut ours] = <[Misses; 2]>::default();
@@ -16,7 +17,8 @@ fn eq_20_has_one_letter_for_both_coordinates() {
         for (i, leg) in sample.paper.legs.iter().enumerate() {
             let (theta, s) = (sample.joints.theta[i], sample.joints.slider[i]);
             let [cx, cy, ct, cs] = leg.rate_coefficients([x, y], theta, s);
-            // Central differences that are exact: of a square by any step, of a sine by its own.
+            // Central differences that are exact: for a square with any step, for a sine after
+            // division by its own.
             let half = |p: [f64; 2], theta: f64, s: f64| {
                 let c = Vector2::from(p) + leg.a2 * e(theta);
                 (c - sample.a(i, s)).norm_squared() / 2.0
@@ -43,7 +45,8 @@ fn eq_20_has_one_letter_for_both_coordinates() {
     ours.hold(DIFFERENCED);
 }
 
-/// Turning phi14 moves P along y too; J_q,p must say so. Its entry (5,4) is not in the print's list.
+/// A rotation of phi14 moves P along y too, and J_q,p must contain that. Its entry (5,4) is missing
+/// in print.
 #[test]
 fn the_planar_jacobian_lacks_its_entry_5_4() {
     let [mut print, mut right, mut ours] = <[Misses; 3]>::default();
@@ -69,8 +72,8 @@ fn the_planar_jacobian_lacks_its_entry_5_4() {
     ours.hold(DIFFERENCED);
 }
 
-/// The platform's angular velocity is that of its rotation rho, `[omega] = rhodot rho⁻¹`; the `s` of
-/// Eq. 2 is a vector, which rotates with the platform or not, but has no inverse but the pseudo one.
+/// The platform's angular velocity follows from its rotation rho: `[omega] = rhodot rho⁻¹`. The `s`
+/// of Eq. 2 is a vector, rotating with the platform or not, and has only a pseudo-inverse.
 #[test]
 fn eq_4_writes_s_for_rho() {
     let [mut print, mut right, mut ours] = <[Misses; 3]>::default();
@@ -85,7 +88,7 @@ fn eq_4_writes_s_for_rho() {
         for (velocity, s) in [(tip, s), (Vector3::zeros(), Vector3::z())] {
             print.add((velocity * s.transpose() / s.norm_squared() - turning).norm());
         }
-        // Eqs. 5-9, right as printed, need that omega.
+        // Eqs. 5-9, which are printed correctly, need this omega.
         let [direct, inverse] = sample.paper.spherical_jacobians(&rho, &sample.joints.theta);
         ours.add((direct * omega - inverse * Vector3::from(rates.theta)).norm());
     }
@@ -94,11 +97,11 @@ fn eq_4_writes_s_for_rho() {
     ours.hold(DIFFERENCED);
 }
 
-/// "Using Eqs. (7) and (22)": four equations, without a slider in them, for the eight rates of the
-/// joints. Eqs. 8 and 23 give them all.
+/// "Using Eqs. (7) and (22)": these are four equations, without a slider in them, for the eight
+/// rates of the joints. Eqs. 8 and 23 give all of them.
 #[test]
 fn the_whole_velocity_is_not_in_eqs_7_and_22() {
-    /// A singular value below this share of the greatest is none.
+    /// Singular values below this share of the largest count as zero.
     const RANK: f64 = 1e-9;
     let mut ours = Misses::default();
     for sample in samples() {
@@ -107,7 +110,7 @@ fn the_whole_velocity_is_not_in_eqs_7_and_22() {
         let [direct, inverse] = sample.paper.planar_jacobians(sample.p(), &sample.joints);
         let [spherical, imaginary] = sample.paper.spherical_jacobians(&rho, &sample.joints.theta);
 
-        // Unknowns: theta1..3, S1..3, phi14, phi24.
+        // The unknowns are theta1..3, S1..3, phi14, phi24.
         let mut all = SMatrix::<f64, 8, 8>::zeros();
         all.fixed_view_mut::<3, 3>(0, 0).copy_from(&imaginary);
         all.fixed_view_mut::<5, 3>(3, 0).copy_from(&-direct.fixed_columns::<3>(0));

@@ -1,5 +1,5 @@
-//! A numeric solver of the closure of a mechanism with its actuated joints held. It knows joints and legs,
-//! and no sections: the end of every leg has to be where that of the first is.
+//! A numeric solver for the closure of a mechanism with its actuated joints held. It uses joints
+//! and legs, but no sections: the ends of all legs must coincide.
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Isometry3, Point3, Vector3};
@@ -8,16 +8,16 @@ use opm_core::mechanism::Mechanism;
 use opm_core::screw::Screw;
 use std::f64::consts::TAU;
 
-/// Steps from one start.
+/// The largest number of steps from one start.
 const STEPS: usize = 120;
 
-/// The legs meet: what double precision leaves of it, with lengths under one.
+/// Residual of closed legs: rounding in double precision, with lengths below one.
 const CLOSED: f64 = 1e-12;
 
-/// The mechanism with its actuated joints held.
+/// A mechanism with its actuated joints held.
 pub struct Closure<'a> {
     mechanism: &'a Mechanism,
-    /// Of every coordinate, its value if it is held.
+    /// The value of each coordinate that is held, `None` for the others.
     held: Vec<Option<f64>>,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Closure<'a> {
         Self { mechanism, held }
     }
 
-    /// The solutions that random starts lead to, all different.
+    /// The different solutions found from random starts.
     pub fn solutions(&self, rng: &mut Rng, starts: usize) -> Vec<Vec<f64>> {
         let mut found: Vec<Vec<f64>> = Vec::new();
         for _ in 0..starts {
@@ -44,7 +44,7 @@ impl<'a> Closure<'a> {
         found
     }
 
-    /// The same joint values, whole turns aside.
+    /// Whether two vectors of joint values are equal modulo 2π.
     pub fn same(&self, a: &[f64], b: &[f64]) -> bool {
         let mut first = 0;
         self.mechanism.joints().all(|joint| {
@@ -52,9 +52,9 @@ impl<'a> Closure<'a> {
             first = range.end;
             let (a, b) = (joint.displacement(&a[range.clone()]), joint.displacement(&b[range]));
             match joint.kind {
-                // A screw's turns matter, but the ends of its leg tell them.
+                // The revolutions of a screw matter, but the end of its leg shows them.
                 JointKind::Helical { .. } => a.rotation.angle_to(&b.rotation) < 1e-5,
-                // A spline moves with the screw.
+                // A slider on the screw's axis moves with the screw.
                 JointKind::Prismatic if !joint.actuated && self.has_screws() => true,
                 _ => (a.to_homogeneous() - b.to_homogeneous()).amax() < 1e-5,
             }
@@ -74,7 +74,7 @@ impl<'a> Closure<'a> {
                 (None, Quantity::Length) => 0.6 * (rng.f64() - 0.5) + c.home,
             })
             .collect();
-        // A rotation vector of half a turn and more is one of less.
+        // A rotation vector of π or more is replaced by the equivalent one below π.
         let mut first = 0;
         for joint in self.mechanism.joints() {
             if joint.kind == JointKind::Spherical {
@@ -85,7 +85,7 @@ impl<'a> Closure<'a> {
         joints
     }
 
-    /// Damped least squares from a start.
+    /// Damped least squares from one start.
     fn approach(&self, start: Vec<f64>) -> Option<Vec<f64>> {
         let free: Vec<usize> = (0..start.len()).filter(|&i| self.held[i].is_none()).collect();
         let mut joints = start;
@@ -118,11 +118,12 @@ impl<'a> Closure<'a> {
         None
     }
 
-    /// By how much each leg's end misses the first's, and the derivative by the free joints.
+    /// The difference of each leg's end from the first leg's, and its derivative by the free
+    /// joints.
     fn evaluate(&self, joints: &[f64], free: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let legs = &self.mechanism.legs;
         let mut ends = Vec::new();
-        // A twist of the end for every coordinate, and its leg.
+        // The twist of the end for every coordinate, and the leg of the coordinate.
         let mut twists: Vec<(usize, Screw)> = Vec::new();
         let mut first = 0;
         for (number, leg) in legs.iter().enumerate() {
@@ -160,11 +161,12 @@ impl<'a> Closure<'a> {
     }
 }
 
-/// What a joint's outer link does for a unit rate of each coordinate, before what is nearer the base.
+/// The twist of a joint's outer link for a unit rate of each coordinate, without the joints nearer
+/// the base.
 fn rates(joint: &Joint, values: &[f64]) -> Vec<Screw> {
     match joint.kind {
         JointKind::Spherical => {
-            // By differences: of a rotation vector there is no one screw.
+            // By differences, because a rotation vector has no fixed screws.
             const STEP: f64 = 1e-6;
             let here = joint.displacement(values);
             (0..3)

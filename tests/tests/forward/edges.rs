@@ -1,4 +1,5 @@
-//! At home, on singularities, on the rim of reach, beyond it, and with values that make no sense.
+//! Forward kinematics at home, at singularities, at the boundary of reach, beyond it, and with
+//! invalid values.
 
 use crate::{Reached, apart, check_all, example, unlimited};
 use fastrand::Rng;
@@ -9,7 +10,8 @@ use opm_core::leg::Leg;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::{Mechanism, examples, file};
 
-/// A double root is known to about the root of rounding; what hangs on it is as large.
+/// A double root is known to about the square root of rounding, and so is everything that depends
+/// on it.
 const DOUBLE: f64 = 1e-5;
 
 #[test]
@@ -21,7 +23,8 @@ fn home_is_an_assembly() {
         let home: Vec<f64> = m.actuated().iter().map(|&i| m.coordinates()[i].home).collect();
         let found = m.forward(&home).unwrap();
         check_all(&m, &home, &found.list);
-        // Coordinates too, not just the place: on the pole of the Euler angles they are home's.
+        // The coordinates agree too, not just the displacement: at the singularity of the Euler
+        // angles they are home's.
         let at_home = found.list.iter().find(|a| {
             a.mode == m.home_mode() && {
                 let off = a.pose.iter().zip(m.task().home()).map(|(q, h)| (q - h).abs());
@@ -32,7 +35,8 @@ fn home_is_an_assembly() {
     }
 }
 
-/// Determinant of the actuated joints' rates by the section twist, in the home mode; `None` out of reach.
+/// The determinant of the actuated joints' rates by the section twist, in the home mode; `None` out
+/// of reach.
 fn determinant(m: &Manipulator, pose: &[f64]) -> Option<f64> {
     let mut solution = m.solution();
     m.inverse(pose, m.home_mode(), &mut solution).unwrap()?;
@@ -47,8 +51,8 @@ fn between(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect()
 }
 
-/// Where the platform could move with the actuators held, two assemblies are one: it is found, and so are
-/// both of them a little aside.
+/// Where the platform can move with the actuators held, two assemblies coincide. This one is found,
+/// and near it both of them are.
 #[test]
 fn parallel_singularities_are_found() {
     let mut rng = Rng::with_seed(11);
@@ -64,7 +68,8 @@ fn parallel_singularities_are_found() {
                     h + if i < m.task().lower_count { 0.03 } else { 1.5 } * (2.0 * rng.f64() - 1.0)
                 })
                 .collect();
-            // The inverse Jacobian's determinant is zero on parallel singularities and infinite on serial ones.
+            // The determinant of the inverse Jacobian is zero at parallel singularities and
+            // infinite at serial ones.
             let at = |t: f64| determinant(&m, &between(&home, &aim, t));
             let steps: Vec<Option<f64>> = (1..=40).map(|i| at(f64::from(i) / 40.0)).collect();
             let crossing = steps.windows(2).position(
@@ -93,7 +98,7 @@ fn parallel_singularities_are_found() {
             for a in &found.list {
                 assert!(a.residual <= opm_core::forward::RESIDUAL);
             }
-            // Aside, each of the two is found as it is.
+            // Near the singularity, each of the two assemblies is found.
             let aside = Reached::at(&m, between(&home, &aim, low - 1e-4), m.home_mode()).unwrap();
             let found = m.forward(&aside.actuated).unwrap();
             check_all(&m, &aside.actuated, &found.list);
@@ -110,7 +115,8 @@ fn parallel_singularities_are_found() {
     assert!(met >= 40 && 10 * pairs > 7 * met, "{met} {pairs}");
 }
 
-/// On the rim of a leg's reach two working modes are one, and rounding does not lose the pose.
+/// At the boundary of a leg's reach two working modes coincide, and rounding does not lose the
+/// pose.
 #[test]
 fn the_rim_of_reach_is_inside() {
     let mut rng = Rng::with_seed(12);
@@ -136,10 +142,10 @@ fn the_rim_of_reach_is_inside() {
             }
         }
         tried += 1;
-        let rim = Reached::at(&m, between(&home, &aim, low), m.home_mode()).unwrap();
-        let found = m.forward(&rim.actuated).unwrap();
-        let nearest = found.list.iter().map(|a| apart(&m, &a.pose, &rim.pose)).fold(1.0, f64::min);
-        assert!(nearest < DOUBLE, "{:?}: {nearest:e}", rim.pose);
+        let edge = Reached::at(&m, between(&home, &aim, low), m.home_mode()).unwrap();
+        let found = m.forward(&edge.actuated).unwrap();
+        let nearest = found.list.iter().map(|a| apart(&m, &a.pose, &edge.pose)).fold(1.0, f64::min);
+        assert!(nearest < DOUBLE, "{:?}: {nearest:e}", edge.pose);
         assert!(found.list.iter().all(|a| a.residual <= opm_core::forward::RESIDUAL));
     }
 }
@@ -152,7 +158,7 @@ fn out_of_reach_says_by_how_much() {
     joints[0] = 0.9;
     let found = m.forward(&joints).unwrap();
     assert!(found.list.is_empty() && found.loose.is_empty());
-    // P = 0; the slider at h e(30°) + S n(30°), h = 120 mm.
+    // P = 0; the slider is at h e(30°) + S n(30°) with h = 120 mm.
     let expected = 0.12_f64.hypot(0.9) - 0.26;
     let [Unmet::Leg(unreachable)] = &found.unmet[..] else { panic!("{:?}", found.unmet) };
     assert_eq!((unreachable.leg, unreachable.section), (0, Section::Lower));
@@ -167,25 +173,26 @@ fn values_that_make_no_sense_are_refused() {
         let error = m.forward(&[0.1, value, 0.1, 0.1, 0.1]).unwrap_err();
         assert!(matches!(&error, ForwardError::NotFinite { name, .. } if name == "S2"), "{error}");
     }
-    // Large ones are answered: nothing is there.
+    // Large values have an answer: there is no assembly.
     for value in [1e3, 1e20, 1e70] {
         let found = m.forward(&[0.1, value, 0.1, 0.1, 0.1]).unwrap();
         assert!(found.list.is_empty() && !found.unmet.is_empty(), "{value}");
     }
 }
 
-/// Two equal rods side by side hold no more than one does.
+/// Two equal rods side by side constrain no more than one does.
 #[test]
 fn rods_side_by_side_leave_the_platform_loose() {
     let m = example("planar-planar-5dof");
-    // In this mode the rods of legs 1 and 3, hinged to the platform on one axis, stand side by side.
+    // In this mode the rods of legs 1 and 3, hinged to the platform on one axis, are side by side.
     let mode = m.parse_mode("+- -- +- ++").unwrap();
     let reached = Reached::at(&m, m.task().home(), mode).unwrap();
     let found = m.forward(&reached.actuated).unwrap();
     assert_eq!(found.loose, [Section::Upper]);
 }
 
-/// One motor more than freedoms: consistent values have their assemblies, others contradict each other.
+/// There is one actuator more than freedoms: consistent values have their assemblies, others
+/// contradict each other.
 #[test]
 fn more_motors_than_freedoms() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;
@@ -198,7 +205,7 @@ fn more_motors_than_freedoms() {
         let found = m.forward(&reached.actuated).unwrap();
         check_all(&m, &reached.actuated, &found.list);
         assert!(reached.is_in(&m, &found.list));
-        // The first leg's slider and link are where they were: the link alone elsewhere is too much.
+        // The first leg's slider and link are unchanged; moving the link alone is a contradiction.
         let mut wrong = reached.actuated.clone();
         wrong[1] += 0.1;
         let found = m.forward(&wrong).unwrap();
@@ -208,8 +215,8 @@ fn more_motors_than_freedoms() {
     }
 }
 
-/// A planar 3-RPR with a turntable on top, motors in the telescopes: the conditions of lower sections with
-/// one cut are circles, and lines where the first joint is driven instead.
+/// A planar 3-RPR with a turntable on top and actuated telescopes. The conditions of lower sections
+/// with one imaginary joint are circles, or lines if the first joint is actuated instead.
 #[test]
 fn planar_platforms_have_at_most_six_assemblies() {
     let mut rng = Rng::with_seed(14);
@@ -223,7 +230,7 @@ fn planar_platforms_have_at_most_six_assemblies() {
             assert!(found.loose.is_empty());
             check_all(&m, &reached.actuated, &found.list);
             assert!(reached.is_in(&m, &found.list), "{:?}", reached.pose);
-            // x, y and theta: the screw has two ways of following each.
+            // For x, y and theta, the screw has two ways to follow.
             let mut places: Vec<&[f64]> = Vec::new();
             for a in &found.list {
                 let apart = |p: &&[f64]| p.iter().zip(&a.pose).any(|(p, q)| (p - q).abs() > 1e-6);
@@ -239,8 +246,8 @@ fn planar_platforms_have_at_most_six_assemblies() {
     assert!(solved > 500 && (3..=6).contains(&most), "{solved} {most}");
 }
 
-/// Legs in the plane with a slider across it at their ends, which all share its direction with the platform:
-/// three hold the plane, the fourth a screw.
+/// Planar legs with a slider across the plane at their ends, all with the same direction and
+/// attached to the platform. Three of them hold the plane, the fourth one has a screw.
 fn turntable(rng: &mut Rng) -> Option<Manipulator> {
     use nalgebra::{Point3, Unit, Vector3};
     let z = Vector3::z_axis();
@@ -257,7 +264,8 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
         let name = |part: &str| format!("{part}{number}");
         let revolute =
             |part: &str, at: Point3<f64>| Joint::new(name(part), JointKind::Revolute, z, at);
-        // A telescope or two links; of those the first or the second joint is driven.
+        // A leg has a telescope or two links; of two links, the first or the second joint is
+        // actuated.
         let mut joints = match rng.usize(..3) {
             0 => vec![
                 revolute("a", foot),
@@ -271,7 +279,7 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
                 revolute("c", hip),
             ],
         };
-        // A shaft along x: bearings, and one thread.
+        // A shaft along x, with bearings and one thread.
         let kind =
             if number == 4 { JointKind::Helical { pitch: 0.02 } } else { JointKind::Revolute };
         joints.push(Joint::new(name("d"), kind, x, Point3::origin()));

@@ -1,5 +1,6 @@
-//! Forward kinematics: what inverse kinematics made of a pose leads back to it, every assembly that is
-//! found is one, none is missing, and where there is none the answer says why.
+//! Forward kinematics: the joint values that inverse kinematics gives for a pose lead back to it,
+//! every assembly that is found is valid, none is missing, and if there is none, the answer says
+//! why.
 
 mod closure;
 mod edges;
@@ -16,12 +17,13 @@ use opm_core::mechanism::{Mechanism, examples, file};
 use opm_tests::paper::{PlanoSpherical, Signs};
 use std::f64::consts::TAU;
 
-/// Two poses are the same: rotation and translation, radians and metres. Far above the rounding of a regular
-/// pose, far below the distance of two assemblies.
+/// Two poses are equal if they differ by less than this in rotation and translation, radians and
+/// metres. It is far above the rounding of a regular pose and far below the distance of two
+/// assemblies.
 const SAME: f64 = 1e-7;
 
-/// A joint value as inverse kinematics give it back. Some of 10⁵ assemblies are so near a singularity that
-/// they lose half of the digits.
+/// Tolerance for a joint value that inverse kinematics gives back. Some of 10⁵ assemblies are so
+/// near a singularity that they lose half of the digits.
 const BACK: f64 = 1e-6;
 
 fn example(name: &str) -> Manipulator {
@@ -35,7 +37,7 @@ fn unlimited(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
-/// A pose in reach, a mode in which it is, and the actuated joints there.
+/// A pose within reach, a mode in which it is reached, and its actuated joints.
 struct Reached {
     pose: Vec<f64>,
     mode: Mode,
@@ -50,7 +52,7 @@ impl Reached {
         Some(Self { pose, mode, actuated })
     }
 
-    /// At a random pose within `reach` of home, radians and metres, in a random mode.
+    /// A random pose within `reach` of home, radians and metres, in a random mode.
     fn random(rng: &mut Rng, m: &Manipulator, reach: [f64; 2]) -> Self {
         let mut all = m.all_modes();
         loop {
@@ -78,7 +80,7 @@ fn apart(m: &Manipulator, a: &[f64], b: &[f64]) -> f64 {
     a.rotation.angle_to(&b.rotation) + (a * p - b * p).norm()
 }
 
-/// Distance of two joint values: whole turns aside, but for screws and rotation vectors.
+/// The distance of two joint values: modulo 2π, except for screws and rotation vectors.
 fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
     let mut joints = m.mechanism().joints().flat_map(|j| j.coordinates.iter().map(move |_| j.kind));
     let turns = matches!(
@@ -92,8 +94,8 @@ fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
     }
 }
 
-/// What an assembly claims: its legs close, as they stand in the mechanism, with the joints that were given,
-/// and inverse kinematics in its mode give these back.
+/// Checks what an assembly claims: its legs close with the joint values that were given, and
+/// inverse kinematics in its mode gives these values back.
 fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
     assert!(a.residual <= RESIDUAL, "{a:?}");
     let target = m.task().displacement(&a.pose);
@@ -103,7 +105,8 @@ fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
         joints = rest;
         let end = leg.displacement(own);
         let way = (end * m.mechanism().platform - target * m.mechanism().platform).norm();
-        // The angle by a root: it has half of the digits. Lengths here are under ten.
+        // The angle is found by a square root, so it has half of the digits. Lengths here are below
+        // ten.
         assert!(
             end.rotation.angle_to(&target.rotation) < 1e-7 && way < 1e-11,
             "{} {way:e}",
@@ -119,7 +122,7 @@ fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
     }
 }
 
-/// All are assemblies, and no two are the same.
+/// Checks that all are assemblies, and that no two are equal.
 fn check_all(m: &Manipulator, actuated: &[f64], list: &[Assembly]) {
     for (number, a) in list.iter().enumerate() {
         check(m, actuated, a);
@@ -130,7 +133,8 @@ fn check_all(m: &Manipulator, actuated: &[f64], list: &[Assembly]) {
     }
 }
 
-/// The paper's manipulator, as printed and with random geometry, ten thousand poses in random modes.
+/// The paper's manipulator, as printed and with random geometry: ten thousand poses in random
+/// modes.
 #[test]
 fn joints_of_a_pose_lead_back_to_it() {
     let mut rng = Rng::with_seed(1);
@@ -165,7 +169,7 @@ fn joints_of_a_pose_lead_back_to_it() {
     assert!(most <= 64, "{most}: more than 8 rotations for 8 sets of imaginary joints");
 }
 
-/// Every shipped mechanism that has a closed form.
+/// Every shipped mechanism that has closed-form forward kinematics.
 #[test]
 fn shipped_mechanisms_are_solved() {
     let mut rng = Rng::with_seed(2);
@@ -182,14 +186,16 @@ fn shipped_mechanisms_are_solved() {
         for _ in 0..500 {
             let mut reached = Reached::random(&mut rng, &m, [0.7, 0.1]);
             if let Some(pitch) = pitch {
-                // Its height follows whole turns, which the nut does not tell: within half a turn here.
+                // Its height depends on full revolutions, which the nut does not show: here within
+                // π.
                 let mut pose = reached.pose.clone();
                 pose[3] = m.task().home()[3] + pitch * (TAU * rng.f64() - TAU / 2.0);
                 reached = Reached::at(&m, pose, reached.mode).unwrap();
             }
             let found = m.forward(&reached.actuated).unwrap();
             check_all(&m, &reached.actuated, &found.list);
-            // Two rods of the planar-planar one carry one hinge: side by side they are one.
+            // Two rods of the planar-planar manipulator carry one hinge: side by side they act as
+            // one.
             if found.loose.is_empty() {
                 let pose = || format!("{:?} {}", reached.pose, m.format_mode(reached.mode));
                 assert!(reached.is_in(&m, &found.list), "{} {}", shipped.name, pose());
@@ -205,8 +211,8 @@ fn shipped_mechanisms_are_solved() {
     assert_eq!(open, ["bennett-double-spherical-6r", "translational-planar-4dof"]);
 }
 
-/// As many assemblies as a numeric solver finds that knows nothing of sections: damped least squares on the
-/// legs' products of exponentials, from thousands of random starts.
+/// There are as many assemblies as a numeric solver finds that uses no sections: damped least
+/// squares on the legs' products of exponentials, from thousands of random starts.
 #[test]
 fn none_is_missing() {
     let mut rng = Rng::with_seed(3);
@@ -228,7 +234,7 @@ fn none_is_missing() {
             };
             let closure = Closure::new(m.mechanism(), &reached.actuated);
             let numeric = closure.solutions(&mut rng, starts);
-            // Screws that turn whole turns further are the same here.
+            // Screws that are full revolutions apart are equal here.
             let known =
                 |joints: &Vec<f64>| found.list.iter().any(|a| closure.same(joints, &a.joints));
             for joints in &numeric {

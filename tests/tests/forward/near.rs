@@ -1,4 +1,5 @@
-//! Newton's method from a pose: for mechanisms without a closed form, and for all others.
+//! Newton's method from a given pose: for mechanisms without closed-form forward kinematics, and
+//! for all others.
 
 use crate::{Reached, apart, check, example};
 use fastrand::Rng;
@@ -6,8 +7,8 @@ use opm_core::forward::{NearError, Stop};
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 
-/// From poses nearby, every joint vector leads back, in its own mode: per cent of those that are not
-/// singular.
+/// The percentage of regular poses for which the joint values lead back to the pose, in its own
+/// mode, from a start nearby.
 fn returns(rng: &mut Rng, m: &Manipulator, reach: [f64; 2], count: usize) -> usize {
     let (mut found, mut singular) = (0, 0);
     for _ in 0..count {
@@ -32,7 +33,7 @@ fn returns(rng: &mut Rng, m: &Manipulator, reach: [f64; 2], count: usize) -> usi
                 found += usize::from(apart(m, &assembly.pose, &reached.pose) < 1e-6);
             }
             Err(NearError::NotFound(not_found)) => {
-                // Some modes are singular throughout: two rods side by side act as one.
+                // Some modes are singular everywhere: two rods side by side act as one.
                 singular += usize::from(not_found.why == Stop::Singular && not_found.steps == 0);
                 assert!(not_found.off.is_finite() && not_found.pose.len() == start.len());
             }
@@ -57,13 +58,13 @@ fn poses_are_found_from_nearby() {
     ] {
         let m = example(name);
         let found = returns(&mut rng, &m, [0.3, 0.05], 300);
-        // The rest is near a singularity, where another assembly may be as near.
+        // The others are near a singularity, where another assembly may be as near.
         println!("{name}: {found} %");
         assert!(found > 80, "{name} {found}");
     }
 }
 
-/// From home, where the Euler angles of this one are on their pole.
+/// From home, where the Euler angles of this mechanism are singular.
 #[test]
 fn home_is_a_start() {
     let m = example("plano-spherical-5dof");
@@ -74,7 +75,7 @@ fn home_is_a_start() {
     assert!(apart(&m, &assembly.pose, &reached.pose) < 1e-10);
 }
 
-/// An angle is taken modulo a turn, a screw is not.
+/// An angle is taken modulo 2π, a screw's is not.
 #[test]
 fn turns_of_the_arm_do_not_matter() {
     let m = example("plano-spherical-5dof");
@@ -92,7 +93,7 @@ fn turns_of_the_arm_do_not_matter() {
 fn a_failure_says_why() {
     let m = example("translational-planar-4dof");
     let home = m.task().home();
-    // The first slider a metre from the others, which no rod spans.
+    // The first slider is a metre from the others, which no rod spans.
     let error = m.forward_near(&[1.0, 0.0, 0.0, 0.0], &home, m.home_mode());
     let error = error.expect_err("an assembly");
     let NearError::NotFound(not_found) = error else { panic!("{error}") };
@@ -101,7 +102,7 @@ fn a_failure_says_why() {
         "{not_found}"
     );
     assert!(not_found.off > 0.01 && not_found.off.is_finite(), "{not_found}");
-    // A start out of reach.
+    // A start that is out of reach.
     let mut far = home.clone();
     far[2] += 1.0;
     let error = m.forward_near(&[0.0; 4], &far, m.home_mode()).unwrap_err();
@@ -109,7 +110,7 @@ fn a_failure_says_why() {
         matches!(&error, NearError::NotFound(n) if n.steps == 0 && matches!(n.why, Stop::OutOfReach(_))),
         "{error}"
     );
-    // Values that cannot be computed with.
+    // Values with which nothing can be computed.
     let error = m.forward_near(&[f64::NAN, 0.0, 0.0, 0.0], &home, m.home_mode()).unwrap_err();
     assert!(matches!(error, NearError::Joints(_)), "{error}");
     let error = m.forward_near(&[0.0; 4], &home[1..], m.home_mode()).unwrap_err();

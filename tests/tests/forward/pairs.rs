@@ -1,5 +1,5 @@
-//! Random mechanisms of every pair of subspaces, with random joints actuated: in closed form where there is
-//! one, by Newton's method where not.
+//! Random mechanisms of every pair of subspaces, with random actuated joints: in closed form if
+//! there is one, otherwise with Newton's method.
 
 use crate::{Reached, apart, check, check_all, unlimited};
 use fastrand::Rng;
@@ -9,8 +9,8 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mobility::mobility;
 use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism};
 
-/// A mechanism whose actuators control it, as many as it has freedoms: of one leg as many as can be, of the
-/// others the first, or any.
+/// A mechanism whose actuators control it, as many as it has freedoms: as many as possible in one
+/// leg and the first joint of the others, or any joints.
 fn driven(rng: &mut Rng, pair: [Kind; 2]) -> Manipulator {
     loop {
         let options = Options { limited: 0.0, balls: rng.bool() };
@@ -29,7 +29,8 @@ fn driven(rng: &mut Rng, pair: [Kind; 2]) -> Manipulator {
         if rng.bool() {
             rng.shuffle(&mut choices);
         } else {
-            // The lower joints of the last leg, then the first of each leg, then seconds.
+            // The lower joints of the last leg, then the first joint of each leg, then the second
+            // ones.
             let anchor = mechanism.legs.len() - 1;
             let lower = decomposition.legs[anchor].lower.len();
             choices.sort_by_key(|&(leg, number)| match leg == anchor && number < lower {
@@ -48,7 +49,7 @@ fn driven(rng: &mut Rng, pair: [Kind; 2]) -> Manipulator {
     }
 }
 
-/// Whether a screw's turns are lost: revolutes of the other subspace hand them on to it.
+/// Whether a screw's revolutions are lost: revolutes of the other subspace pass them on to it.
 fn loses_turns(m: &Manipulator, pair: [Kind; 2]) -> bool {
     pair.contains(&Kind::Cylindrical(Meet::Rotation))
         && m.mechanism().joints().any(|j| matches!(j.kind, JointKind::Helical { .. }))
@@ -91,7 +92,7 @@ fn random_mechanisms_of_every_pair() {
                     assert_ne!(why, NoClosedForm::Ball, "no ball is actuated here");
                 }
             }
-            // Newton's method needs no order of sections.
+            // Newton's method does not need an order of sections.
             let reached = Reached::random(&mut rng, &m, [0.3, 0.2]);
             let start: Vec<f64> =
                 reached.pose.iter().map(|q| q + 0.01 * (2.0 * rng.f64() - 1.0)).collect();

@@ -1,5 +1,5 @@
-//! Linkages of two spherical four-bars, held against the loop as it stands: the product of
-//! exponentials along both legs, and a numeric solver that knows nothing of their decomposition.
+//! Linkages of two spherical four-bars, compared with the undecomposed loop: the product of
+//! exponentials along both legs, and a numeric solver that does not use the decomposition.
 
 mod numeric;
 mod random;
@@ -17,7 +17,7 @@ use opm_core::mechanism::{Mechanism, examples, file};
 use random::{PATTERNS, linkage};
 use std::f64::consts::{PI, TAU};
 
-/// The bound on closure: the joints turn about centres within a few metres.
+/// The bound on closure: the joints rotate about centres within a few metres.
 const CLOSURE: f64 = 1e-10;
 
 fn shipped(name: &str) -> Mechanism {
@@ -28,7 +28,7 @@ fn compiled(mechanism: &Mechanism) -> Linkage {
     Linkage::new(mechanism).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The linkage moved by each of its six joint coordinates.
+/// The linkage driven by each of its six joint coordinates.
 fn inputs(linkage: &Linkage) -> impl Iterator<Item = (usize, Input<'_>)> {
     let input = |(i, c): (usize, &opm_core::joint::JointCoordinate)| {
         (i, linkage.input(&c.name).expect("every coordinate is one"))
@@ -36,15 +36,15 @@ fn inputs(linkage: &Linkage) -> impl Iterator<Item = (usize, Input<'_>)> {
     linkage.coordinates().iter().enumerate().map(input)
 }
 
-/// By how much the legs disagree about the platform.
+/// The difference between the platform's displacements by the two legs.
 fn open(mechanism: &Mechanism, position: &Position) -> f64 {
     let (one, two) = position.joints.split_at(mechanism.legs[0].coordinates().count());
     let [one, two] = [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q));
     (one.to_homogeneous() - two.to_homogeneous()).norm()
 }
 
-/// The imaginary joint as the lower parts of the legs show it: `L₁ = L₂ exp(I τ)`, with `τ` in the leg
-/// that has it.
+/// The imaginary joint's value from the lower parts of the legs: `L₁ = L₂ exp(I τ)`, with `τ` in
+/// the leg that has the joint.
 fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
     let mut joints = &position.joints[..];
     let decomposition = linkage.decomposition();
@@ -52,7 +52,7 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
         .map(|(leg, split)| {
             let (own, rest) = joints.split_at(leg.coordinates().count());
             joints = rest;
-            // Home for the upper part: what is left is the lower part's displacement.
+            // With the upper part at home, only the lower part's displacement is left.
             let home: Vec<f64> = leg.coordinates().map(|c| c.home).collect();
             let values = [&own[..split.lower.len()], &home[split.lower.len()..]].concat();
             leg.displacement(&values)
@@ -65,7 +65,7 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
     let opm_core::subspace::SubspaceClass::Rotation { axis, .. } = class else {
         panic!("{class:?}");
     };
-    // Without a label, the direction that points up counts as positive.
+    // Without a label, the direction that points up is positive.
     let up = |v: &Vector3<f64>| v.dot(&Vector3::from(opm_core::subspace::UP));
     let positive = match label {
         Some(label) => label.positive.dot(axis).signum(),
@@ -121,7 +121,8 @@ fn there_are_as_many_branches_as_a_numeric_solver_finds() {
             let value = input.coordinate().home + (rng.f64() * 2.0 - 1.0) * PI;
             let positions = input.solve(value);
             counts[positions.len()] += 1;
-            // As many starts as it takes to find them all; then half as many again, for more.
+            // As many starts as are needed to find all solutions, then half as many again to look
+            // for more.
             let mut found = closure.all(value, 200, &mut rng);
             for _ in 0..20 {
                 if found.len() >= positions.len() {
@@ -161,7 +162,8 @@ fn second_folds(positions: &[Position]) -> bool {
     positions.iter().enumerate().any(|(i, a)| positions[..i].iter().any(|b| meet(a, b)))
 }
 
-/// From inside each end of the range a numeric solver is led outwards, until it finds nothing.
+/// From inside each end of the range, a numeric solver follows the linkage outwards until it finds
+/// no solution.
 #[test]
 fn the_range_ends_where_a_numeric_solver_ends() {
     const REACH: f64 = 1e-2;
@@ -176,7 +178,8 @@ fn the_range_ends_where_a_numeric_solver_ends() {
             let closure = Closure::new(linkage.mechanism(), number);
             for (i, [low, high]) in intervals.iter().copied().enumerate() {
                 for (end, outwards) in [(low, -1.0), (high, 1.0)] {
-                    // Room on both sides, or the search would leave the interval or enter another.
+                    // There must be room on both sides, or the search would leave the interval or
+                    // enter another one.
                     let clear = intervals.iter().enumerate().all(|(k, other)| {
                         k == i || other.iter().all(|o| distance(&[*o], &[end]) > 2.0 * REACH)
                     });
@@ -215,7 +218,7 @@ fn the_range_ends_where_a_numeric_solver_ends() {
     assert!(ends > 60 && by_the_other > 20 && inner > 10, "{ends} {by_the_other} {inner}");
 }
 
-/// Every value of the input on a fine grid is in the range exactly where there is a position.
+/// Every value of the input on a fine grid is in the range exactly if there is a position.
 #[test]
 fn the_range_is_where_there_are_positions() {
     let mut rng = Rng::with_seed(103);
@@ -272,7 +275,7 @@ fn home_is_where_the_joints_are() {
     }
 }
 
-/// The cycle closes the loop all along, never jumps, and comes home.
+/// The cycle closes the loop everywhere, never jumps, and comes home.
 #[test]
 fn a_cycle_is_one_motion() {
     const SAMPLES: u32 = 4000;
@@ -359,7 +362,7 @@ fn other_mechanisms_are_told_what_a_linkage_is() {
         assert_eq!(error, LinkageError::NotCovered(obstacle));
         assert!(error.to_string().contains("two spherical four-bars"), "{error}");
     }
-    // The actuator left out, one leg left out.
+    // The actuator left out, and one leg left out.
     let mut mechanism = shipped("bennett-double-spherical-6r");
     mechanism.legs[0].joints[0].actuated = false;
     let error = Linkage::new(&mechanism).unwrap_err();
@@ -376,7 +379,7 @@ fn loops_of_other_joints_are_told_what_a_linkage_is() {
             other => panic!("{other:?}"),
         }
     };
-    // A ball for the three revolutes about the one centre.
+    // A spherical joint instead of the three revolutes about one centre.
     let [one, two] = <[Leg; 2]>::try_from(shipped("bennett-double-spherical-6r").legs).unwrap();
     let centre = one.joints[0].point;
     let ball = Joint::new("ball", JointKind::Spherical, Vector3::z_axis(), centre);

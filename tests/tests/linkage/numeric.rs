@@ -1,18 +1,18 @@
-//! A solver that knows nothing of the decomposition: Levenberg and Marquardt's on the closure of the
-//! loop as it stands, with the input held, from anywhere.
+//! A solver that does not use the decomposition: Levenberg and Marquardt's method on the closure of
+//! the loop, with the input held, from any start.
 
 use fastrand::Rng;
 use nalgebra::{SMatrix, SVector};
 use opm_core::mechanism::Mechanism;
 use std::f64::consts::PI;
 
-/// Residual of a solution: rounding, a few times over.
+/// Residual of a solution: a few times the rounding.
 const SOLVED: f64 = 1e-12;
-/// Step of the derivative.
+/// Step of the numeric derivative.
 const STEP: f64 = 1e-7;
-/// Where two solutions meet, each step only halves what is left.
+/// The number of steps. Where two solutions meet, each step only halves the error.
 const ITERATIONS: usize = 300;
-/// Two solutions this close are one.
+/// Two solutions that differ by less are the same.
 pub const SAME: f64 = 1e-5;
 
 type Residual = SVector<f64, 6>;
@@ -37,7 +37,7 @@ impl<'a> Closure<'a> {
         })
     }
 
-    /// By how much the two legs disagree about the platform.
+    /// The difference between the platform's displacements by the two legs.
     fn residual(&self, joints: &[f64; 6]) -> Residual {
         let [one, two] = [0, 1].map(|i| &self.mechanism.legs[i]);
         let error = one.displacement(&joints[..self.first]).inverse()
@@ -46,7 +46,8 @@ impl<'a> Closure<'a> {
         Residual::from_iterator(turn.iter().chain(slide.iter()).copied())
     }
 
-    /// Six joint values near `start`, or where that leads; `None` if it gets stuck.
+    /// A solution for the six joint values near `start`, or where the steps lead; `None` if they
+    /// get stuck.
     pub fn solve(&self, value: f64, start: [f64; 6]) -> Option<[f64; 6]> {
         let mut rest = start.iter().enumerate().filter(|(i, _)| *i != self.input);
         let mut passive = Passive::from_fn(|_, _| *rest.next().expect("five of six").1);
@@ -77,7 +78,7 @@ impl<'a> Closure<'a> {
         None
     }
 
-    /// All different solutions that so many random starts find.
+    /// All different solutions that this many random starts find.
     pub fn all(&self, value: f64, starts: usize, rng: &mut Rng) -> Vec<[f64; 6]> {
         let mut found: Vec<[f64; 6]> = Vec::new();
         for _ in 0..starts {
@@ -92,7 +93,7 @@ impl<'a> Closure<'a> {
     }
 }
 
-/// Largest difference of two sets of angles, whole turns aside.
+/// The largest difference of two sets of angles, modulo 2π.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| 2.0 * (0.5 * (a - b)).sin().abs()).fold(0.0, f64::max)
 }

@@ -7,8 +7,8 @@ use opm_core::leg::{ImaginaryLabel, Leg};
 use opm_core::mechanism::{Mechanism, TaskHints};
 use std::f64::consts::PI;
 
-/// How many joints the first leg has about each centre; the second leg has the rest of three. No
-/// leg is without joints.
+/// The number of joints that the first leg has about each centre. The second leg has the rest of
+/// three. No leg is without joints.
 pub const PATTERNS: [[usize; 2]; 14] = [
     [0, 1],
     [0, 2],
@@ -26,8 +26,8 @@ pub const PATTERNS: [[usize; 2]; 14] = [
     [3, 2],
 ];
 
-/// Smallest angle between neighbouring axes of a loop, and between a loop's joint planes and folding:
-/// home is well away from what is singular.
+/// The smallest angle between neighbouring axes of a loop, and between a loop's joint planes and
+/// folding: home is well away from singularities.
 const CLEAR: f64 = 0.2;
 
 pub fn direction(rng: &mut Rng) -> Unit<Vector3<f64>> {
@@ -44,8 +44,8 @@ pub fn displacement(rng: &mut Rng) -> Isometry3<f64> {
     Isometry3::new(direction(rng).into_inner() * (2.0 * rng.f64()), turn)
 }
 
-/// Three axes that, with `fourth`, make a loop without parallel neighbours that is not folded,
-/// whichever of its joints drives it.
+/// Three axes that form a loop with `fourth`, without parallel neighbours and not folded, whichever
+/// of its joints drives it.
 fn axes(rng: &mut Rng, fourth: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 3] {
     loop {
         let axes = [direction(rng), direction(rng), direction(rng)];
@@ -60,7 +60,7 @@ fn axes(rng: &mut Rng, fourth: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 3] {
     }
 }
 
-/// Revolutes through `centre`, some neighbours of them as one universal joint.
+/// Revolutes through `centre`; some neighbouring ones are combined into a universal joint.
 fn joints(
     rng: &mut Rng,
     letter: char,
@@ -94,7 +94,8 @@ pub fn linkage(rng: &mut Rng, pattern: [usize; 2]) -> Mechanism {
     let [near, far] = [Point3::origin(), Point3::new(0.1 + rng.f64(), 0.0, 0.0)].map(|p| moved * p);
     let between = Unit::new_normalize(far - near);
     let (about_near, about_far) = (axes(rng, between), axes(rng, between));
-    // In each loop: one leg's joints from the base, the other's back to it, the imaginary joint.
+    // Each loop consists of one leg's joints from the base, the other leg's back to it, and the
+    // imaginary joint.
     let (one_low, two_low) = about_near.split_at(pattern[0]);
     let (two_up, one_up) = about_far.split_at(3 - pattern[1]);
     let reverse = |axes: &[Unit<Vector3<f64>>]| axes.iter().rev().copied().collect::<Vec<_>>();

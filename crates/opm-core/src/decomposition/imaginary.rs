@@ -1,42 +1,43 @@
-//! Which legs get an imaginary joint: the upper section as a mechanism of its own.
+//! Which legs get an imaginary joint. The upper section is treated as a mechanism of its own.
 
 use crate::group::subspace::{Basis, TOLERANCE};
 use crate::numeric::svd::{self, Svd};
 use nalgebra::{DMatrix, DVector, Vector6};
 
-/// The upper parts of all legs between the lower section and the platform, in normalised screws.
+/// The upper section: the upper parts of all legs, between the lower section and the platform, as
+/// normalised screws.
 pub(super) struct UpperSection<'a> {
-    /// Of the subgroup that it moves in.
+    /// Basis of the algebra of the group in which the section moves.
     pub basis: &'a Basis,
-    /// Upper screws, leg by leg.
+    /// The screws of the upper parts, leg by leg.
     pub legs: &'a [&'a [Vector6<f64>]],
-    /// The screw of the intersection motion, along which imaginary joints lie.
+    /// The screw of the intersection motion. Imaginary joints lie along it.
     pub intersection: Vector6<f64>,
 }
 
-/// A set of legs with an imaginary joint.
+/// The chosen legs with an imaginary joint.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Choice {
-    /// Indices of the legs, `S`, ascending.
+    /// Indices of the legs, ascending: the set `S`.
     pub legs: Vec<usize>,
-    /// Mobility of the upper section with an imaginary joint in each of them, `F(S)`.
+    /// Mobility of the upper section with these imaginary joints, `F(S)`.
     pub mobility: usize,
-    /// The same without any, `F0`.
+    /// Mobility of the upper section without imaginary joints, `F0`.
     pub without: usize,
 }
 
 impl UpperSection<'_> {
-    /// The largest set `S` of candidates with `F(S) − F0 = |S|` and `0 ≤ N − F(S) ≤ dim A`; every
-    /// candidate where there is no such set. Of sets of one size, the one with the legs lowest in
-    /// `order`.
+    /// Chooses the largest set `S` of candidates with `F(S) − F0 = |S|` and `0 ≤ N − F(S) ≤ dim A`.
+    /// If there is no such set, every candidate is chosen. Among sets of equal size, the one whose
+    /// legs are lowest in `order` is chosen.
     ///
-    /// An imaginary joint adds a column to the closure of the upper section. `|S|` of them add
-    /// `|S|` to its mobility exactly if they add nothing to its rank, that is if every single one of
-    /// these columns depends on the section's own. So the legs that may be in `S` are found one by
-    /// one, and no subsets need to be tried.
+    /// An imaginary joint adds a column to the closure matrix of the upper section. `|S|` of them
+    /// increase its mobility by `|S|` exactly if they do not increase its rank, that is, if each of
+    /// these columns depends on the section's own columns. So the legs that may be in `S` are found
+    /// one by one, without trying subsets.
     ///
-    /// A set also has to give the section all the motions within it that all candidates together
-    /// give (as far as the mechanism has as many): only then can the imaginary joints that are not
+    /// The set must also give the section all motions within itself that all candidates together
+    /// give (at most as many as the mechanism has). Only then can the imaginary joints that are not
     /// in `S` be taken as constant.
     pub fn imaginary_joints(&self, n: usize, dim_a: usize, order: &[impl Ord]) -> Choice {
         let candidates: Vec<usize> = (0..self.legs.len()).filter(|&i| self.candidate(i)).collect();
@@ -51,7 +52,7 @@ impl UpperSection<'_> {
         free.sort_unstable();
         let mobility = without + free.len();
         let all = self.mobility(&candidates);
-        // Equal rates in all candidates slide the whole section along, but move nothing within it.
+        // Equal rates in all candidates move the section as a whole, but nothing within it.
         let common = usize::from(!candidates.is_empty());
         let complete = mobility >= n.min(all.saturating_sub(common));
         let qualifies = complete && (mobility..=mobility + dim_a).contains(&n);
@@ -62,14 +63,14 @@ impl UpperSection<'_> {
         }
     }
 
-    /// Whether the intersection motion is none that the leg's upper part makes by itself.
+    /// Whether the leg's upper part cannot make the intersection motion with its own joints.
     fn candidate(&self, leg: usize) -> bool {
         let own = self.legs[leg];
         let with: Vec<_> = own.iter().copied().chain([self.intersection]).collect();
         Basis::span(&with).dimension() == own.len() + 1
     }
 
-    /// Whether an imaginary joint in a leg is among what the closure's columns span already.
+    /// Whether the column of a leg's imaginary joint is in the span of the closure's own columns.
     fn depends(&self, leg: usize, own: &Svd, rank: usize) -> bool {
         let mut column = DVector::zeros(own.image.nrows());
         self.insert(leg, &mut column);
@@ -93,8 +94,8 @@ impl UpperSection<'_> {
         closure.ncols() - svd::rank(closure, TOLERANCE)
     }
 
-    /// The closure of the section within its subgroup: as many rows a leg as that has dimensions, a
-    /// column a screw, one an imaginary joint, and as many as dimensions for the platform.
+    /// The closure matrix of the section within its group. It has `dim B` rows per leg, one column
+    /// per screw, one per imaginary joint, and `dim B` columns for the platform.
     fn closure(&self, imaginary: &[usize]) -> DMatrix<f64> {
         let rows = self.basis.dimension();
         let mut columns = vec![];

@@ -1,8 +1,8 @@
-//! Mobility at the assembled home pose: how many freedoms the legs leave together, whether the
-//! actuators hold them all, and whether home is a singular pose.
+//! Mobility at the assembled home pose: the number of freedoms of the mechanism, whether the
+//! actuators control all of them, and whether home is a singular pose.
 //!
-//! All is read from the loop closure: joint rates `q̇` and a platform twist `t` are a first-order
-//! motion exactly if `J_k q̇_k = t` for every leg `k`.
+//! Everything follows from the loop closure: joint rates `q̇` and a platform twist `t` are a
+//! first-order motion exactly if `J_k q̇_k = t` for every leg `k`.
 
 mod linkage;
 mod singular;
@@ -16,22 +16,22 @@ use crate::numeric::svd::{Svd, singular_values};
 use nalgebra::{DMatrix, Vector6};
 use thiserror::Error;
 
-/// Most single freedoms of all joints together: the time grows with the fourth power of their
-/// number, and these take about a second.
+/// Largest supported number of freedoms of all joints together. The time grows with the fourth
+/// power of this number; the largest takes about a second.
 pub const MAX_FREEDOMS: usize = 96;
 
-/// A mechanism that has no mobility to speak of: something is missing or is not a number.
+/// Why the mobility of a mechanism cannot be computed: something is missing or is not a number.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MobilityError {
-    /// A loop takes two legs.
+    /// The mechanism has fewer than two legs, so it has no loop.
     #[error("mechanism {mechanism:?}: number of legs is {legs}, at least 2 are needed")]
     TooFewLegs {
         /// Name of the mechanism.
         mechanism: String,
-        /// Legs that it has.
+        /// The number of legs.
         legs: usize,
     },
-    /// A leg that connects nothing.
+    /// A leg has no joints.
     #[error("leg {leg:?} has no joints")]
     EmptyLeg {
         /// Name of the leg.
@@ -45,10 +45,10 @@ pub enum MobilityError {
         /// Name of the joint.
         joint: String,
     },
-    /// More joints than this module is made for.
+    /// The joints have more freedoms than are supported.
     #[error("the joints have {freedoms} freedoms together; at most {MAX_FREEDOMS} are supported")]
     TooLarge {
-        /// Freedoms of all joints.
+        /// The number of freedoms of all joints.
         freedoms: usize,
     },
 }
@@ -56,33 +56,34 @@ pub enum MobilityError {
 /// What the joints of a mechanism allow at its home pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mobility {
-    /// Dimension of the span of all joint screws.
+    /// Dimension of the span of all joint screws, `lambda`.
     pub lambda: usize,
-    /// `N`: freedoms of all joints less the rank of the loop closure.
+    /// Mobility `N`: the freedoms of all joints minus the rank of the loop closure.
     pub mobility: usize,
-    /// Of those, the ones that do not move the platform (a strut that spins between two spherical
-    /// joints).
+    /// Those of the `mobility` freedoms that do not move the platform, such as a strut that spins
+    /// between two spherical joints.
     pub idle: usize,
-    /// Freedoms of the actuated joints.
+    /// The number of freedoms of the actuated joints.
     pub actuators: usize,
-    /// How many of the mechanism's freedoms they control: `mobility` less what is left when they
-    /// are locked.
+    /// How many of the mechanism's freedoms the actuators control: `mobility` minus the freedoms
+    /// left when the actuators are locked.
     pub controlled: usize,
-    /// Actuated joints that could be locked out one at a time without losing control; none unless
-    /// `actuators > controlled`.
+    /// Names of the actuated joints that are redundant: each of them, alone, could be made passive
+    /// without losing control. Empty unless `actuators > controlled`.
     pub redundant: Vec<String>,
-    /// Motions of the platform that are left when all actuators are locked: independent twists,
-    /// each as the motion that it generates.
+    /// The motions of the platform that are left when all actuators are locked: independent twists,
+    /// each given as the motion that it generates.
     pub loose: Vec<SubspaceClass>,
-    /// In what respects home is more degenerate than assembled poses nearby; empty if it is regular.
+    /// Every respect in which home is more degenerate than assembled poses nearby; empty if home is
+    /// regular.
     pub singular: Vec<HomeSingularity>,
 }
 
-/// Counts freedoms, actuators and singularities at home.
+/// Counts freedoms and actuators at home, and finds its singularities.
 ///
 /// # Errors
 /// [`MobilityError`] if the mechanism has fewer than two legs, a leg without joints, a number that
-/// is not finite, or more than [`MAX_FREEDOMS`].
+/// is not finite, or more than [`MAX_FREEDOMS`] freedoms.
 pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     let linkage = Linkage::new(mechanism)?;
     let home = linkage.home();
@@ -105,7 +106,7 @@ pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     })
 }
 
-/// Actuated joints whose rates follow from those of the other actuated joints.
+/// The actuated joints whose rates follow from those of the other actuated joints.
 fn redundant(mechanism: &Mechanism, linkage: &Linkage, kernel: &DMatrix<f64>) -> Vec<String> {
     let mut row = 0;
     let mut driven: Vec<(&str, Vec<usize>)> = vec![];
@@ -126,12 +127,13 @@ fn redundant(mechanism: &Mechanism, linkage: &Linkage, kernel: &DMatrix<f64>) ->
     driven.into_iter().filter(|(_, rows)| spare(rows)).map(|(name, _)| name.to_owned()).collect()
 }
 
-/// Rank of rows taken from orthonormal columns, whose natural size is one.
+/// The rank of rows taken from orthonormal columns. The natural size of these rows is one, so the
+/// tolerance is absolute.
 fn absolute_rank(matrix: DMatrix<f64>) -> usize {
     singular_values(matrix).iter().filter(|&&value| value > TOLERANCE).count()
 }
 
-/// Motions of the platform with every actuator locked.
+/// The motions of the platform with every actuator locked.
 fn loose(linkage: &Linkage) -> Vec<SubspaceClass> {
     let passive = linkage.passive(&linkage.units(&linkage.home()));
     let kernel = Svd::new(loop_closure(&passive)).kernel(TOLERANCE);
@@ -141,8 +143,8 @@ fn loose(linkage: &Linkage) -> Vec<SubspaceClass> {
     twists.vectors().iter().filter_map(motion).collect()
 }
 
-/// Span of the columns of a 6 × n block of orthonormal columns: those that are all but zero (idle
-/// motions) do not count, whatever the size of the others.
+/// The span of the columns of a 6 × n block of orthonormal columns. Columns that are nearly zero
+/// (idle motions) do not count, whatever the size of the others.
 fn span(block: &DMatrix<f64>) -> Basis {
     let svd = Svd::new(block.clone());
     let columns: Vec<Vector6<f64>> = (0..svd.values.len())
@@ -152,7 +154,7 @@ fn span(block: &DMatrix<f64>) -> Basis {
     Basis::span(&columns)
 }
 
-/// The normalised frame of a mechanism: from all its joint axes, and their points as given.
+/// The normalised frame of a mechanism, from all its joint axes and their points as given.
 pub fn frame(mechanism: &Mechanism) -> Frame {
     let axes: Vec<_> = mechanism
         .joints()

@@ -1,4 +1,4 @@
-//! Mechanisms to test with, placed joint by joint from their geometry. Lengths in metres.
+//! Mechanisms for tests, built joint by joint from their geometry. Lengths are in metres.
 
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointKind};
@@ -27,7 +27,8 @@ pub(crate) fn spherical(point: Point3<f64>) -> Joint {
     Joint::new("", JointKind::Spherical, Vector3::z_axis(), point)
 }
 
-/// A mechanism of these legs, its joints named by leg and place: `leg2.1` is the first of `leg2`.
+/// A mechanism with these legs. Joints are named by leg and position: `leg2.1` is the first of
+/// `leg2`.
 pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
     let leg = |(i, joints): (usize, Vec<Joint>)| {
         let name = format!("leg{}", i + 1);
@@ -48,7 +49,7 @@ fn direction(angle: f64) -> Unit<Vector3<f64>> {
     unit(angle.cos(), angle.sin(), 0.0)
 }
 
-/// Manipulator 1: 3-PRR(RR) + RRS, at x = y = 0 and no rotation.
+/// Manipulator 1 of the paper: 3-PRR(RR) + RRS, at x = y = 0 and without rotation.
 #[derive(Clone, Debug)]
 pub(crate) struct PlanoSpherical {
     pub alpha: [f64; 3],
@@ -79,8 +80,8 @@ impl Default for PlanoSpherical {
 }
 
 impl PlanoSpherical {
-    /// `w_i` and the imaginary angle `theta_1i` of the first branch, NOTES' Eqs. 2 and 3; `None`
-    /// if the leg cannot be assembled.
+    /// The axis `w_i` and the imaginary angle `theta_1i` of the first branch (NOTES, Eqs. 2 and 3);
+    /// `None` if the leg cannot be assembled.
     pub fn upper(&self, i: usize) -> Option<(Vector3<f64>, f64)> {
         let rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.eta[i])
             * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.beta);
@@ -90,7 +91,7 @@ impl PlanoSpherical {
         (k.abs() < 1.0).then(|| (w, w.y.atan2(w.x) + k.asin()))
     }
 
-    /// `None` if some leg cannot be assembled here.
+    /// The mechanism; `None` if a leg cannot be assembled.
     pub fn try_mechanism(&self) -> Option<Mechanism> {
         let mut legs = vec![];
         for i in 0..3 {
@@ -130,7 +131,7 @@ impl PlanoSpherical {
     }
 }
 
-/// Manipulator 2: 2-PPR + PPH, printed parameters, its axis along 255 degrees.
+/// Manipulator 2 of the paper: 2-PPR + PPH with the printed parameters, its axis at 255 degrees.
 pub(crate) fn translational_helical() -> Mechanism {
     let axis = direction(255.0_f64.to_radians());
     let legs = [(210.0_f64, true), (330.0, false), (90.0, false)];
@@ -165,7 +166,7 @@ pub(crate) fn bennett() -> Mechanism {
     )
 }
 
-/// Pseudo-random numbers in (-1, 1), the same in every run.
+/// Pseudo-random numbers in (-1, 1), which are the same in every run.
 pub(crate) struct Numbers(u64);
 
 impl Numbers {
@@ -173,7 +174,7 @@ impl Numbers {
         Self(seed)
     }
 
-    /// Splitmix64.
+    /// The next number, by the generator SplitMix64.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -195,24 +196,24 @@ impl Numbers {
         }
     }
 
-    /// A rotation by any angle and a translation of up to `reach`.
+    /// A rotation by any angle, and a translation of at most `reach`.
     pub fn displacement(&mut self, reach: f64) -> Isometry3<f64> {
         let rotation = UnitQuaternion::from_axis_angle(&self.direction(), 3.0 * self.next());
         Isometry3::from_parts((self.vector() * reach).into(), rotation)
     }
 }
 
-/// What the revolute joints of one section have in common.
+/// The common geometry of the revolute joints of one section.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Section {
+pub(crate) enum CommonGeometry {
     Spherical(Point3<f64>),
     Planar(Unit<Vector3<f64>>),
 }
 
-/// Legs of revolute joints, so many in each of two sections; the first joint of every leg and then
-/// second ones are actuated, `actuators` in all.
+/// A mechanism of legs with revolute joints, with given numbers of joints in each of two sections.
+/// The first joint of every leg is actuated, then second ones, up to `actuators` in all.
 pub(crate) fn two_sections(
-    sections: [Section; 2],
+    sections: [CommonGeometry; 2],
     pattern: &[[usize; 2]],
     actuators: usize,
     numbers: &mut Numbers,
@@ -223,8 +224,8 @@ pub(crate) fn two_sections(
         for (section, count) in sections.iter().zip(counts) {
             for _ in 0..*count {
                 joints.push(match section {
-                    Section::Spherical(centre) => revolute(numbers.direction(), *centre),
-                    Section::Planar(normal) => {
+                    CommonGeometry::Spherical(centre) => revolute(numbers.direction(), *centre),
+                    CommonGeometry::Planar(normal) => {
                         revolute(*normal, Point3::from(numbers.vector() * 0.3))
                     }
                 });
@@ -243,14 +244,14 @@ pub(crate) fn two_sections(
 pub(crate) fn two_spherical(numbers: &mut Numbers) -> Mechanism {
     let centres = [Point3::new(0.1, 0.0, 0.05), Point3::new(-0.1, 0.2, 0.3)];
     let pattern = [[3, 2], [3, 2], [3, 2], [2, 3]];
-    two_sections(centres.map(Section::Spherical), &pattern, 5, numbers)
+    two_sections(centres.map(CommonGeometry::Spherical), &pattern, 5, numbers)
 }
 
 /// Three (3,2) legs and a (2,3) leg of two planar subspaces.
 pub(crate) fn two_planar(numbers: &mut Numbers) -> Mechanism {
     let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)];
     let pattern = [[3, 2], [3, 2], [3, 2], [2, 3]];
-    two_sections(normals.map(Section::Planar), &pattern, 5, numbers)
+    two_sections(normals.map(CommonGeometry::Planar), &pattern, 5, numbers)
 }
 
 /// Three RRR|R legs with their last axes on one line in the plane, and a leg R R P | H on it.
@@ -281,7 +282,7 @@ pub(crate) fn planar_cylindrical() -> Mechanism {
     )
 }
 
-/// A Gough platform, 6-UPS, irregular enough to be away from its singularities.
+/// A Gough platform, 6-UPS, irregular enough not to be singular.
 pub(crate) fn gough(numbers: &mut Numbers) -> Mechanism {
     let leg = |i: usize| {
         let turn = |x: f64| direction(x.to_radians()).into_inner();
@@ -301,7 +302,7 @@ pub(crate) fn gough(numbers: &mut Numbers) -> Mechanism {
     mechanism("gough", (0..6).map(leg).collect())
 }
 
-/// The whole mechanism moved by a rigid displacement.
+/// The mechanism displaced as a rigid body.
 pub(crate) fn displaced(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
     edited(mechanism, |joint| {
         let turn = |axis: Unit<Vector3<f64>>| Unit::new_normalize(g.rotation * axis.into_inner());
@@ -313,7 +314,7 @@ pub(crate) fn displaced(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism 
     })
 }
 
-/// The whole mechanism with its lengths multiplied.
+/// The mechanism with all lengths multiplied by a factor.
 pub(crate) fn scaled(mechanism: &Mechanism, factor: f64) -> Mechanism {
     edited(mechanism, |joint| {
         joint.point *= factor;
@@ -323,7 +324,7 @@ pub(crate) fn scaled(mechanism: &Mechanism, factor: f64) -> Mechanism {
     })
 }
 
-/// All numbers as they look when written with six significant digits.
+/// All numbers rounded to six significant digits.
 pub(crate) fn rounded(mechanism: &Mechanism) -> Mechanism {
     let digits = |x: f64| format!("{x:.5e}").parse::<f64>().expect("a number");
     let direction = |axis: Unit<Vector3<f64>>| Unit::new_normalize(axis.map(digits));
@@ -344,7 +345,7 @@ fn edited(mechanism: &Mechanism, mut edit: impl FnMut(&mut Joint)) -> Mechanism 
     edited
 }
 
-/// Sine of the angle between a joint's own screw and another, for checks of directions.
+/// Sine of the angle between a joint's screw and another screw, for checks of directions.
 pub(crate) fn same_line(a: &Screw, b: &Screw) -> f64 {
     let (a, b) = (a.to_vector().normalize(), b.to_vector().normalize());
     (a - b * a.dot(&b)).norm()

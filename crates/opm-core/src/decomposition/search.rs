@@ -1,5 +1,5 @@
-//! Every way to cut every leg, depth first over the legs, without those that cannot become two
-//! proper subgroups.
+//! Depth-first search, leg by leg, over every way to split every leg. Branches that cannot become
+//! two proper subgroups are pruned.
 
 use super::Freedom;
 use crate::group::subspace::{Basis, Frame};
@@ -7,21 +7,21 @@ use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
 
-/// While screws are gathered, a bracket or screw counts as a new direction only if it is this far
-/// out. Larger than any rounding, even enlarged by brackets of screws at a small angle: a branch
-/// must never be cut by an error. Missing a true direction only costs time, since what is left at
-/// the end is fitted with the proper tolerance.
+/// While screws are collected, a bracket or a screw counts as a new direction only if its component
+/// outside the span is this large. That is larger than any rounding, even if brackets of nearly
+/// parallel screws amplify it, because an error must never prune a valid branch. A true direction
+/// that is missed only costs time: the complete split is fitted with the proper tolerance.
 const CLEARLY_NEW: f64 = 0.05;
 
-/// The freedoms of one leg in two parts, with their unit normalised screws.
-pub(super) struct Cut {
+/// A way to split one leg: its freedoms in two parts, with their unit normalised screws.
+pub(super) struct SplitCandidate {
     pub lower: Vec<Freedom>,
     pub upper: Vec<Freedom>,
-    /// Screws of the lower part, then of the upper.
+    /// The screws of the lower part, followed by those of the upper part.
     screws: Vec<Vector6<f64>>,
 }
 
-impl Cut {
+impl SplitCandidate {
     pub fn lower_screws(&self) -> &[Vector6<f64>] {
         &self.screws[..self.lower.len()]
     }
@@ -31,10 +31,10 @@ impl Cut {
     }
 }
 
-/// The cuts of a leg, longest lower part first: between joints, within a universal joint, and
-/// within a cylindrical joint either way round, since its two freedoms commute. A spherical joint
-/// stays whole.
-pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
+/// The ways to split a leg, longest lower part first: between joints, within a universal joint, and
+/// within a cylindrical joint in both orders, since its two freedoms commute. A spherical joint is
+/// never split.
+pub(super) fn candidates(leg: &Leg, frame: &Frame) -> Vec<SplitCandidate> {
     let freedoms: Vec<(Freedom, Vector6<f64>)> = leg
         .joints
         .iter()
@@ -45,13 +45,13 @@ pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
             j.screws().into_iter().enumerate().map(unit).collect::<Vec<_>>()
         })
         .collect();
-    let cut = |freedoms: &[(Freedom, Vector6<f64>)], at: usize| {
+    let split = |freedoms: &[(Freedom, Vector6<f64>)], at: usize| {
         let (lower, upper) = freedoms.split_at(at);
         let names = |part: &[(Freedom, _)]| part.iter().map(|(freedom, _)| *freedom).collect();
         let screws = freedoms.iter().map(|(_, screw)| *screw).collect();
-        Cut { lower: names(lower), upper: names(upper), screws }
+        SplitCandidate { lower: names(lower), upper: names(upper), screws }
     };
-    let mut cuts = vec![];
+    let mut candidates = vec![];
     for at in (0..=freedoms.len()).rev() {
         let above = freedoms.get(at).map(|(freedom, _)| *freedom).filter(|above| above.index > 0);
         match above.map(|above| leg.joints[above.joint].kind) {
@@ -59,60 +59,62 @@ pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
             Some(JointKind::Cylindrical) => {
                 let mut swapped = freedoms.clone();
                 swapped.swap(at - 1, at);
-                cuts.push(cut(&freedoms, at));
-                cuts.push(cut(&swapped, at));
+                candidates.push(split(&freedoms, at));
+                candidates.push(split(&swapped, at));
             }
-            _ => cuts.push(cut(&freedoms, at)),
+            _ => candidates.push(split(&freedoms, at)),
         }
     }
-    cuts
+    candidates
 }
 
-/// Calls `accept` with every split, one cut a leg, that may consist of two subgroups; stops when
-/// that returns false. Returns the number of partial splits looked at.
+/// Calls `accept` with every split that may consist of two subgroups, given as one candidate per
+/// leg. Stops when `accept` returns false. Returns the number of partial splits visited.
 pub(super) fn splits(
-    cuts: &[Vec<Cut>],
+    candidates: &[Vec<SplitCandidate>],
     lambda: usize,
-    accept: &mut dyn FnMut(&[&Cut]) -> bool,
+    accept: &mut dyn FnMut(&[&SplitCandidate]) -> bool,
 ) -> usize {
-    let mut search = Search { cuts, lambda, accept, chosen: vec![], visited: 0, stopped: false };
+    let mut search =
+        Search { candidates, lambda, accept, chosen: vec![], visited: 0, stopped: false };
     search.descend(Basis::EMPTY, Basis::EMPTY);
     search.visited
 }
 
 struct Search<'a, 'f> {
-    cuts: &'a [Vec<Cut>],
+    candidates: &'a [Vec<SplitCandidate>],
     lambda: usize,
-    accept: &'f mut dyn FnMut(&[&Cut]) -> bool,
-    chosen: Vec<&'a Cut>,
+    accept: &'f mut dyn FnMut(&[&SplitCandidate]) -> bool,
+    chosen: Vec<&'a SplitCandidate>,
     visited: usize,
     stopped: bool,
 }
 
 impl<'a> Search<'a, '_> {
-    /// Cuts the next leg; `lower` and `upper` are closures of the screws gathered so far.
+    /// Splits the next leg; `lower` and `upper` are the closures of the screws collected so far.
     fn descend(&mut self, lower: Basis, upper: Basis) {
-        let Some(cuts) = self.cuts.get(self.chosen.len()) else {
+        let Some(candidates) = self.candidates.get(self.chosen.len()) else {
             self.stopped = !(self.accept)(&self.chosen);
             return;
         };
-        for cut in cuts {
+        for candidate in candidates {
             if self.stopped {
                 return;
             }
             self.visited += 1;
-            let lower = enlarged(lower, cut.lower_screws());
-            let upper = enlarged(upper, cut.upper_screws());
+            let lower = enlarged(lower, candidate.lower_screws());
+            let upper = enlarged(upper, candidate.upper_screws());
             if self.possible(&lower, &upper) {
-                self.chosen.push(cut);
+                self.chosen.push(candidate);
                 self.descend(lower, upper);
                 self.chosen.pop();
             }
         }
     }
 
-    /// Two proper subalgebras that meet in one dimension and together span lambda have lambda + 1
-    /// dimensions between them; their parts have no more, and meet in no more.
+    /// Two proper subalgebras that intersect in one dimension and together span lambda dimensions
+    /// have lambda + 1 dimensions between them. Subspaces of them have no more than that, and their
+    /// intersection has at most one dimension.
     fn possible(&self, lower: &Basis, upper: &Basis) -> bool {
         let (a, b) = (lower.dimension(), upper.dimension());
         a < self.lambda

@@ -6,17 +6,18 @@ use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{DMatrix, Isometry3, Point3, Unit, Vector3};
 use proptest::prelude::*;
 
-/// Geometry fitted to exact joints, relative to the mechanism: rounding of a few dozen operations.
+/// Tolerance for geometry fitted to exact joints, relative to the mechanism's size: the rounding of
+/// a few dozen operations.
 const EXACT: f64 = 1e-13;
 
-/// λ, N, J and M of a decomposition.
+/// The numbers λ, N, J and M of a decomposition.
 type Counts = [usize; 4];
 
 fn counts(d: &Decomposition) -> Counts {
     [d.lambda, d.mobility, d.imaginary_joints, d.first_section_motions]
 }
 
-/// Lower and upper freedoms of every leg, and whether it has an imaginary joint.
+/// The lower and upper freedoms of every leg, and whether it has an imaginary joint.
 fn pattern(d: &Decomposition) -> Vec<(usize, usize, bool)> {
     d.legs.iter().map(|leg| (leg.lower.len(), leg.upper.len(), leg.imaginary)).collect()
 }
@@ -105,7 +106,7 @@ fn two_planar_subspaces() {
 /// Four RRR|RR legs have more imaginary joints than their upper section has freedoms.
 #[test]
 fn redundant_imaginary_joints() {
-    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(Section::Planar);
+    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(CommonGeometry::Planar);
     let mechanism = two_sections(normals, &[[3, 2]; 4], 5, &mut Numbers::new(5));
     let d = only(&mechanism);
     assert_eq!(counts(&d), [5, 5, 3, 2]);
@@ -113,11 +114,11 @@ fn redundant_imaginary_joints() {
     assert_eq!((d.upper_mobility, d.redundancy), (0, 1));
 }
 
-/// With two RR|RR legs the lower section has just the freedoms of the mechanism, and no single
-/// imaginary joint would move the upper section; but all four together do, and so they must be there.
+/// With two RR|RR legs, the lower section has exactly the freedoms of the mechanism, and no single
+/// imaginary joint moves the upper section. All four together do, so all of them must be there.
 #[test]
 fn imaginary_joints_that_only_move_together() {
-    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(Section::Planar);
+    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(CommonGeometry::Planar);
     let legs = [[3, 2], [3, 2], [2, 2], [2, 2]];
     let d = only(&two_sections(normals, &legs, 3, &mut Numbers::new(5)));
     assert_eq!(counts(&d), [5, 3, 3, 0]);
@@ -138,16 +139,47 @@ fn planar_and_cylindrical_subspaces() {
 #[test]
 fn a_gough_platform_has_no_partial_subspaces() {
     let error = decompose(&gough(&mut Numbers::new(1))).unwrap_err();
-    assert_eq!(error, DecomposeError::NoPartialSubspaces { lambda: 6, mobility: 6, odd: None });
+    let subspace = Some(SubspaceClass::Full);
+    let expected = DecomposeError::NoPartialSubspaces {
+        lambda: 6,
+        mobility: 6,
+        odd: None,
+        miss: None,
+        subspace,
+    };
+    assert_eq!(error, expected);
+    assert_eq!(
+        error.to_string(),
+        "no partial subspaces (lambda = 6, mobility N = 6): the joints of all legs together move in \
+         all six dimensions; opm needs legs that split between two subgroups of less than 6 \
+         dimensions that share a one-parameter motion"
+    );
 }
 
-/// A joint along the intersection motion may be counted to either section.
+/// A revolute joint that passes the common centre is named, with its distance from the centre.
+#[test]
+fn a_joint_that_misses_the_centre_is_named() {
+    let mut mechanism = PlanoSpherical::default().mechanism();
+    let joint = &mut mechanism.legs[1].joints[4];
+    let across = joint.axis.cross(&Vector3::x()).normalize();
+    joint.point += across * 4.3e-3;
+    let error = decompose(&mechanism).unwrap_err();
+    let DecomposeError::NoPartialSubspaces { odd: Some(odd), miss: Some(miss), .. } = &error else {
+        panic!("{error}")
+    };
+    assert_eq!(odd, &["leg2".to_owned(), "leg2.5".to_owned()]);
+    assert_eq!(miss.subspace.name(), "spherical");
+    assert!((miss.distance.unwrap() - 4.3e-3).abs() < 1e-12, "{miss}");
+    assert!(error.to_string().contains("by 4.300e-3 m"), "{error}");
+}
+
+/// A joint along the intersection motion may belong to either section.
 #[test]
 fn every_decomposition_is_listed_and_a_passive_upper_section_is_preferred() {
     let mut mechanism = PlanoSpherical::default().mechanism();
     let leg = &mut mechanism.legs[0].joints;
     leg[2].point = Point3::new(0.0, 0.0, 0.4);
-    // The slider has no lever on such a joint; a motor on the joint itself does.
+    // The slider has no lever arm on such a joint; a motor on the joint itself has.
     leg[0].actuated = false;
     leg[2].actuated = true;
     let found = decompose(&mechanism).unwrap();
@@ -156,18 +188,19 @@ fn every_decomposition_is_listed_and_a_passive_upper_section_is_preferred() {
     assert!(found.iter().all(|d| counts(d)[1..] == counts(&found[0])[1..]));
 }
 
-/// Multi-degree joints in place of single ones: the cut goes through them.
+/// Joints with several freedoms in place of single ones: the split goes through them.
 #[test]
 fn cuts_within_universal_and_cylindrical_joints() {
     let mut mechanism = planar_cylindrical();
     let leg = &mut mechanism.legs[0].joints;
-    // The third joint turns about z, the fourth about x: with a common point, a universal joint.
+    // The third joint rotates about z, the fourth about x: with a common point they are a universal
+    // joint.
     let corner = Point3::new(leg[2].point.x, 0.0, 0.0);
     let kind = JointKind::Universal { second: leg[3].axis };
     leg.truncate(2);
     leg.push(Joint::new("u", kind, Vector3::z_axis(), corner));
-    // A fifth leg that ends in a cylindrical joint along x: its slide lies along the intersection
-    // motion, so it may be on either side of the cut; its turn can only be in the upper section.
+    // A fifth leg ends in a cylindrical joint along x. Its translation is along the intersection
+    // motion, so it may belong to either section; its rotation can only be in the upper section.
     let kind = JointKind::Cylindrical;
     let fifth = vec![
         revolute(Vector3::z_axis(), Point3::new(0.3, -0.3, 0.0)),
@@ -185,7 +218,7 @@ fn cuts_within_universal_and_cylindrical_joints() {
         assert_eq!(ends(d, 0), (freedom(2, 0), freedom(2, 1)));
         assert_eq!((d.lower.name(), d.upper.name()), ("planar", "cylindrical"));
     }
-    // Preferred is the cut that leaves the cylindrical joint whole.
+    // The split that leaves the cylindrical joint whole is preferred.
     let ways: Vec<_> = found.iter().map(|d| ends(d, 4)).collect();
     assert_eq!(ways, [(freedom(1, 0), freedom(2, 0)), (freedom(2, 1), freedom(2, 0))]);
     for d in &found {
@@ -196,9 +229,9 @@ fn cuts_within_universal_and_cylindrical_joints() {
 }
 
 #[test]
-fn structures_and_missing_actuators_are_told() {
+fn structures_and_missing_actuators_are_reported() {
     let mut numbers = Numbers::new(7);
-    let two = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(Section::Planar);
+    let two = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(CommonGeometry::Planar);
     let rigid = two_sections(two, &[[2, 1]; 4], 1, &mut numbers);
     assert_eq!(decompose(&rigid), Err(DecomposeError::NoFreedom { lambda: 5 }));
 
@@ -208,7 +241,7 @@ fn structures_and_missing_actuators_are_told() {
 }
 
 #[test]
-fn a_loose_platform_is_told_with_its_motion() {
+fn a_loose_platform_is_reported_with_its_motion() {
     let mut mechanism = PlanoSpherical::default().mechanism();
     mechanism.legs[3].joints[1].actuated = false;
     let error = decompose(&mechanism).unwrap_err();
@@ -216,16 +249,16 @@ fn a_loose_platform_is_told_with_its_motion() {
         panic!("{error}")
     };
     assert_eq!(free.len(), 1);
-    // The upper arm's end can only turn about its base, elbow locked no more: P moves square to
-    // the arm's outer link about the elbow.
+    // With the elbow locked, the upper arm's end can only rotate about its base. P moves
+    // perpendicular to the arm's outer link about the elbow.
     let motion = &free[0].screws()[0];
     let elbow = mechanism.legs[3].joints[1].point;
     assert!(motion.linear.dot(&(Point3::origin() - elbow)).abs() < 1e-12);
-    assert!(error.to_string().contains("leave the platform loose: 4 actuated freedoms control 4"));
+    assert!(error.to_string().contains("4 actuated freedoms control 4"));
 }
 
 #[test]
-fn legs_that_are_missing_are_told() {
+fn legs_that_are_missing_are_reported() {
     let mut mechanism = bennett();
     mechanism.legs[1].joints.clear();
     let error = decompose(&mechanism).unwrap_err();
@@ -236,7 +269,7 @@ fn legs_that_are_missing_are_told() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_are_told() {
+fn numbers_that_are_not_finite_are_reported() {
     for bad in [f64::NAN, f64::INFINITY, 1e200] {
         let mut mechanism = bennett();
         mechanism.legs[1].joints[2].point.y = bad;
@@ -248,22 +281,26 @@ fn numbers_that_are_not_finite_are_told() {
 #[test]
 fn six_legs_of_six_joints_visit_few_splits() {
     // Each has 7^6 = 117649 splits, or 5^6 where spherical joints stay whole.
-    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(Section::Planar);
+    let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(CommonGeometry::Planar);
     let redundant = two_sections(normals, &[[3, 3]; 6], 11, &mut Numbers::new(8));
     let spherical = [Point3::new(0.1, 0.0, 0.05), Point3::new(-0.1, 0.2, 0.3)];
-    let pairs =
-        two_sections(spherical.map(Section::Spherical), &[[3, 3]; 6], 11, &mut Numbers::new(9));
+    let pairs = two_sections(
+        spherical.map(CommonGeometry::Spherical),
+        &[[3, 3]; 6],
+        11,
+        &mut Numbers::new(9),
+    );
     let gough = gough(&mut Numbers::new(1));
     for (mechanism, ways) in [(&redundant, 1), (&pairs, 1), (&gough, 0)] {
         let report = crate::decomposition::mobility::mobility(mechanism).unwrap();
         let (found, visited) = search(mechanism, report.lambda, report.mobility);
         assert_eq!(found.len(), ways);
-        // A leg offers seven cuts; all but one are dropped at once.
+        // A leg has seven candidates; six of them are dropped at once.
         assert!(visited <= 7 * 6, "{}: {visited}", mechanism.name);
     }
 }
 
-/// The mechanisms above whose decomposition is known, by number; the random ones regular.
+/// The mechanisms above whose decomposition is known, by number; the random ones are regular.
 fn sample(which: usize, seed: u64) -> Mechanism {
     let numbers = &mut Numbers::new(seed);
     match which {
@@ -276,8 +313,8 @@ fn sample(which: usize, seed: u64) -> Mechanism {
     }
 }
 
-/// The first mechanism whose legs and whose actuators are far from singular: smallest singular
-/// values, by nalgebra's decomposition, of what must have full rank.
+/// The first mechanism whose legs and actuators are far from singular. The measure is the smallest
+/// singular value, by nalgebra's decomposition, of matrices that must have full rank.
 fn regular(mut draw: impl FnMut() -> Mechanism) -> Mechanism {
     const FAR: f64 = 1e-3;
     let smallest = |matrix: DMatrix<f64>| matrix.singular_values().min();
@@ -320,7 +357,8 @@ fn moved(class: &SubspaceClass, g: &Isometry3<f64>) -> SubspaceClass {
     }
 }
 
-/// Largest difference of two classes of one kind, axes taken as lines; lengths over `size`.
+/// Largest difference between two classes of one kind. Axes are compared as lines; lengths are
+/// divided by `size`.
 fn difference(a: &SubspaceClass, b: &SubspaceClass, size: f64) -> f64 {
     use SubspaceClass::*;
     let axes = |a: &Unit<Vector3<f64>>, b: &Unit<Vector3<f64>>| a.cross(b).norm();
@@ -331,7 +369,7 @@ fn difference(a: &SubspaceClass, b: &SubspaceClass, size: f64) -> f64 {
         | (Planar { normal: a }, Planar { normal: b }) => axes(a, b),
         (Rotation { axis: a, point: p }, Rotation { axis: b, point: q })
         | (Cylindrical { axis: a, point: p }, Cylindrical { axis: b, point: q }) => {
-            // Points of one line, each nearest to its base's origin.
+            // Points on one line, each nearest to the origin of its base.
             let apart = p - q;
             axes(a, b).max(points(p, &(q + a.into_inner() * a.dot(&apart))))
         }
@@ -357,7 +395,7 @@ proptest! {
         let (here, there) = (only(&mechanism), only(&displaced(&mechanism, &g)));
         prop_assert_eq!(&here.legs, &there.legs);
         prop_assert_eq!(counts(&here), counts(&there));
-        // Points several sizes away lose as many times their rounding.
+        // Points several sizes away lose several times as many digits.
         prop_assert!(deviation(&here, &there, &g, frame(&mechanism).length) < 100.0 * EXACT);
     }
 
@@ -397,7 +435,8 @@ proptest! {
         prop_assert!(difference(&here.upper, &back, frame(&mechanism).length) < 10.0 * EXACT);
     }
 
-    /// Six significant digits, anywhere within a few metres: five sizes of these mechanisms.
+    /// Six significant digits, anywhere within a few metres: five times the size of these
+    /// mechanisms.
     #[test]
     fn decomposition_survives_six_digits(
         which in 0..SAMPLES, seed in 0..20_u64, reach in 0.0..1.5,

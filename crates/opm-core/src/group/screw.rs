@@ -1,43 +1,45 @@
-//! Screws: the joint axes and the velocities of rigid bodies, in one six-vector each.
+//! Screws: joint axes and velocities of rigid bodies, as six-vectors.
 //!
-//! A twist is written `(ω; v)`: angular velocity first, then the velocity of the body's point that
-//! passes through the origin. A joint's screw is the twist of its unit rate.
+//! A twist is written `(ω; v)`: the angular velocity first, then the velocity of the body's point
+//! that is at the origin. A joint's screw is the twist of its outer link at unit joint rate.
 
 use nalgebra::{Isometry3, Point3, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
 
-/// A twist `(ω; v)` in base coordinates: radians and metres per unit of the joint's own coordinate.
+/// A twist `(ω; v)` in base coordinates: radians and metres per unit of the joint's coordinate
+/// (a radian or a metre).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screw {
-    /// Angular part `ω`.
+    /// The angular part `ω`.
     pub angular: Vector3<f64>,
-    /// Linear part `v`: the velocity of the point at the origin.
+    /// The linear part `v`: the velocity of the body's point at the origin.
     pub linear: Vector3<f64>,
 }
 
 impl Screw {
-    /// Unit rotation about the line through `point` along `axis`: `(a; p × a)`.
+    /// The screw of a unit rotation about the line through `point` along `axis`: `(a; p × a)`.
     pub fn rotation(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Self {
         Self::helical(axis, point, 0.0)
     }
 
-    /// Unit translation along `axis`: `(0; a)`.
+    /// The screw of a unit translation along `axis`: `(0; a)`.
     pub fn translation(axis: Unit<Vector3<f64>>) -> Self {
         Self { angular: Vector3::zeros(), linear: axis.into_inner() }
     }
 
-    /// Unit rotation about a line with `pitch` metres of advance a radian: `(a; p × a + h a)`.
+    /// The screw of a unit rotation about a line with an advance of `pitch` metres per radian:
+    /// `(a; p × a + h a)`.
     pub fn helical(axis: Unit<Vector3<f64>>, point: Point3<f64>, pitch: f64) -> Self {
         let a = axis.into_inner();
         Self { angular: a, linear: point.coords.cross(&a) + pitch * a }
     }
 
-    /// The six components, angular part first.
+    /// The six components `(ω; v)`, angular part first.
     pub fn to_vector(self) -> Vector6<f64> {
         let (w, v) = (self.angular, self.linear);
         Vector6::new(w.x, w.y, w.z, v.x, v.y, v.z)
     }
 
-    /// From six components, angular part first.
+    /// Builds a screw from its six components `(ω; v)`, angular part first.
     pub fn from_vector(s: &Vector6<f64>) -> Self {
         Self {
             angular: s.fixed_rows::<3>(0).into_owned(),
@@ -45,8 +47,8 @@ impl Screw {
         }
     }
 
-    /// Lie bracket `[self, other]`, the derivative of one twist carried along by the other:
-    /// `(ω₁ × ω₂; ω₁ × v₂ + v₁ × ω₂)`.
+    /// The Lie bracket `[self, other] = (ω₁ × ω₂; ω₁ × v₂ + v₁ × ω₂)`: the rate of change of `other`
+    /// when it moves with `self`.
     pub fn bracket(&self, other: &Self) -> Self {
         Self {
             angular: self.angular.cross(&other.angular),
@@ -54,24 +56,25 @@ impl Screw {
         }
     }
 
-    /// Reciprocal product `ω₁·v₂ + v₁·ω₂`: the power of one, read as a wrench, on the other.
+    /// The reciprocal product `ω₁·v₂ + v₁·ω₂`: the power of one screw, as a wrench, on the other, as a
+    /// twist.
     pub fn reciprocal(&self, other: &Self) -> f64 {
         self.angular.dot(&other.linear) + self.linear.dot(&other.angular)
     }
 
-    /// The same screw on a body displaced by `g` (adjoint action).
+    /// The screw displaced by `g`, that is, the adjoint action of `g`.
     pub fn transformed(&self, g: &Isometry3<f64>) -> Self {
         let angular = g.rotation * self.angular;
         let linear = g.rotation * self.linear + g.translation.vector.cross(&angular);
         Self { angular, linear }
     }
 
-    /// Displacement after moving along this screw for `amount` of its coordinate.
+    /// The displacement `exp(self · amount)`: motion along the screw by `amount` of its coordinate.
     pub fn exp(&self, amount: f64) -> Isometry3<f64> {
-        let (turn, slide) = (self.angular * amount, self.linear * amount);
-        let angle = turn.norm();
-        // sin θ / θ, (1 − cos θ) / θ², (θ − sin θ) / θ³ and sin(θ/2) / θ. No difference is divided
-        // here whose rounding would matter: θ² multiplies the third one again.
+        let (angular, linear) = (self.angular * amount, self.linear * amount);
+        let angle = angular.norm();
+        // The coefficients sin θ / θ, (1 − cos θ) / θ², (θ − sin θ) / θ³ and sin(θ/2) / θ. The
+        // cancellation in the third one does no harm: it is multiplied by θ² again.
         let (sin, cos) = (0.5 * angle).sin_cos();
         let [first, second, third, half] = if angle < SMALL_ANGLE {
             [1.0, 0.5, 1.0 / 6.0, 0.5]
@@ -80,14 +83,14 @@ impl Screw {
             let square = angle * angle;
             [first, 2.0 * sin * sin / square, (1.0 - first) / square, sin / angle]
         };
-        let along = turn * turn.dot(&slide);
-        let translation = slide * first + turn.cross(&slide) * second + along * third;
-        let rotation = Quaternion::from_parts(cos, turn * half);
+        let along = angular * angular.dot(&linear);
+        let translation = linear * first + angular.cross(&linear) * second + along * third;
+        let rotation = Quaternion::from_parts(cos, angular * half);
         Isometry3::from_parts(translation.into(), UnitQuaternion::new_unchecked(rotation))
     }
 }
 
-/// Below it the square of an angle is lost beside one.
+/// The square of an angle (in radians) below this one vanishes beside 1 in double precision.
 const SMALL_ANGLE: f64 = 1e-8;
 
 #[cfg(test)]
@@ -98,7 +101,7 @@ mod tests {
 
     /// Rounding of a few dozen operations on numbers up to about ten.
     const ROUNDING: f64 = 1e-12;
-    /// Central differences of step 1e-5 are good to its square, times a third derivative.
+    /// The error of central differences with this step is its square times a third derivative.
     const STEP: f64 = 1e-5;
     const DIFFERENCE: f64 = 1e-8;
 
@@ -106,7 +109,7 @@ mod tests {
         [-2.0..2.0, -2.0..2.0, -2.0..2.0].prop_map(Vector3::from)
     }
 
-    /// Screws with an angular part of any size, tiny and zero included.
+    /// Screws with an angular part of any size, including tiny and zero.
     fn screw() -> impl Strategy<Value = Screw> {
         let size = prop_oneof![Just(1.0), Just(0.0), (-12.0..0.0).prop_map(|e| 10.0_f64.powf(e))];
         (vector(), vector(), size).prop_map(|(w, linear, size)| Screw { angular: w * size, linear })
@@ -186,8 +189,8 @@ mod tests {
 
         #[test]
         fn bracket_obeys_jacobi(a in screw(), b in screw(), c in screw()) {
-            let turn = |x: &Screw, y: &Screw, z: &Screw| x.bracket(&y.bracket(z)).to_vector();
-            let sum = turn(&a, &b, &c) + turn(&b, &c, &a) + turn(&c, &a, &b);
+            let nested = |x: &Screw, y: &Screw, z: &Screw| x.bracket(&y.bracket(z)).to_vector();
+            let sum = nested(&a, &b, &c) + nested(&b, &c, &a) + nested(&c, &a, &b);
             prop_assert!(sum.amax() < ROUNDING);
         }
 
@@ -215,7 +218,8 @@ mod tests {
         }
     }
 
-    /// Two lines: the reciprocal product of their rotations is minus distance times sine.
+    /// The reciprocal product of rotations about two lines is minus their distance times the sine of
+    /// the angle between them.
     #[test]
     fn reciprocal_product_of_two_lines() {
         let x_axis = Screw::rotation(Vector3::x_axis(), Point3::origin());

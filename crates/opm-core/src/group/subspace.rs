@@ -1,5 +1,5 @@
-//! Motion subspaces: what a set of joint screws spans, whether that is closed under the Lie bracket
-//! (so that its exponentials are a group of displacements), and which group it is.
+//! Motion subspaces: the span of a set of joint screws, whether that span is closed under the Lie
+//! bracket (so that its exponentials form a group of displacements), and which group it is.
 //!
 //! Up to conjugation SE(3) has a dozen kinds of connected subgroups (Hervé, "Analyse structurelle
 //! des mécanismes par groupe des déplacements", Mech. Mach. Theory 13, 1978): [`SubspaceClass`].
@@ -15,7 +15,7 @@ pub use frame::Frame;
 
 use crate::group::screw::Screw;
 
-/// What counts as zero beside the size of a mechanism, in every decision on rank and membership.
+/// The relative tolerance that counts as zero in every decision about rank and membership.
 ///
 /// Coordinates written with six significant digits are off by up to 5e-6 of their magnitude; after
 /// a displacement by several sizes of the mechanism that is some 1e-5 of its characteristic length,
@@ -23,8 +23,8 @@ use crate::group::screw::Screw;
 /// one ten-thousandth of a mechanism.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// The span of a set of screws, in a normalised frame: an orthonormal basis with the origin in the
-/// middle of the mechanism and lengths over its size.
+/// The span of a set of screws, stored as an orthonormal basis in a normalised frame: the origin is
+/// in the middle of the mechanism, and lengths are divided by the mechanism's size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSubspace {
     frame: Frame,
@@ -32,29 +32,30 @@ pub struct MotionSubspace {
 }
 
 impl MotionSubspace {
-    /// Span of screws in base coordinates; `frame` is that of the whole mechanism.
+    /// The span of screws given in base coordinates. `frame` is the frame of the whole mechanism.
     pub fn span(frame: Frame, screws: &[Screw]) -> Self {
         let vectors: Vec<_> = screws.iter().map(|screw| frame.unit(screw)).collect();
         Self { frame, basis: Basis::span(&vectors) }
     }
 
-    /// 0 to 6.
+    /// The dimension of the subspace, 0 to 6.
     pub fn dimension(&self) -> usize {
         self.basis.dimension()
     }
 
-    /// Independent screws that span it, in base coordinates.
+    /// Independent screws that span the subspace, in base coordinates.
     pub fn screws(&self) -> Vec<Screw> {
         self.basis.vectors().iter().map(|vector| self.frame.restored(vector)).collect()
     }
 
-    /// How far a screw is from being a member: the sine of its angle to the subspace in the
+    /// The distance of a screw from the subspace: the sine of the angle between them in the
     /// normalised frame, 0 to 1.
     pub fn distance(&self, screw: &Screw) -> f64 {
         self.basis.residual(&self.frame.unit(screw)).norm()
     }
 
-    /// Smallest subalgebra that contains it: brackets are added until none is new.
+    /// The smallest Lie subalgebra that contains the subspace: brackets are added until none is
+    /// new.
     #[must_use]
     pub fn closure(&self) -> Self {
         Self { frame: self.frame, basis: self.basis.closure(TOLERANCE) }
@@ -65,13 +66,14 @@ impl MotionSubspace {
         self.basis.bracket_excess() <= TOLERANCE
     }
 
-    /// What both contain; `other` is in the same frame.
+    /// The intersection with another subspace, which must have the same frame.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         Self { frame: self.frame, basis: self.basis.intersection(&other.basis) }
     }
 
-    /// The group that it generates, if it is closed under the bracket.
+    /// The group that the subspace generates; `None` if the subspace is not closed under the
+    /// bracket.
     pub fn class(&self) -> Option<SubspaceClass> {
         let fitted = fit(self.basis.vectors())?;
         Some(fitted.class.restored(&self.frame))

@@ -1,37 +1,38 @@
-//! Once through everything that a linkage can do without being taken apart.
+//! The full cycle of a linkage: everything that it can do without being taken apart.
 
-use super::range::{Fold, Span, Spans};
+use super::range::{ClosingSet, Fold, Span};
 use super::{Input, LinkageBranch};
 use crate::chain::Branch;
 use std::f64::consts::{PI, TAU};
 
-/// How far the ends of two branches that meet in a fold may be apart: the square root of rounding.
+/// How far apart the ends of two branches that meet in a fold may be: the square root of rounding.
 const MEET: f64 = 1e-6;
 
-/// More arcs than any cycle has: two signs, and up to twelve folds.
+/// More arcs than any cycle has: it has two signs and up to twelve folds.
 const MOST_ARCS: usize = 64;
 
 /// The closed motion of a linkage that starts at home with its input growing.
 ///
-/// An input that can turn all the way round does so once, in the home branch. Any other comes to
-/// an end of its range, where one of the two four-bars folds, and the linkage's only way on is back,
-/// in the branch that meets the one that it came by; so on, until it is home again.
+/// An input that can make a full revolution does so once, in the home branch. Any other input comes
+/// to an end of its range, where one of the two four-bars folds. The linkage then moves back in the
+/// other branch that meets there, and so on until it is home again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
     home: f64,
-    motion: Motion,
+    shape: CycleShape,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Motion {
-    Turn(LinkageBranch),
-    /// Arcs from fold to fold, the last of which ends where the first starts, and how far into the
-    /// first one home is, 0 to 1. (Back and forth the input does not get round: what its four-bar
-    /// can do without a full turn lies between two folds of that four-bar.)
+enum CycleShape {
+    /// A full revolution of the input, in one branch.
+    Revolution(LinkageBranch),
+    /// Arcs from fold to fold. The last one ends where the first one starts. The number says at
+    /// which part of the first arc home is, 0 to 1. (The input makes no revolution by going back
+    /// and forth: if its four-bar has no full revolution, its range lies between two folds.)
     Arcs(Vec<Arc>, f64),
 }
 
-/// A branch from one fold to the next, displacements of the input.
+/// A branch between two folds; its ends are displacements of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Arc {
     from: f64,
@@ -40,8 +41,8 @@ struct Arc {
 }
 
 impl Arc {
-    /// The input's displacement; at a fold it stands still, where all other joints would otherwise
-    /// run away.
+    /// The input's displacement at a part of the arc, 0 to 1. The input stands still at a fold,
+    /// where the velocities of all other joints would otherwise be infinite.
     fn at(&self, part: f64) -> f64 {
         let (middle, half) = (0.5 * (self.from + self.to), 0.5 * (self.to - self.from));
         (middle - half * (PI * part).cos()).clamp(self.from.min(self.to), self.from.max(self.to))
@@ -49,26 +50,26 @@ impl Arc {
 }
 
 impl Cycle {
-    /// The input's value, as reported, and the branch at a phase of 0 to 1 of the cycle; it is home
-    /// at both ends (a turn later, where the input turns round).
+    /// The input's reported value, and the branch, at a phase of 0 to 1 of the cycle. Both ends are
+    /// home; for an input with a full revolution, the end is one revolution later.
     pub fn at(&self, phase: f64) -> (f64, LinkageBranch) {
         let phase = phase.clamp(0.0, 1.0);
-        match &self.motion {
-            Motion::Turn(branch) => (self.home + TAU * phase, *branch),
-            Motion::Arcs(arcs, start) => {
-                let place = phase * arcs.len() as f64 + start;
-                let arc = arcs[place as usize % arcs.len()];
-                // At both ends home itself, not what it is rounded to.
+        match &self.shape {
+            CycleShape::Revolution(branch) => (self.home + TAU * phase, *branch),
+            CycleShape::Arcs(arcs, start) => {
+                let along = phase * arcs.len() as f64 + start;
+                let arc = arcs[along as usize % arcs.len()];
+                // Both ends are exactly home, without rounding.
                 let ends = phase == 0.0 || phase == 1.0;
-                let displacement = if ends { 0.0 } else { arc.at(place.fract()) };
+                let displacement = if ends { 0.0 } else { arc.at(along.fract()) };
                 (self.home + displacement, arc.branch)
             }
         }
     }
 
-    /// Whether the input turns all the way round.
+    /// Whether the input makes a full revolution.
     pub fn is_turn(&self) -> bool {
-        matches!(self.motion, Motion::Turn(_))
+        matches!(self.shape, CycleShape::Revolution(_))
     }
 }
 
@@ -81,21 +82,21 @@ fn flipped(branch: Branch) -> Branch {
 }
 
 impl Input<'_> {
-    /// The motion that starts at home with the input growing, all the way until it is home again.
+    /// The motion that starts at home with the input increasing, until the linkage is home again.
     pub fn cycle(&self) -> Cycle {
         let branch = self.home_branch();
-        let motion = match self.home_span(branch) {
+        let shape = match self.home_span(branch) {
             Some(span) => self.arcs(span, branch),
-            None => Motion::Turn(branch),
+            None => CycleShape::Revolution(branch),
         };
-        Cycle { home: self.coordinate().home, motion }
+        Cycle { home: self.coordinate().home, shape }
     }
 
-    /// The span of the home branch around home; `None` where that is a full turn.
+    /// The interval of the home branch around home; `None` if it is a full revolution.
     fn home_span(&self, branch: LinkageBranch) -> Option<Span> {
-        match self.spans(&[branch.first]) {
-            Spans::Full => None,
-            Spans::Some(spans) => {
+        match self.closing(&[branch.first]) {
+            ClosingSet::Everywhere => None,
+            ClosingSet::Intervals(spans) => {
                 let outside = |span: &Span| span.ends[0].max(-span.ends[1]);
                 let nearest = |a: &Span, b: &Span| outside(a).total_cmp(&outside(b));
                 spans
@@ -106,7 +107,7 @@ impl Input<'_> {
         }
     }
 
-    fn arcs(&self, home: Span, branch: LinkageBranch) -> Motion {
+    fn arcs(&self, home: Span, branch: LinkageBranch) -> CycleShape {
         let first = Arc { from: home.ends[0], to: home.ends[1], branch };
         let (mut span, mut branch, mut forward) = (home, branch, true);
         let mut arcs = vec![first];
@@ -134,17 +135,17 @@ impl Input<'_> {
         } else {
             0.0
         };
-        Motion::Arcs(arcs, start)
+        CycleShape::Arcs(arcs, start)
     }
 
-    /// The span of the other branch that meets the end of this one.
+    /// The interval of the other branch that meets this one at the given end.
     fn meeting(&self, span: Span, end: usize, branch: LinkageBranch) -> Option<Span> {
-        let Spans::Some(spans) = self.spans(&[branch.first]) else { return None };
+        let ClosingSet::Intervals(spans) = self.closing(&[branch.first]) else { return None };
         spans.into_iter().find_map(|other| {
             let away = span.ends[end] - other.ends[end];
-            let turns = (away / TAU).round() * TAU;
-            let met = (away - turns).abs() <= MEET;
-            met.then(|| Span { ends: other.ends.map(|e| e + turns), ..other })
+            let revolutions = (away / TAU).round() * TAU;
+            let met = (away - revolutions).abs() <= MEET;
+            met.then(|| Span { ends: other.ends.map(|e| e + revolutions), ..other })
         })
     }
 }

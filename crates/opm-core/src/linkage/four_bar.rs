@@ -4,17 +4,18 @@
 //! exp(a₀q₀) exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = 1
 //! ```
 //!
-//! with the axes in the order of the loop, at home where all `q` are zero. A cyclic shift of the
-//! factors is a conjugation and leaves the product the identity, so that any of the four can be
-//! `a₀`, the input. Then the other three are a spherical chain with a known target,
+//! with the axes in the order of the loop, at home, where all `q` are zero. A cyclic shift of the
+//! factors is a conjugation and leaves the product the identity, so any of the four can be `a₀`,
+//! the input. The other three are then a spherical chain with a known target,
 //!
 //! ```text
 //! exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = exp(-a₀q₀)
 //! ```
 //!
-//! whose first equation is the input-output equation `A cos q₁ + B sin q₁ = C` of the textbooks (J. M.
-//! McCarthy and G. S. Soh, *Geometric Design of Linkages*, on spherical linkages): the link between
-//! `a₁` and `a₂` keeps its arc, seen from where the input puts `w = exp(-a₀q₀) a₃`.
+//! Its first equation is the input-output equation `A cos q₁ + B sin q₁ = C` of the textbooks (J.
+//! M. McCarthy and G. S. Soh, *Geometric Design of Linkages*, on spherical linkages): the link
+//! between `a₁` and `a₂` keeps its arc, seen from the position `w = exp(-a₀q₀) a₃` given by the
+//! input.
 //!
 //! The loop closes exactly where the arc between `a₁` and `w` can be spanned by the two links
 //! between them, arcs `α` and `β`:
@@ -23,12 +24,12 @@
 //! cos(α + β) <= a₁·w = P cos q₀ + Q sin q₀ + R <= cos(α - β)
 //! ```
 //!
-//! * Folded or stretched links (an equality) are inside; the two branches meet there.
-//! * Where the links' arcs are equal or supplementary and `w` comes to lie on `a₁`, `q₁` is free:
-//!   it is given as zero, its home value, on both branches.
+//! * Folded or stretched links (an equality) count as closing; the two branches meet there.
+//! * Where the links' arcs are equal or supplementary and `w` lies on `a₁`, `q₁` is arbitrary:
+//!   both branches return zero, its home value.
 //! * A change point is an equality that the input passes without leaving the range. A branch keeps
-//!   its sign on both sides; the motion that is smooth there changes it.
-//! * Two axes that are neighbours in the loop and parallel make one joint of two: refused.
+//!   its sign on both sides; the smooth motion changes it.
+//! * Two parallel axes that are neighbours in the loop form a single joint: this is an error.
 
 use crate::chain::spherical::SphericalChain;
 use crate::chain::{Branch, ChainError, ReachDeficit};
@@ -41,18 +42,18 @@ pub struct FourBar {
     driven: [DrivenFourBar; 4],
 }
 
-/// A four-bar moved by one of its joints.
+/// A four-bar driven by one of its joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrivenFourBar {
-    /// `a₀`.
+    /// The axis `a₀` of the input.
     input: Vector3<f64>,
-    /// `a₁ a₂ a₃`.
+    /// The chain of the other joints, `a₁ a₂ a₃`.
     chain: SphericalChain,
     reach: Reach,
     home: Branch,
 }
 
-/// `lowest <= p cos q₀ + q sin q₀ <= highest`: where the loop closes.
+/// The condition `lowest <= p cos q₀ + q sin q₀ <= highest`, under which the loop closes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reach {
     p: f64,
@@ -62,28 +63,28 @@ struct Reach {
 }
 
 impl FourBar {
-    /// The loop with these axes at home, in its order.
+    /// Builds the loop with these unit axes at home, in the order of the loop.
     ///
     /// # Errors
-    /// Where two neighbouring axes are parallel.
+    /// [`ChainError`] if two neighbouring axes are parallel.
     pub fn new(axes: [Unit<Vector3<f64>>; 4]) -> Result<Self, ChainError> {
         let driven = |input: usize| DrivenFourBar::new([0, 1, 2, 3].map(|i| axes[(input + i) % 4]));
         Ok(Self { driven: [driven(0)?, driven(1)?, driven(2)?, driven(3)?] })
     }
 
-    /// The four-bar moved by its joint number `input`, modulo four.
+    /// The four-bar driven by its joint with index `input`, modulo four.
     pub fn driven_by(&self, input: usize) -> &DrivenFourBar {
         &self.driven[input % 4]
     }
 }
 
 impl DrivenFourBar {
-    /// The input's axis first.
+    /// Builds the four-bar from its axes, the input's first.
     fn new(axes: [Unit<Vector3<f64>>; 4]) -> Result<Self, ChainError> {
         let [a0, a1, a2, a3] = axes.map(Unit::into_inner);
         let [_, first, second, third] = axes;
         let chain = SphericalChain::new([first, second, third])?;
-        // a₁ · exp(-a₀q₀) a₃, the constant part taken to the other side.
+        // The condition on a₁ · exp(-a₀q₀) a₃, with the constant part on the other side.
         let constant = a1.dot(&a0) * a0.dot(&a3);
         let (cosines, sines) =
             (a1.dot(&a2) * a2.dot(&a3), a1.cross(&a2).norm() * a2.cross(&a3).norm());
@@ -97,11 +98,11 @@ impl DrivenFourBar {
         Ok(Self { input: a0, chain, reach, home })
     }
 
-    /// The rotations of the three joints that follow the input in the loop. `+` where the triple
-    /// product of their axes, as they have moved, is positive.
+    /// The rotations of the three joints that follow the input in the loop. The branch `+` is the
+    /// one where the triple product of their moved axes is positive.
     ///
     /// # Errors
-    /// The loop does not close at this input: by which angle.
+    /// The reach deficit, an angle, if the loop does not close at this input.
     #[inline]
     pub fn solve(
         &self,
@@ -118,13 +119,13 @@ impl DrivenFourBar {
         self.chain.first(&w, Branch::Plus).is_ok()
     }
 
-    /// The branch that it is assembled in.
+    /// The branch in which the loop is assembled at home.
     pub fn home(&self) -> Branch {
         self.home
     }
 
     /// The inputs, at most four, between which the loop changes between closing and not closing,
-    /// and those at which it only folds.
+    /// and those at which it only folds (dead points).
     pub fn dead_points(&self) -> impl Iterator<Item = Complex<f64>> + use<> {
         let Reach { p, q, lowest, highest } = self.reach;
         let axis = Complex::new(p, q);
@@ -137,7 +138,7 @@ impl DrivenFourBar {
         })
     }
 
-    /// `exp(-a₀q₀)`.
+    /// The rotation `exp(-a₀q₀)`.
     #[inline]
     fn target(&self, turn: Complex<f64>) -> Matrix3<f64> {
         let a = &self.input;

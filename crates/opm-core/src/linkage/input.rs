@@ -1,4 +1,4 @@
-//! A linkage moved by one of its joints, and where that puts the others.
+//! A linkage driven by one of its joints, and the resulting positions of the others.
 
 use super::{Linkage, Loop};
 use crate::chain::Branch;
@@ -8,20 +8,20 @@ use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::fmt;
 
-/// The signs of a position's two choices, in the order in which they are made: first the four-bar
-/// that has the input joint, then the other one. `+` where the triple product of the three axes that
-/// follow the input (or the imaginary joint) in its loop, with the directions that they have there,
-/// is positive.
+/// The signs of a position's two choices, in the order of solution: first for the four-bar with the
+/// input joint, then for the other one. A sign is `+` if the triple product of the three axes that
+/// follow the input (or the imaginary joint) in its loop is positive, in their directions at that
+/// position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LinkageBranch {
-    /// Of the four-bar that has the input.
+    /// The sign for the four-bar with the input.
     pub first: Branch,
-    /// Of the other one.
+    /// The sign for the other four-bar.
     pub second: Branch,
 }
 
 impl LinkageBranch {
-    /// All four, in the order `+ +`, `+ -`, `- +`, `- -`.
+    /// All four branches, in the order `+ +`, `+ -`, `- +`, `- -`.
     pub const ALL: [Self; 4] = [
         Self { first: Branch::Plus, second: Branch::Plus },
         Self { first: Branch::Plus, second: Branch::Minus },
@@ -37,30 +37,30 @@ impl fmt::Display for LinkageBranch {
     }
 }
 
-/// Where all joints of a linkage are.
+/// A position of a linkage: the values of all its joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Position {
-    /// In which branch.
+    /// The branch of the position.
     pub branch: LinkageBranch,
-    /// Every joint coordinate, in the order of [`Linkage::coordinates`], as reported: the home value
-    /// plus the displacement, radians.
+    /// Every joint coordinate in radians, in the order of [`Linkage::coordinates`]: the home value
+    /// plus the displacement.
     pub joints: Vec<f64>,
-    /// The imaginary joint, radians.
+    /// The value of the imaginary joint, radians.
     pub imaginary: f64,
     /// Whether every joint is within its limits.
     pub within_limits: bool,
 }
 
-/// A linkage moved by one of its joints.
+/// A linkage driven by one of its joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     pub(super) linkage: &'a Linkage,
-    /// Number of the input's coordinate.
+    /// Index of the input's coordinate.
     pub(super) coordinate: usize,
-    /// The section that it is in.
+    /// Index of the section with the input: 0 for the lower one, 1 for the upper one.
     pub(super) section: usize,
-    /// Its place in that section's loop.
-    pub(super) place: usize,
+    /// Index of the input in that section's loop; the imaginary joint has the index 0.
+    pub(super) loop_index: usize,
 }
 
 impl<'a> Input<'a> {
@@ -69,15 +69,15 @@ impl<'a> Input<'a> {
         &self.linkage.coordinates[self.coordinate]
     }
 
-    /// The branch that the linkage is assembled in.
+    /// The branch in which the linkage is assembled.
     pub fn home_branch(&self) -> LinkageBranch {
         LinkageBranch {
-            first: self.own().four_bar.driven_by(self.place).home(),
+            first: self.own().four_bar.driven_by(self.loop_index).home(),
             second: self.other().four_bar.driven_by(0).home(),
         }
     }
 
-    /// The home position: a place for [`Input::position`] to write to.
+    /// The home position, which [`Input::position`] can overwrite.
     pub fn home(&self) -> Position {
         Position {
             branch: self.home_branch(),
@@ -87,9 +87,9 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Every position with the input at `value`, radians, as reported (home value included): at most
-    /// four, none where the loop does not close. Angles are within half a turn of home, unless
-    /// limits ask for another turn. Where links are folded, branches that meet are all given.
+    /// Every position with the input at `value`, radians, with the home value included: at most
+    /// four, and none if the loop does not close. Angles are within π of home, unless limits
+    /// require another revolution. Where links are folded, branches that meet are all listed.
     pub fn solve(&self, value: f64) -> Vec<Position> {
         let solved = |branch| {
             let mut position = self.home();
@@ -98,15 +98,15 @@ impl<'a> Input<'a> {
         LinkageBranch::ALL.into_iter().filter_map(solved).collect()
     }
 
-    /// The position in one branch, without allocating; `false`, and `position` as it was, where the
-    /// loop does not close.
+    /// Computes the position in one branch, without allocation. Returns `false`, and leaves
+    /// `position` unchanged, if the loop does not close.
     #[inline]
     pub fn position(&self, value: f64, branch: LinkageBranch, position: &mut Position) -> bool {
         self.solve_at(value, branch, position, (|_, _| None, self.linkage.imaginary.home))
     }
 
-    /// As [`Input::position`], with every angle at the turn that is nearest to where `position` has
-    /// it: along a motion in small steps no angle jumps, not even to stay within its limits.
+    /// As [`Input::position`], but every angle is the one nearest to its value in `position`,
+    /// modulo 2π. Along a motion in small steps no angle jumps, not even to stay within its limits.
     #[inline]
     pub fn position_near(
         &self,
@@ -141,9 +141,9 @@ impl<'a> Input<'a> {
             position.within_limits &= within;
         };
         for (i, &amount) in own.iter().enumerate() {
-            let place = (self.place + 1 + i) % 4;
-            if place > 0 {
-                put(self.own().coordinates[place - 1], amount);
+            let index = (self.loop_index + 1 + i) % 4;
+            if index > 0 {
+                put(self.own().coordinates[index - 1], amount);
             }
         }
         for (&coordinate, amount) in self.other().coordinates.iter().zip(other) {
@@ -156,30 +156,30 @@ impl<'a> Input<'a> {
     }
 
     /// The rotations of the three joints after the input in its loop, and of the three after the
-    /// imaginary joint in the other one.
+    /// imaginary joint in the other loop.
     #[inline]
     fn amounts(
         &self,
         turn: Complex<f64>,
         branch: LinkageBranch,
     ) -> Option<[[JointDisplacement; 3]; 2]> {
-        let own = self.own().four_bar.driven_by(self.place).solve(turn, branch.first).ok()?;
+        let own = self.own().four_bar.driven_by(self.loop_index).solve(turn, branch.first).ok()?;
         let tau = own[self.imaginary_amount()].unit_direction();
         let other = self.other().four_bar.driven_by(0).solve(tau, branch.second).ok()?;
         Some([own, other])
     }
 
-    /// Which of the joints after the input is the imaginary one.
+    /// The index of the imaginary joint among the joints after the input.
     pub(super) fn imaginary_amount(&self) -> usize {
-        3 - self.place
+        3 - self.loop_index
     }
 
-    /// The four-bar that has the input.
+    /// The loop with the input.
     pub(super) fn own(&self) -> &'a Loop {
         &self.linkage.sections[self.section]
     }
 
-    /// The one that follows.
+    /// The loop driven by the imaginary joint.
     pub(super) fn other(&self) -> &'a Loop {
         &self.linkage.sections[1 - self.section]
     }

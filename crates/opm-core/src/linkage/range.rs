@@ -1,10 +1,10 @@
-//! Where a linkage closes: the range of its input.
+//! The range of a linkage's input: where the linkage closes.
 //!
-//! The four-bar that has the input folds at the inputs where its reach condition is an equality.
-//! The other one does so at certain `τ`, and these are inputs of the first four-bar as well: it
-//! tells, in closed form, at which values of the linkage's input they are passed. Between two
-//! neighbours of all these values nothing changes, so one position in between says whether the
-//! linkage closes there.
+//! The four-bar with the input folds at the inputs where its reach condition is an equality. The
+//! other four-bar folds at certain `τ`. These are inputs of the first four-bar as well, which gives
+//! the corresponding values of the linkage's input in closed form. Nothing changes between two
+//! neighbouring values of all these, so one position in between decides whether the linkage closes
+//! there.
 
 use super::Input;
 use crate::chain::Branch;
@@ -12,28 +12,29 @@ use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Values of the input this close to each other are one: two roots that meet are apart by the
-/// square root of what they are rounded by, and no gap as small as this can be told from none.
+/// Values of the input that differ by less than this are equal. Two roots that meet differ by the
+/// square root of their rounding, and a gap as small as this cannot be distinguished from none.
 const SAME: f64 = 1e-12;
 
-/// The values of the input, as reported, at which the loop closes; whole turns apart they repeat.
-/// Single values, at which it closes but not beside them, are left out.
+/// The reported values of the input at which the loop closes, modulo 2π. Isolated values, with no
+/// closing neighbours, are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputRange {
-    /// All of them: the input is a crank.
+    /// The loop closes at every value: the input is a crank.
     FullTurn,
-    /// Closed intervals `[lowest, highest]`, radians, ascending. The one around home has the home
-    /// value in it; of the others the middles are within half a turn of home.
+    /// The loop closes in these closed intervals `[lowest, highest]`, radians, ascending. The
+    /// interval around home contains the home value; the middles of the others are within π of
+    /// home.
     Intervals(Vec<[f64; 2]>),
 }
 
 impl InputRange {
-    /// Whether the input can turn all the way round.
+    /// Whether the input can make a full revolution.
     pub fn is_full_turn(&self) -> bool {
         *self == Self::FullTurn
     }
 
-    /// Whether the loop closes with the input at this value.
+    /// Whether the loop closes with the input at this value, radians.
     pub fn contains(&self, value: f64) -> bool {
         let within = |[low, high]: &[f64; 2]| (value - low).rem_euclid(TAU) <= high - low;
         match self {
@@ -43,47 +44,48 @@ impl InputRange {
     }
 }
 
-/// Which four-bar folds.
+/// Which of the two four-bars folds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fold {
-    /// The one that has the input.
+    /// The four-bar with the input.
     First,
-    /// The other one.
+    /// The four-bar driven by the imaginary joint.
     Second,
 }
 
-/// An interval of displacements of the input, and what ends it.
+/// An interval of displacements of the input, and which four-bar folds at each of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub ends: [f64; 2],
     pub folds: [Fold; 2],
 }
 
-/// Where a set of branches closes.
+/// The displacements of the input at which a set of branches closes.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Spans {
-    Full,
-    /// Ascending, without overlap.
-    Some(Vec<Span>),
+pub(super) enum ClosingSet {
+    /// The whole revolution.
+    Everywhere,
+    /// Disjoint intervals, ascending.
+    Intervals(Vec<Span>),
 }
 
 impl Input<'_> {
-    /// The values at which the loop closes in any branch.
+    /// The values of the input at which the loop closes in any branch.
     pub fn range(&self) -> InputRange {
-        self.reported(&self.spans(&Branch::BOTH))
+        self.reported(&self.closing(&Branch::BOTH))
     }
 
-    /// The values at which the loop closes with this sign of the first choice. (The second choice
-    /// makes no difference: both of its branches end where they meet.)
+    /// The values of the input at which the loop closes with this sign of the first choice. The
+    /// second choice makes no difference: its two branches end where they meet.
     pub fn branch_range(&self, first: Branch) -> InputRange {
-        self.reported(&self.spans(&[first]))
+        self.reported(&self.closing(&[first]))
     }
 
-    fn reported(&self, spans: &Spans) -> InputRange {
+    fn reported(&self, spans: &ClosingSet) -> InputRange {
         let home = self.coordinate().home;
         match spans {
-            Spans::Full => InputRange::FullTurn,
-            Spans::Some(spans) => {
+            ClosingSet::Everywhere => InputRange::FullTurn,
+            ClosingSet::Intervals(spans) => {
                 let mut intervals: Vec<_> =
                     spans.iter().map(|span| span.ends.map(|end| home + end)).collect();
                 intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -92,12 +94,18 @@ impl Input<'_> {
         }
     }
 
-    /// Where any of these branches of the first four-bar, and the second one with it, closes.
-    pub(super) fn spans(&self, first: &[Branch]) -> Spans {
+    /// The displacements at which the first four-bar closes in any of these branches, and the
+    /// second one with it.
+    pub(super) fn closing(&self, first: &[Branch]) -> ClosingSet {
         let folds = self.folds();
-        let closes = |turn: Complex<f64>| first.iter().any(|&branch| self.closes(turn, branch));
+        let closes =
+            |rotation: Complex<f64>| first.iter().any(|&branch| self.closes(rotation, branch));
         let Some(&(last, _)) = folds.last() else {
-            return if closes(unit(0.0)) { Spans::Full } else { Spans::Some(vec![]) };
+            return if closes(unit(0.0)) {
+                ClosingSet::Everywhere
+            } else {
+                ClosingSet::Intervals(vec![])
+            };
         };
         let mut spans: Vec<Span> = Vec::new();
         let mut from = (last - TAU, folds[folds.len() - 1].1);
@@ -112,7 +120,7 @@ impl Input<'_> {
             }
             from = to;
         }
-        // The last one may go on in the first, a turn later.
+        // The last interval may continue in the first one, a revolution later.
         if let [head, .., tail] = &mut *spans
             && tail.ends[1] - TAU == head.ends[0]
         {
@@ -120,27 +128,29 @@ impl Input<'_> {
             spans.pop();
         }
         match *spans {
-            [Span { ends: [low, high], .. }] if high - low >= TAU - SAME => Spans::Full,
+            [Span { ends: [low, high], .. }] if high - low >= TAU - SAME => ClosingSet::Everywhere,
             _ => {
                 spans.iter_mut().for_each(|span| span.ends = near_home(span.ends));
-                Spans::Some(spans)
+                ClosingSet::Intervals(spans)
             }
         }
     }
 
-    /// The displacements of the input, in one turn and ascending, at which either four-bar folds.
+    /// The displacements of the input within one revolution, ascending, at which either four-bar
+    /// folds.
     fn folds(&self) -> Vec<(f64, Fold)> {
-        let angle = |turn: Complex<f64>| turn.im.atan2(turn.re);
+        let angle = |rotation: Complex<f64>| rotation.im.atan2(rotation.re);
         let own = &self.own().four_bar;
         let mut folds: Vec<(f64, Fold)> = own
-            .driven_by(self.place)
+            .driven_by(self.loop_index)
             .dead_points()
-            .map(|turn| (angle(turn), Fold::First))
+            .map(|rotation| (angle(rotation), Fold::First))
             .collect();
         for tau in self.other().four_bar.driven_by(0).dead_points() {
             for branch in Branch::BOTH {
                 if let Ok(amounts) = own.driven_by(0).solve(tau, branch) {
-                    folds.push((angle(amounts[self.place - 1].unit_direction()), Fold::Second));
+                    folds
+                        .push((angle(amounts[self.loop_index - 1].unit_direction()), Fold::Second));
                 }
             }
         }
@@ -149,9 +159,9 @@ impl Input<'_> {
         folds
     }
 
-    /// Whether both four-bars close.
-    fn closes(&self, turn: Complex<f64>, first: Branch) -> bool {
-        let own = self.own().four_bar.driven_by(self.place).solve(turn, first);
+    /// Whether both four-bars close at this rotation of the input.
+    fn closes(&self, rotation: Complex<f64>, first: Branch) -> bool {
+        let own = self.own().four_bar.driven_by(self.loop_index).solve(rotation, first);
         own.is_ok_and(|amounts| {
             let tau = amounts[self.imaginary_amount()].unit_direction();
             self.other().four_bar.driven_by(0).closes(tau)
@@ -159,12 +169,12 @@ impl Input<'_> {
     }
 }
 
-/// The same interval, whole turns away: around zero, or with its middle within half a turn of it.
+/// The same interval modulo 2π: around zero if possible, else with its middle within π of zero.
 fn near_home([low, high]: [f64; 2]) -> [f64; 2] {
     let around = (high / TAU).floor() * TAU;
     if low <= around {
         return [low - around, high - around];
     }
-    let turns = (0.5 * (low + high) / TAU - 0.5).ceil() * TAU;
-    [low - turns, high - turns]
+    let revolutions = (0.5 * (low + high) / TAU - 0.5).ceil() * TAU;
+    [low - revolutions, high - revolutions]
 }

@@ -1,17 +1,18 @@
-//! The mechanism files that come with this crate, so that they can be used by name anywhere.
+//! The mechanism files that are built into this crate and can be used by name.
 
-/// A mechanism file inside this crate.
+/// A mechanism file that is built into this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
-    /// Its name: the mechanism's name, and the file's without `.toml`.
+    /// The mechanism's name, which is also the file's name without `.toml`.
     pub name: &'static str,
-    /// What it is, on one line.
+    /// A description on one line.
     pub description: &'static str,
     /// The text of the file.
     pub text: &'static str,
 }
 
-/// Every example: the paper's mechanisms, families first, then those designed for this project.
+/// Every example: first the paper's mechanisms, families before joint lists, then those designed for
+/// this project.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -60,7 +61,7 @@ pub const EXAMPLES: &[Example] = &[
     },
     Example {
         name: "schoenflies-4dof",
-        description: "2-RRR(H|P), axis square to the plane: three translations, one rotation",
+        description: "2-RRR(H|P), axis perpendicular to the plane: three translations, one rotation",
         text: include_str!("../../mechanisms/schoenflies-4dof.toml"),
     },
     Example {
@@ -75,7 +76,7 @@ pub const EXAMPLES: &[Example] = &[
     },
 ];
 
-/// The example of this name.
+/// The example with this name, if there is one.
 pub fn find(name: &str) -> Option<&'static Example> {
     EXAMPLES.iter().find(|example| example.name == name)
 }

@@ -1,9 +1,8 @@
-//! Families: mechanisms given by the geometric parameters that their literature uses.
+//! Families: mechanisms given by the geometric parameters that the literature uses for them.
 //!
-//! A family only assembles: it places joints. Each leg is laid out where all its joints are zero,
-//! its closed-form chains find the joint values at home, and the joints are carried there. From
-//! then on a family is a [`Mechanism`] like any other, and nothing downstream knows where it came
-//! from.
+//! A family only assembles its joints. Each leg is first laid out with all joints at zero.
+//! Closed-form chains then find the joint values at home, and the joints are carried there. From
+//! then on the result is a [`Mechanism`] like any other, and no later step depends on its origin.
 
 mod assembly;
 mod parameter;
@@ -18,26 +17,27 @@ pub use planar_planar::PlanarPlanar;
 pub use plano_spherical::PlanoSpherical;
 pub use translational_helical::TranslationalHelical;
 
-pub(in crate::mechanism) use parameter::{Group, Parameter, Slot, TableKey};
+pub(in crate::mechanism) use parameter::{Group, Parameter, ParameterRef, TableKey};
 
 use super::Mechanism;
 
-/// The parameters of one family.
+/// The parameters of a mechanism of one family.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Family {
-    /// 3-PRR(RR) + RRS, 5 freedoms.
+    /// The 5-DoF plano-spherical manipulator, 3-PRR(RR) + RRS.
     PlanoSpherical(PlanoSpherical),
-    /// 2-PPR + PPH, 3 freedoms.
+    /// The 3-DoF manipulator with a helical leg, 2-PPR + PPH.
     TranslationalHelical(TranslationalHelical),
-    /// 3-PRR(RR) + RR(RRR), 5 freedoms.
+    /// The 5-DoF manipulator of two planar subspaces, 3-PRR(RR) + RR(RRR).
     PlanarPlanar(PlanarPlanar),
 }
 
 impl Family {
-    /// The mechanism at its assembled home pose.
+    /// Assembles the mechanism at its home pose.
     ///
     /// # Errors
-    /// Every parameter that is out of its range, and every leg that does not reach home.
+    /// [`AssemblyError`] lists every parameter that is out of its range and every leg that does not
+    /// reach home.
     pub fn assemble(&self) -> Result<Mechanism, AssemblyError> {
         match self {
             Self::PlanoSpherical(family) => family.assemble(),
@@ -46,7 +46,8 @@ impl Family {
         }
     }
 
-    /// The working mode of the home pose: a group of signs per leg with choices, empty without any.
+    /// The working mode of the home pose: one group of signs for each leg that has choices, and an
+    /// empty text if no leg has any.
     pub fn mode(&self) -> String {
         match self {
             Self::PlanoSpherical(family) => family.mode(),
@@ -64,7 +65,7 @@ impl Family {
         }
     }
 
-    /// What files call the family.
+    /// The family's name in mechanism files, such as `plano-spherical`.
     pub fn word(&self) -> &'static str {
         match self {
             Self::PlanoSpherical(_) => "plano-spherical",

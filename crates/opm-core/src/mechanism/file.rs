@@ -1,10 +1,11 @@
-//! Mechanism files: TOML in, a [`Mechanism`] out, or every problem of the file with its place.
+//! Mechanism files: TOML text is read into a [`Mechanism`], or every problem is reported with its
+//! location.
 //!
-//! A file names its own units and what follows is SI. Two forms:
+//! A file names its own units; every value after reading is SI. There are two forms:
 //!
-//! * **Family**: `family = "..."` and the parameters of one of the [families](super::family). All
-//!   of `home` may be left out: a coordinate that is not given is zero. So may `mode`: every
-//!   choice is `+`.
+//! * **Family**: `family = "..."` and the parameters of one of the [families](super::family).
+//!   `home` may be left out, as a whole or in part: missing coordinates are zero. `mode` may be left
+//!   out too: every choice is then `+`.
 //! * **Joints**: `[platform]` and `[[leg]]` with `joints`, at the assembled home pose. A joint is
 //!   `{ name, type, ... }` with
 //!
@@ -17,11 +18,10 @@
 //! | `universal` | `axis`, `axis2`, `point` | as revolute; coordinates about `axis`, `axis2` |
 //! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
 //!
-//! `home` (default zero) is a number and `limits` a pair `[lowest, highest]`; a joint of several
-//! coordinates has an array of as many.
+//! `home` (default zero) is a number and `limits` a pair `[lowest, highest]`. A joint with several
+//! coordinates has an array with one entry per coordinate.
 //!
-//! `[task]` may say how the pose is to be measured, where the [geometry](crate::task) leaves that
-//! free:
+//! `[task]` says how the pose is measured, where the [geometry](crate::task) leaves a choice:
 //!
 //! ```toml
 //! [task]
@@ -30,21 +30,21 @@
 //! upper = { w = [0, 0, 1], normal = [1, 0, 0], origin = [0, 0, 50] }
 //! ```
 //!
-//! | key | says | of |
+//! | key | meaning | sections |
 //! |---|---|---|
-//! | `axis` | which direction of the intersection motion is positive: the one on its side | both |
-//! | `x` | the direction of coordinate `x`, in the plane; of a sphere's first axis, square to the intersection motion | planes with `x y`, spheres |
-//! | `w` | which direction of coordinate `w` is positive | upper planes with `w` |
-//! | `normal` | which of a plane's two normals `y` and the angle turn about | planes that share a translation, where they turn or have `y` |
-//! | `origin` | the point that lengths are measured from | all with a length among their coordinates |
+//! | `axis` | the positive direction of the intersection motion: the one on the side of this vector | both sections |
+//! | `x` | the direction of coordinate `x`, in the plane; for a sphere, the direction of its frame's first axis, perpendicular to the intersection motion | planes with `x y`, spheres |
+//! | `w` | the positive direction of coordinate `w` | upper planes with `w` |
+//! | `normal` | the plane's normal about which `y` and the angle are positive | planes that share a translation and have an angle or `y` |
+//! | `origin` | the point that lengths are measured from | all sections with a length among their coordinates |
 //!
-//! Each may be left out. `opm decompose` prints the frames as they are.
+//! Every key may be left out. `opm decompose` prints the resulting frames.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
-//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. A joint cannot be called like a task
-//! coordinate (`x`, `phi`, ...), like `reachable`, `within_limits`, `mode` or `branch`, or like a leg's
-//! imaginary joint (`tau.leg1`): tables have columns of these names. Whatever a file does not need to have
-//! it may not have either: an unknown key is a problem, with the nearest known one as a hint.
+//! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
+//! cannot be names of joints: task coordinates (`x`, `phi`, ...), `reachable`, `within_limits`,
+//! `mode`, `branch`, and the imaginary joints of the legs (`tau.leg1`). An unknown key is a
+//! problem, and its message suggests the nearest known key.
 
 pub(crate) mod checks;
 mod hint;
@@ -55,7 +55,9 @@ mod reader;
 mod units;
 mod writer;
 
-pub use problem::{FileErrors, Place, Places, Problem};
+pub use problem::{FileErrors, Location, Locations, Problem};
+// Old names, for the crates above.
+pub use problem::{Location as Place, Locations as Places};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 pub use writer::{Digits, write};
 
@@ -69,34 +71,37 @@ use super::family::{
 use crate::chain::Branch;
 use toml::de::DeTable;
 
-/// The format that this version reads.
+/// The format number that this version reads.
 const FORMAT: i64 = 1;
 
-/// What a mechanism file says.
+/// The content of a mechanism file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismFile {
     /// The mechanism at its assembled home pose, SI.
     pub mechanism: Mechanism,
-    /// The file's units, for what people read.
+    /// The units of the file, for text that people read.
     pub units: FileUnits,
-    /// The parameters that it was assembled from; `None` for a list of joints.
+    /// The family and parameters from which the mechanism was assembled; `None` for a list of
+    /// joints.
     pub family: Option<Family>,
-    /// The working mode of home, where the family knows it; else it follows from the joints.
+    /// The working mode of home, if a family determines it; for a list of joints it follows from
+    /// the joints.
     pub mode: Option<String>,
-    /// Where it says what may not fit together.
-    pub places: Places,
+    /// Locations, in the file, of what may later turn out to be inconsistent.
+    pub places: Locations,
 }
 
 /// Reads the text of a mechanism file.
 ///
 /// # Errors
-/// Every problem of the file. Where the text is not TOML: the parser's problems only.
+/// [`FileErrors`] lists every problem of the file; if the text is not TOML, only the parser's
+/// problems.
 pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
     let (file, places) = document(text, "mechanism", read_document)?;
     Ok(MechanismFile { places: places.in_text(text), ..file })
 }
 
-/// Reads a TOML text that should be a file of this kind, with `read` for what is in it.
+/// Reads a TOML text as a file of the kind `kind`. `read` reads its content.
 pub(crate) fn document<T>(
     text: &str,
     kind: &str,
@@ -122,13 +127,13 @@ pub(crate) fn document<T>(
     }
 }
 
-/// What every file begins with: its format, which must be the one that is read here; its name,
-/// empty where that is wrong; and its units, which from now on are those of the reader.
+/// Reads the common head of every file: the format, which must be [`FORMAT`]; the name, which is
+/// empty if it is invalid; and the units, which are set in the reader.
 pub(crate) fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
     let format = root.require("format", &format!("format = {FORMAT}"))?;
     let number = format.integer()?;
     if number != FORMAT {
-        format.report(format!("is {number}, expected {FORMAT}, the only one so far"));
+        format.report(format!("is {number}, expected {FORMAT}, the only format so far"));
         return None;
     }
     let name = root
@@ -139,13 +144,13 @@ pub(crate) fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
     Some(name)
 }
 
-/// The file, its places still to be told, and these as byte offsets.
-fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
+/// Reads the file without its locations, and the locations as byte offsets.
+fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> {
     let name = head(root, "mechanism")?;
     let units = root.reader.units();
     let Some(family) = root.get("family") else {
         let (mechanism, noted) = joints::read(root, name);
-        let places = Places::default();
+        let places = Locations::default();
         return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
     type Read = fn(&Table<'_>, &str) -> Option<(Family, Mechanism)>;
@@ -155,11 +160,12 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Places<usize>)> {
         ("planar-planar", planar_planar::read),
     ])?;
     let (family, mechanism) = read(root, name)?;
-    let (mode, family, places) = (Some(family.mode()), Some(family), Places::default());
-    Some((MechanismFile { mechanism, units, mode, family, places }, Places::default()))
+    let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
+    Some((MechanismFile { mechanism, units, mode, family, places }, Locations::default()))
 }
 
-/// The file's units; where they are not understood, SI, so that the rest can be checked.
+/// Reads the file's units. Units that are not understood become SI, so that the rest can be
+/// checked.
 fn read_units(root: &Table<'_>) -> FileUnits {
     let expected = "units = { length = \"mm\", angle = \"deg\" }, for instance";
     let units = root.require("units", expected).and_then(|value| value.table(&["length", "angle"]));
@@ -174,14 +180,14 @@ fn read_units(root: &Table<'_>) -> FileUnits {
     FileUnits { length: length.unwrap_or_default(), angle: angle.unwrap_or_default() }
 }
 
-/// A leg's name; `leg1`, `leg2`, ... where it has none.
+/// The name of a leg, or `leg1`, `leg2`, ... if it has none.
 pub(super) fn leg_name(leg: &Table<'_>, index: usize) -> String {
     let given = leg.get("name").and_then(|value| value.name());
     given.map_or_else(|| format!("leg{}", index + 1), str::to_owned)
 }
 
-/// The branches of `mode`: a group of signs for each leg with choices, in one row. All plus where
-/// it is not given.
+/// Reads the branches of `mode`: one group of signs for each leg with choices, concatenated. Every
+/// branch is plus if the mode is not given or invalid.
 pub(super) fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
     let plus = || vec![Branch::Plus; choices.iter().sum()];
     let Some((value, text)) = root.get("mode").and_then(|value| Some((value, value.string()?)))
@@ -191,20 +197,23 @@ pub(super) fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
     let groups: Vec<&str> = text.split_whitespace().collect();
     let example = choices.iter().map(|&n| "+".repeat(n)).collect::<Vec<_>>().join(" ");
     if let Some(wrong) = text.chars().find(|c| !c.is_whitespace() && !"+-".contains(*c)) {
-        value.report(format!("has {wrong:?} in it, expected signs + and - like {example:?}"));
+        value.report(format!("contains {wrong:?}, expected signs + and - as in {example:?}"));
         return plus();
     }
     if groups.iter().map(|group| group.len()).ne(choices.iter().copied()) {
-        value
-            .report(format!("is {text:?}, expected as many signs, in such groups, as {example:?}"));
+        let expected = match choices {
+            [] => "an empty text: this family has no working modes to choose from".to_owned(),
+            _ => format!("one sign for every choice, in a group for each leg, as in {example:?}"),
+        };
+        value.report(format!("is {text:?}, expected {expected}"));
         return plus();
     }
     let branch = |sign| if sign == '+' { Branch::Plus } else { Branch::Minus };
     groups.into_iter().flat_map(str::chars).map(branch).collect()
 }
 
-/// A family that was read, and what it assembles to. What keeps it from assembling is reported, each problem at
-/// the parameter to blame. A value that could not be read, and so is no number, has its problem already.
+/// Assembles a family that was read. Each problem is reported at the parameter that causes it. A
+/// parameter that could not be read (its value is NaN) has its problem already.
 pub(super) fn assembled(
     family: Family,
     root: &Table<'_>,
@@ -218,8 +227,8 @@ pub(super) fn assembled(
         let table = problem.leg.and_then(|leg| legs.get(leg)).unwrap_or(root);
         let value = problem.parameter.and_then(|parameter| table.get(parameter));
         let at = value.map_or(table.at, |value| value.at);
-        let told = value.is_some() && root.reader.has_problem(at);
-        if problem.reason != AssemblyReason::NotFinite && !told {
+        let reported = value.is_some() && root.reader.has_problem(at);
+        if problem.reason != AssemblyReason::NotFinite && !reported {
             root.reader.report(at, problem.describe(root.reader.units()));
         }
     }

@@ -1,38 +1,41 @@
-//! How the pose of the platform is to be measured, where the geometry alone does not say.
+//! How the platform's pose is measured, where the geometry alone leaves it open.
 
 use crate::mechanism::leg::Section;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 
-/// How the pose of the platform is to be measured. What is not given follows from the geometry, by
-/// the rules in the docs of [`task`](crate::task), which also say what a subspace leaves free.
+/// How the platform's pose is measured: `[task]` in a mechanism file.
+///
+/// What is not given follows from the geometry, by the rules in the docs of [`task`](crate::task).
+/// These docs also list what each subspace leaves free.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TaskHints {
-    /// The intersection motion's positive direction: the one on the side of this vector.
+    /// The intersection motion's positive direction is the one on the side of this vector.
     pub axis: Option<Vector3<f64>>,
     /// The lower section's frame.
     pub lower: FrameHints,
     /// The upper section's frame.
     pub upper: FrameHints,
-    /// Values of task coordinates at home, by name; the others follow from the geometry.
+    /// Home values of task coordinates by name, metres or radians; the others follow from the
+    /// geometry.
     pub home: Vec<(String, f64)>,
 }
 
-/// The frame of one section, base coordinates.
+/// Hints for the frame of one section, in base coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameHints {
-    /// Direction of the coordinate `x`; in a spherical subspace, of the frame's first axis.
+    /// Direction of the coordinate `x`; in a spherical subspace, direction of the frame's first axis.
     pub x: Option<Vector3<f64>>,
     /// Positive direction of the coordinate `w`.
     pub w: Option<Vector3<f64>>,
-    /// Normal of a plane, about which its angle counts as positive.
+    /// Normal of the plane; the plane's angle is positive about it.
     pub normal: Option<Vector3<f64>>,
     /// The point that lengths are measured from, metres.
     pub origin: Option<Point3<f64>>,
 }
 
 impl TaskHints {
-    /// Those of one section.
+    /// The hints for the frame of one section.
     pub fn frame(&self, section: Section) -> &FrameHints {
         match section {
             Section::Lower => &self.lower,
@@ -41,23 +44,23 @@ impl TaskHints {
     }
 }
 
-/// One of the hints, as files call it: `axis`, `lower.x`, ...
+/// The key of one hint in a mechanism file: `axis`, `lower.x`, ...
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskKey {
-    /// [`TaskHints::axis`]
+    /// `axis`: [`TaskHints::axis`].
     Axis,
-    /// [`FrameHints::x`]
+    /// `x` of a section: [`FrameHints::x`].
     X(Section),
-    /// [`FrameHints::w`]
+    /// `w` of a section: [`FrameHints::w`].
     W(Section),
-    /// [`FrameHints::normal`]
+    /// `normal` of a section: [`FrameHints::normal`].
     Normal(Section),
-    /// [`FrameHints::origin`]
+    /// `origin` of a section: [`FrameHints::origin`].
     Origin(Section),
 }
 
 impl TaskKey {
-    /// Its last part: `x`, `w`, `normal`, `origin`, or `axis`.
+    /// The last part of the key: `x`, `w`, `normal`, `origin`, or `axis`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Axis => "axis",

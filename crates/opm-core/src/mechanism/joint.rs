@@ -5,39 +5,41 @@ use crate::group::screw::Screw;
 pub use crate::numeric::Quantity;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-/// What a joint lets its two links do.
+/// The kind of a joint: which relative motions of its two links it allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind {
     /// Rotation about the axis.
     Revolute,
     /// Translation along the axis.
     Prismatic,
-    /// Rotation about the axis with `pitch` metres of advance a radian.
+    /// Rotation about the axis with an advance of `pitch` metres per radian along it.
     Helical {
-        /// Advance, metres a radian; right-handed where positive.
+        /// Advance along the axis in metres per radian; positive for a right-handed screw.
         pitch: f64,
     },
     /// Rotation about the axis, then translation along it (they commute).
     Cylindrical,
     /// Rotation about `axis`, then about `second`, both through the joint's point.
     Universal {
-        /// The axis nearer the platform, at home.
+        /// Direction of the axis nearer the platform, at home.
         second: Unit<Vector3<f64>>,
     },
     /// Any rotation about the joint's point.
     Spherical,
 }
 
-/// One coordinate of a joint: what is reported, and within which limits.
+/// One scalar coordinate of a joint: its name, its home value and its limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointCoordinate {
-    /// The joint's name; with a suffix where it has several coordinates (`s1.x`).
+    /// The joint's name, with a suffix if the joint has several coordinates (`s1.x`).
     pub name: String,
-    /// Angle or length.
+    /// Whether the coordinate is an angle or a length.
     pub quantity: Quantity,
-    /// The value at the assembled home; a reported value is this plus the displacement.
+    /// The value at the assembled home, in radians or metres. A reported value is this one plus the
+    /// displacement from home.
     pub home: f64,
-    /// Lowest and highest value allowed, both included.
+    /// Lowest and highest allowed value, both included, in radians or metres; `None` without
+    /// limits.
     pub limits: Option<[f64; 2]>,
 }
 
@@ -56,22 +58,24 @@ impl JointCoordinate {
 /// A joint at the assembled home pose, in base coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Name, unique in its mechanism.
+    /// The joint's name, unique in its mechanism.
     pub name: String,
-    /// What it lets its links do.
+    /// Which motions the joint allows.
     pub kind: JointKind,
-    /// Direction of the axis (of the first, for a universal joint; unused for a spherical one).
+    /// Direction of the axis at home; the first axis of a universal joint, unused for a spherical
+    /// joint.
     pub axis: Unit<Vector3<f64>>,
-    /// A point of the axis (unused for a prismatic joint).
+    /// A point on the axis at home, metres; unused for a prismatic joint except to draw it.
     pub point: Point3<f64>,
-    /// Driven by a motor.
+    /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// One, two (cylindrical: angle, slide; universal) or three (spherical) coordinates.
+    /// The joint's coordinates: one; two (cylindrical: angle and slide; universal: two angles); or
+    /// three (spherical: the components of a rotation vector).
     pub coordinates: Vec<JointCoordinate>,
 }
 
 impl Joint {
-    /// A passive joint without limits whose coordinates are zero at home.
+    /// Builds a passive joint without limits. Its coordinates are zero at home.
     pub fn new(
         name: impl Into<String>,
         kind: JointKind,
@@ -99,34 +103,35 @@ impl Joint {
         Self { name, kind, axis, point, actuated: false, coordinates }
     }
 
-    /// The same joint, driven by a motor.
+    /// Marks the joint as driven by a motor.
     #[must_use]
     pub fn actuated(mut self) -> Self {
         self.actuated = true;
         self
     }
 
-    /// The same joint with `home` as the value of its first coordinate at home.
+    /// Sets the home value of the joint's first coordinate, radians or metres.
     #[must_use]
     pub fn at(mut self, home: f64) -> Self {
         self.coordinates[0].home = home;
         self
     }
 
-    /// The same joint with limits on its first coordinate.
+    /// Sets the limits of the joint's first coordinate, radians or metres.
     #[must_use]
     pub fn within(mut self, limits: Option<[f64; 2]>) -> Self {
         self.coordinates[0].limits = limits;
         self
     }
 
-    /// Number of freedoms: 1, 2 or 3.
+    /// The number of freedoms: 1, 2 or 3.
     pub fn freedoms(&self) -> usize {
         self.coordinates.len()
     }
 
-    /// One unit screw a freedom, base to platform, at home. A cylindrical joint is a rotation, then
-    /// a translation; a spherical one is rotations about the base's x, y and z.
+    /// The unit screws of the joint at home, one per freedom, from base to platform. A cylindrical
+    /// joint is a rotation followed by a translation; a spherical joint is three rotations, about
+    /// the base's x, y and z.
     pub fn screws(&self) -> Vec<Screw> {
         let about = |axis| Screw::rotation(axis, self.point);
         match self.kind {
@@ -141,11 +146,12 @@ impl Joint {
         }
     }
 
-    /// Displacement of the outer link from home for the given coordinates, measured as they are
-    /// reported (home values included). A spherical joint's three are one rotation vector.
+    /// The displacement of the outer link from home for the given coordinate values. The values are
+    /// as reported, so they include the home values. The three values of a spherical joint are one
+    /// rotation vector.
     ///
     /// # Panics
-    /// If `values` has another length than [`Joint::coordinates`].
+    /// If `values` is not as long as [`Joint::coordinates`].
     pub fn displacement(&self, values: &[f64]) -> Isometry3<f64> {
         assert_eq!(values.len(), self.coordinates.len(), "joint {}: coordinates", self.name);
         let from_home = |i: usize| values[i] - self.coordinates[i].home;

@@ -5,35 +5,36 @@ use crate::mechanism::joint::{Joint, JointCoordinate};
 use nalgebra::{Isometry3, Vector3};
 use std::fmt;
 
-/// How a leg's imaginary joint is reported, where the mechanism has a convention for it.
+/// Name, origin and sign of a leg's imaginary joint, where the mechanism has a convention for them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImaginaryLabel {
-    /// Name, `theta11` for instance.
+    /// The joint's name, such as `theta11`.
     pub name: String,
-    /// Value at home, radians or metres.
+    /// The joint's value at home, radians or metres.
     pub home: f64,
-    /// The intersection motion along (or right-handed about) this direction counts as positive.
+    /// Motion along this direction, or right-handed rotation about it, counts as positive.
     pub positive: Vector3<f64>,
 }
 
-/// Joints in series from the base to the platform, at the assembled home pose.
+/// A leg: joints in series from the base to the platform, at the assembled home pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leg {
-    /// Name, unique in its mechanism.
+    /// The leg's name, unique in its mechanism.
     pub name: String,
-    /// Joints, base first.
+    /// The joints, from base to platform.
     pub joints: Vec<Joint>,
-    /// Name and origin of the imaginary joint; without it: `tau.NAME`, zero at home.
+    /// The convention for the imaginary joint. Without one, the joint is called `tau.NAME` and is
+    /// zero at home.
     pub imaginary: Option<ImaginaryLabel>,
 }
 
 impl Leg {
-    /// A leg whose imaginary joint, should it get one, has the default name.
+    /// Builds a leg whose imaginary joint, if it gets one, has the default name.
     pub fn new(name: impl Into<String>, joints: Vec<Joint>) -> Self {
         Self { name: name.into(), joints, imaginary: None }
     }
 
-    /// What the leg's imaginary joint is called, should it get one.
+    /// The name of the leg's imaginary joint, if it gets one.
     pub fn imaginary_name(&self) -> String {
         match &self.imaginary {
             Some(label) => label.name.clone(),
@@ -41,18 +42,19 @@ impl Leg {
         }
     }
 
-    /// One unit screw a freedom, base first, at home.
+    /// The unit screws of the leg at home, one per freedom, from base to platform.
     pub fn screws(&self) -> Vec<Screw> {
         self.joints.iter().flat_map(Joint::screws).collect()
     }
 
-    /// Every coordinate of every joint, base first: the order of [`Leg::displacement`]'s values.
+    /// Every coordinate of every joint, from base to platform. [`Leg::displacement`] takes its
+    /// values in this order.
     pub fn coordinates(&self) -> impl Iterator<Item = &JointCoordinate> {
         self.joints.iter().flat_map(|joint| &joint.coordinates)
     }
 
-    /// The platform's displacement from home for the joint coordinates of this leg: the product of
-    /// exponentials of its joints, read from the leg as it is, without any decomposition.
+    /// The platform's displacement from home for the joint coordinates of this leg. It is the
+    /// product of exponentials of the leg's joints and uses no decomposition.
     ///
     /// # Panics
     /// If there are fewer values than [`Leg::coordinates`].
@@ -66,12 +68,12 @@ impl Leg {
     }
 }
 
-/// One of the two sections of a leg.
+/// One of the two sections into which a leg is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Section {
-    /// Base side, inside `A`.
+    /// The section on the base side, which moves in the group `A`.
     Lower,
-    /// Platform side, inside `B`.
+    /// The section on the platform side, which moves in the group `B`.
     Upper,
 }
 

@@ -1,4 +1,4 @@
-//! Mechanisms from nothing but the screws of their joints.
+//! Mechanisms built from the screws of their joints alone.
 
 use super::{Mechanism, TaskHints};
 use crate::group::screw::Screw;
@@ -6,52 +6,56 @@ use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
 use nalgebra::{Point3, Unit, Vector3};
 
-/// A joint of one freedom.
+/// A joint with one freedom, given by its screw at home.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScrewJoint {
-    /// Name.
+    /// The joint's name.
     pub name: String,
-    /// Its twist at the assembled home for any rate but zero: only its direction counts.
+    /// The joint's twist `(ω; v)` at the assembled home, in base coordinates, for any nonzero rate:
+    /// its length does not matter.
     pub screw: Screw,
-    /// Driven by a motor.
+    /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// Its value at home, radians or metres.
+    /// The joint's value at home, radians or metres.
     pub home: f64,
-    /// Lowest and highest value.
+    /// Lowest and highest value, radians or metres; `None` without limits.
     pub limits: Option<[f64; 2]>,
 }
 
-/// A screw that is none.
+/// Why six numbers are not the screw of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ScrewError {
-    /// Nothing moves.
-    #[error("all six components are zero, expected (omega; v) of a joint")]
+    /// All six components are zero.
+    #[error("all six components are zero, expected the twist (omega; v) of a joint")]
     Zero,
-    /// Not a number, or too large to compute with.
-    #[error("{0} is among its components, expected numbers of a size of at most 1e9")]
+    /// A component is not a number, or too large to compute with.
+    #[error("{0} is among its components, expected numbers between -1e9 and 1e9")]
     Component(f64),
 }
 
-/// Larger than the place of any machine, metres: an axis that is further away is a translation, and
-/// its angular part is what rounding has left.
+/// Farther than the axis of any real joint, metres. A screw whose axis is farther away is a
+/// translation, and its angular part is left over from rounding.
 const FARTHEST: f64 = 1e9;
 
-/// Pitches over the mechanism's size that rounding may leave of none. Far below what the
-/// decomposition still takes for none ([`TOLERANCE`](crate::group::subspace::TOLERANCE)).
+/// Rounding may turn a zero pitch into one of this size, as a share of the mechanism's size. It is far
+/// below the pitch that the decomposition still takes for zero ([`TOLERANCE`](crate::group::subspace::TOLERANCE)).
 const ROUNDING: f64 = 1e-9;
 
 impl Screw {
-    /// Advance along the axis, metres a radian: `ω·v / ω²`.
+    /// The advance along the axis in metres per radian: `ω·v / ω²`.
     fn pitch(&self) -> f64 {
         self.angular.dot(&self.linear) / self.angular.norm_squared()
     }
 
-    /// The point of the axis that is nearest to the origin: `ω × v / ω²`.
+    /// The point of the axis nearest to the origin: `ω × v / ω²`.
     fn foot(&self) -> Vector3<f64> {
         self.angular.cross(&self.linear) / self.angular.norm_squared()
     }
 
-    /// With a unit vector along the axis; `Err` where there is none.
+    /// The screw scaled so that its axis has unit length.
+    ///
+    /// # Errors
+    /// [`ScrewError`] if the screw has no axis or cannot be computed with.
     fn normalized(&self) -> Result<Self, ScrewError> {
         let components = self.to_vector();
         if let Some(&odd) = components.iter().find(|c| c.is_nan() || c.abs() > FARTHEST) {
@@ -61,7 +65,7 @@ impl Screw {
         if largest == 0.0 {
             return Err(ScrewError::Zero);
         }
-        // First to numbers near one, whose squares neither vanish nor overflow.
+        // Scaled to numbers near one first: their squares neither vanish nor overflow.
         let Self { angular, linear } = Self::from_vector(&(components / largest));
         let (angle, slide) = (angular.norm(), linear.norm());
         Ok(if angle * FARTHEST < slide {
@@ -73,12 +77,13 @@ impl Screw {
 }
 
 impl Mechanism {
-    /// A mechanism whose legs have joints of one freedom, named each, base first. What a screw does
-    /// not tell is the point of its axis: the one nearest to the origin; of a prismatic joint the
-    /// platform's.
+    /// Builds a mechanism from named legs, each a list of joints of one freedom from base to platform.
+    ///
+    /// A screw does not say where on its axis the joint is: it is put at the axis's point nearest to
+    /// the origin. A prismatic joint is put at the platform's reference point.
     ///
     /// # Errors
-    /// The number of the leg and of its joint of which the screw is none.
+    /// The index of the leg, the index of the joint in it, and why its screw is not one of a joint.
     pub fn from_screws(
         name: impl Into<String>,
         legs: impl IntoIterator<Item = (String, Vec<ScrewJoint>)>,
@@ -123,7 +128,7 @@ mod tests {
     use super::*;
     use crate::mechanism::{examples, file};
 
-    /// Pitches and places of shipped mechanisms are up to a metre.
+    /// Pitches and positions in the shipped mechanisms are up to a metre.
     const CLOSE: f64 = 1e-14;
 
     fn from(screws: &[Screw]) -> Result<Mechanism, (usize, usize, ScrewError)> {
@@ -139,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn screws_of_any_length_are_the_joints_that_they_came_from() {
+    fn joints_are_recovered_from_screws_of_any_length() {
         for example in examples::EXAMPLES {
             let mechanism = file::read(example.text).unwrap().mechanism;
             let joints: Vec<_> = mechanism.joints().filter(|j| j.freedoms() == 1).collect();
@@ -162,18 +167,18 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_leaves_is_no_pitch_and_no_rotation() {
+    fn rounding_makes_neither_a_pitch_nor_a_rotation() {
         let (axis, point) = (Vector3::new(1.0, 2.0, -0.5), Vector3::new(0.1, -0.2, 0.3));
         let noise = Vector3::new(1e-17, -2e-17, 3e-17);
-        let turn = Screw { angular: axis, linear: point.cross(&axis) + axis * 1e-16 };
-        let slide = Screw { angular: noise, linear: axis };
-        let built = from(&[turn, slide]).unwrap();
+        let revolute = Screw { angular: axis, linear: point.cross(&axis) + axis * 1e-16 };
+        let prismatic = Screw { angular: noise, linear: axis };
+        let built = from(&[revolute, prismatic]).unwrap();
         let kinds: Vec<_> = built.joints().map(|joint| joint.kind).collect();
         assert_eq!(kinds, [JointKind::Revolute, JointKind::Prismatic]);
     }
 
     #[test]
-    fn a_screw_that_is_none_is_named() {
+    fn an_invalid_screw_is_reported_by_leg_and_joint() {
         let good = Screw::translation(Vector3::x_axis());
         let of = |linear| Screw { angular: Vector3::zeros(), linear };
         let zero = from(&[good, of(Vector3::zeros())]).unwrap_err();

@@ -1,13 +1,13 @@
-//! The motions that come with this crate, so that they can be used by name anywhere.
+//! The motion files that are built into this crate and can be used by name.
 
-/// A motion file inside this crate.
+/// A motion file that is built into this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MotionExample {
-    /// Its name: the motion's name, and the file's without `.toml`.
+    /// The motion's name, which is also the file's name without `.toml`.
     pub name: &'static str,
-    /// The example mechanism that it was made for.
+    /// The example mechanism that the motion was made for.
     pub mechanism: &'static str,
-    /// What it is, on one line.
+    /// A description on one line.
     pub description: &'static str,
     /// The text of the file.
     pub text: &'static str,
@@ -29,7 +29,7 @@ pub const MOTIONS: &[MotionExample] = &[
     },
 ];
 
-/// The example of this name.
+/// The example with this name, if there is one.
 pub fn find(name: &str) -> Option<&'static MotionExample> {
     MOTIONS.iter().find(|example| example.name == name)
 }

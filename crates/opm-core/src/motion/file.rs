@@ -1,4 +1,5 @@
-//! Motion files: TOML in, a [`Motion`] out, or every problem of the file with its place.
+//! Motion files: TOML text is read into a [`Motion`], or every problem is reported with its
+//! location.
 //!
 //! ```toml
 //! format = 1
@@ -6,26 +7,25 @@
 //! units = { length = "mm", angle = "deg" }   # as in mechanism files
 //! duration = 10                              # seconds
 //! rate = 100                                 # samples a second
-//! mode = "++ ++ ++ +"                        # may be left out: home's
+//! mode = "++ ++ ++ +"                        # optional; default: home's
 //!
-//! [coordinates]                              # task coordinates, absolute; what is left out stays home
+//! [coordinates]                              # absolute task coordinates; the others stay at home
 //! x = { amplitude = 30, frequency = 0.2 }
 //! y = { amplitude = 15, frequency = 0.4, phase = 90, offset = 10 }
 //! zeta = 5
 //! xi = [{ amplitude = 10, frequency = 0.1 }, { amplitude = 2, frequency = 0.7, phase = 45 }]
 //! ```
 //!
-//! A coordinate is a number, which it keeps; one sinusoid; or an array of sinusoids, which are added
-//! up:
+//! A coordinate is a constant number, one sinusoid, or an array of sinusoids that are added. A
+//! sinusoid is
 //!
 //! ```text
 //! offset + amplitude · sin(2π · frequency · t + phase)
 //! ```
 //!
-//! Amplitudes and offsets are in the file's unit of what the coordinate measures, phases in its unit
-//! of angle; frequencies are in hertz and times in seconds whatever the units. `phase` and `offset`
-//! are zero where they are not given. Unknown keys are problems, with the nearest known one as a
-//! hint.
+//! Amplitudes and offsets are in the file's unit for the coordinate, phases in its unit for angles.
+//! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
+//! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
 use super::{Harmonics, Motion, Path, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
@@ -35,7 +35,8 @@ use crate::numeric::Quantity;
 /// Reads the text of a motion file, in the task coordinates and working modes of `manipulator`.
 ///
 /// # Errors
-/// Every problem of the file. Where the text is not TOML: the parser's problems only.
+/// [`FileErrors`] lists every problem of the file; if the text is not TOML, only the parser's
+/// problems.
 pub fn read(text: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
     document(text, "motion", |root| read_document(root, manipulator))
 }
@@ -49,14 +50,14 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Motion> 
         if number > 0.0 && number <= LARGEST {
             return Some(number);
         }
-        value.report(format!("is {number}, expected {expected}, above 0 and at most {LARGEST:e}"));
+        value.report(format!("is {number}, expected {expected} above 0 and up to {LARGEST:e}"));
         None
     };
     let duration = positive("duration", "a number of seconds");
     let rate = positive("rate", "a number of samples a second");
     let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
     let coordinates = root
-        .require("coordinates", "a table [coordinates] of what moves")
+        .require("coordinates", "a table [coordinates] of the coordinates that move")
         .and_then(|value| value.open_table())
         .map(|table| read_coordinates(&table, manipulator));
     Some(Motion {
@@ -77,7 +78,8 @@ fn read_mode(value: &Value<'_>, manipulator: &Manipulator) -> Option<Mode> {
     let mode = manipulator.parse_mode(text);
     mode.map_err(|error| {
         value.report(format!(
-            "is {text:?}: {}, expected `home` or one sign for every choice, a group a leg: {:?}",
+            "is {text:?}: {}, expected `home` or one sign for every choice, in a group for each leg, as \
+             in {:?}",
             error.problem, error.example
         ));
     })
@@ -106,10 +108,10 @@ fn read_harmonics(value: &Value<'_>, quantity: Quantity) -> Harmonics {
             return;
         };
         let amplitude = table
-            .require("amplitude", "how far it swings to either side")
+            .require("amplitude", "the amplitude of the sinusoid")
             .and_then(|value| value.quantity(quantity));
         let frequency = table
-            .require("frequency", "a number of hertz")
+            .require("frequency", "the frequency in hertz")
             .and_then(|value| read_frequency(&value));
         let of = |key: &str, quantity| {
             let value = table.get(key).and_then(|value| value.quantity(quantity));

@@ -1,14 +1,16 @@
-//! Motions as CSV: times and poses, with cubic splines between them.
+//! Tables of poses as CSV, with cubic splines between the poses.
 //!
-//! The first line is a header: `t` and task coordinates, in any order; a coordinate that it does not
-//! name stays at home. Every other line is a pose: seconds, metres and radians. Times increase from
-//! line to line, evenly or not, and there are at least three.
+//! The first line is a header: `t` and names of task coordinates, in any order. A coordinate that
+//! is not named stays at home. Every other line is a pose in seconds, metres and radians. There are
+//! at least three lines, and times increase from line to line, at equal or different steps.
 //!
-//! Between the lines runs the natural cubic spline ([`Spline`]): position, velocity and acceleration
-//! are continuous, and at both ends the acceleration is zero, while the velocity there is whatever
-//! the poses say. Angles are unwrapped first: each is brought within half a turn of the line before,
-//! so that a table that wraps around at ±π moves on and does not spin back. An angle whose whole
-//! turns matter, because a helical joint follows it, is taken as it stands.
+//! The natural cubic spline ([`Spline`]) runs between the lines: position, velocity and
+//! acceleration are continuous. The acceleration is zero at both ends; the velocity there follows
+//! from the poses.
+//!
+//! Angles are unwrapped first: each angle is shifted by multiples of 2π to within π of the previous
+//! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
+//! full revolutions matter, because a helical joint follows it, is not unwrapped.
 
 use super::{Motion, Path, Spline};
 use crate::manipulator::Manipulator;
@@ -16,14 +18,16 @@ use crate::mechanism::file::{FileErrors, LARGEST, Problem};
 use crate::numeric::Quantity;
 use std::f64::consts::TAU;
 
-/// Problems that are told one by one; a file with more of them is another kind of file.
+/// The largest number of problems that are listed one by one. A file with more of them is probably
+/// not a table of poses.
 const MOST_PROBLEMS: usize = 100;
 
-/// Reads the text of a table of poses, in the task coordinates of `manipulator`. The motion has the
-/// name `name`.
+/// Reads the text of a table of poses, in the task coordinates of `manipulator`. The motion gets
+/// the name `name`.
 ///
 /// # Errors
-/// Every problem of the table with its line and column; from the hundredth on, only how many more.
+/// [`FileErrors`] lists every problem of the table with its location; beyond the first hundred,
+/// only their number.
 pub fn read(text: &str, name: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
     let mut problems = Problems::default();
     let motion = read_table(text, name, manipulator, &mut problems);
@@ -50,8 +54,9 @@ impl Problems {
 
     fn into_errors(mut self) -> FileErrors {
         if self.more > 0 {
+            let problems = if self.more == 1 { "problem" } else { "problems" };
             let last = self.list.last().map_or(1, |problem| problem.line);
-            let message = format!("and {} more problems from here on", self.more);
+            let message = format!("and {} more {problems} from here on", self.more);
             self.list.push(Problem { line: last, column: 1, message });
         }
         FileErrors { problems: self.list }
@@ -127,7 +132,7 @@ fn read_table(
     }
 }
 
-/// What a column of the table is: `None` the time, or the number of a task coordinate.
+/// The meaning of a column: `None` for the time, or the index of a task coordinate.
 type Column = Option<usize>;
 
 fn read_header(
@@ -149,7 +154,7 @@ fn read_header(
             }
         };
         if columns.contains(&column) {
-            problems.report(number, at, format!("{cell} is there twice, {}", expected()));
+            problems.report(number, at, format!("two columns are called {cell}, {}", expected()));
         }
         columns.push(column);
     }
@@ -159,7 +164,7 @@ fn read_header(
     problems.list.is_empty().then_some(columns)
 }
 
-/// A line to be read.
+/// A line of the table, with the meaning of its columns.
 #[derive(Clone, Copy)]
 struct Row<'a> {
     number: usize,
@@ -196,12 +201,13 @@ fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problem
         }
     }
     if found != columns.len() {
-        let (cells, expected) = (found, columns.len());
-        problems.report(number, 1, format!("{cells} cells, expected {expected} as in the header"));
+        let (cells, expected) = (if found == 1 { "cell" } else { "cells" }, columns.len());
+        let problem = format!("{found} {cells}, expected {expected} as in the header");
+        problems.report(number, 1, problem);
     }
 }
 
-/// Brings every angle within half a turn of the one before.
+/// Shifts every angle by multiples of 2π to within π of the previous one.
 fn unwrap(angles: &mut [f64]) {
     for i in 1..angles.len() {
         angles[i] -= TAU * ((angles[i] - angles[i - 1]) / TAU).round();

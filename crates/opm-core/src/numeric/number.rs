@@ -1,9 +1,9 @@
-//! Numbers in messages.
+//! Formatting of numbers in messages.
 
-/// From here on digits before the point are no longer counted at a glance.
+/// From this size on, the digits before the decimal point are too many to count at a glance.
 const LARGE: f64 = 1e15;
 
-/// A number as people write it: with an exponent where it would be a row of zeros.
+/// Formats a number, with an exponent if it would otherwise be a long row of digits.
 pub fn readable(value: f64) -> String {
     if value.abs() < LARGE { value.to_string() } else { format!("{value:e}") }
 }

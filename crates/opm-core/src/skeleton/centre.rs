@@ -1,8 +1,8 @@
 //! Where on its axis a joint is drawn.
 //!
-//! At the point that the mechanism gives it, with two exceptions. A slider goes to where the next
-//! joint stands on it. And axes of one centre (the joints of a spherical section) are drawn each at
-//! the same distance out from there, or all of their links would have no length.
+//! A joint is drawn at the point that the mechanism gives, with two exceptions. A slider is drawn
+//! at the joint that it carries. Axes through one centre (the joints of a spherical section) are
+//! drawn at equal distances from the centre, because otherwise their links would have no length.
 
 use crate::decomposition::mobility::frame;
 use crate::mechanism::Mechanism;
@@ -10,16 +10,17 @@ use crate::mechanism::joint::{Joint, JointKind};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 
-/// Points closer than this, as a share of the mechanism's size, are one.
+/// Points closer than this, as a share of the mechanism's size, count as one.
 pub(super) const TOUCH: f64 = 1e-6;
 
-/// How far out from a common centre its axes' joints are, as a share of the mechanism's size.
+/// The distance of joints from a common centre of their axes, as a share of the mechanism's size.
 const OUT: f64 = 0.25;
 
-/// A mechanism is at least this share of its longest slider's travel large, however small its links.
+/// The mechanism's size is at least this share of its longest slider's travel, however small its
+/// links are.
 const TRAVEL: f64 = 0.2;
 
-/// How large the mechanism is to look at, metres: the joints' points and the platform's lie within
+/// The size of the mechanism for drawing, metres. The joints' points and the platform's are within
 /// this distance of each other, unless sliders travel farther.
 pub(super) fn size(mechanism: &Mechanism) -> f64 {
     let points: Vec<_> =
@@ -29,11 +30,12 @@ pub(super) fn size(mechanism: &Mechanism) -> f64 {
     let lengths = mechanism.coordinates().filter(|c| c.quantity == Quantity::Length);
     let travel = lengths.filter_map(|c| c.limits.map(|[low, high]| high - low));
     let size = travel.map(|travel| TRAVEL * travel).fold(across, f64::max);
-    // Where all axes go through one point there is no length but that of the drawing.
+    // If all axes pass through one point, the mechanism has no length; any size will do for
+    // drawing.
     if size > 0.0 { size } else { frame(mechanism).length }
 }
 
-/// Centres of every joint, leg by leg.
+/// The centres of all joints, leg by leg, metres.
 pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>> {
     let touch = TOUCH * size;
     let mut legs: Vec<Vec<_>> = mechanism
@@ -50,7 +52,7 @@ pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>>
                         && (joint.point - mechanism.platform).norm() <= touch));
             if crowded {
                 let out = joint.axis.into_inner() * (OUT * size);
-                // On the side of the joint before.
+                // On the side of the previous joint.
                 let behind = i > 0 && out.dot(&(centres[i - 1] - joint.point)) < -touch * size;
                 centres[i] = joint.point + if behind { -out } else { out };
             }
@@ -68,7 +70,7 @@ pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>>
     legs
 }
 
-/// Points in the order in which one passes them on the way around their middle.
+/// Sorts points by the angle around their middle.
 pub(super) fn around(mut points: Vec<Point3<f64>>) -> Vec<Point3<f64>> {
     let sum: Vector3<f64> = points.iter().map(|p| p.coords).sum();
     let middle = Point3::from(sum / points.len().max(1) as f64);
@@ -90,7 +92,7 @@ fn turns_about_axis(joint: &Joint) -> bool {
     }
 }
 
-/// Whether another joint turns about the same point, but about another axis.
+/// Whether another joint rotates about the same point, but about another axis.
 fn crowd(mechanism: &Mechanism, given: &[Vec<Point3<f64>>], own: [usize; 2], touch: f64) -> bool {
     let joint = &mechanism.legs[own[0]].joints[own[1]];
     let point = given[own[0]][own[1]];
@@ -104,7 +106,7 @@ fn crowd(mechanism: &Mechanism, given: &[Vec<Point3<f64>>], own: [usize; 2], tou
     })
 }
 
-/// The point of a joint's axis that is nearest to `p`.
+/// The point of a joint's axis nearest to `p`.
 fn foot(joint: &Joint, p: &Point3<f64>) -> Point3<f64> {
     let axis: Vector3<f64> = joint.axis.into_inner();
     joint.point + axis * axis.dot(&(p - joint.point))

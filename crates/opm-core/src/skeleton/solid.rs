@@ -1,4 +1,4 @@
-//! What bodies look like: rods, pins, balls and blocks.
+//! The shapes of bodies: rods, pins, balls and blocks.
 
 use super::centre::TOUCH;
 use crate::mechanism::joint::{Joint, JointKind};
@@ -7,58 +7,60 @@ use nalgebra::{Point3, Unit, Vector3};
 /// A simple solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {
-    /// A round rod between the middles of its two ends.
+    /// A round rod between the centres of its two ends.
     Cylinder {
-        /// One end.
+        /// The centre of one end, metres.
         from: Point3<f64>,
-        /// The other.
+        /// The centre of the other end, metres.
         to: Point3<f64>,
-        /// Metres.
+        /// Radius, metres.
         radius: f64,
     },
     /// A ball.
     Ball {
-        /// Middle.
+        /// Centre, metres.
         centre: Point3<f64>,
-        /// Metres.
+        /// Radius, metres.
         radius: f64,
     },
-    /// A block, longest along `axis`; how it is turned about that does not matter, since it is square.
+    /// A block, longest along `axis`. Its cross-section is square; its rotation about the axis is
+    /// not specified.
     Block {
-        /// Middle.
+        /// Centre, metres.
         centre: Point3<f64>,
-        /// Direction of its length.
+        /// Direction of the length.
         axis: Unit<Vector3<f64>>,
-        /// Metres.
+        /// Length along the axis, metres.
         length: f64,
-        /// Of its other two sides, metres.
+        /// Length of the sides perpendicular to the axis, metres.
         width: f64,
     },
 }
 
-/// What a part is made of: what decides its colour.
+/// The kind of body or joint that a part belongs to, which decides its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Material {
-    /// Of the base.
+    /// A part of the base.
     Base,
-    /// Of a link.
+    /// A part of a link.
     Link,
-    /// Of a joint with a motor.
+    /// A part of an actuated joint.
     Actuated,
-    /// Of a joint without one.
+    /// A part of a passive joint.
     Passive,
-    /// Of the platform.
+    /// A part of the platform.
     Platform,
-    /// Of what is not there: imaginary joints and their links. To be drawn translucent.
+    /// A part of something that does not exist physically: an imaginary joint or its link. Draw it
+    /// translucent.
     Imaginary,
 }
 
-/// A solid of a body.
+/// A solid that is a part of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Its shape, in the body's frame.
+    /// The shape, in the body's frame.
     pub solid: Solid,
-    /// What it is made of.
+    /// The kind of body or joint, which decides the colour.
     pub material: Material,
 }
 
@@ -71,7 +73,7 @@ impl Solid {
         Self::Ball { centre, radius }
     }
 
-    /// The same solid somewhere else.
+    /// The same solid, moved by a vector.
     #[must_use]
     pub(super) fn moved(self, by: Vector3<f64>) -> Self {
         match self {
@@ -86,10 +88,10 @@ impl Solid {
     }
 }
 
-/// Sizes of parts, metres, in proportion to the mechanism.
+/// Sizes of parts in metres, in proportion to the mechanism.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
-    /// Shorter rods are not drawn.
+    /// Rods shorter than this are not drawn.
     pub touch: f64,
     /// Radius of a rod.
     pub rod: f64,
@@ -97,17 +99,17 @@ pub(super) struct Sizes {
     pub ball: f64,
     /// Length of the collar around a pin.
     pub collar: f64,
-    /// How far a slider without limits is drawn to go, to either side.
+    /// How far a slider without limits is drawn to travel to either side.
     pub travel: f64,
     pin: f64,
 }
 
-/// Whose part it is.
+/// Which of a joint's two bodies a part belongs to, and its colour.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// The joint's outer body's, or its inner one's.
+    /// Whether the part belongs to the joint's body on the platform side.
     pub outer: bool,
-    /// It has the joint's own colour, or its body's.
+    /// Whether the part has the joint's own colour rather than its body's.
     pub own: bool,
 }
 
@@ -123,7 +125,7 @@ impl Sizes {
         }
     }
 
-    /// The parts of a joint at its centre.
+    /// The parts of a joint with the given centre.
     pub fn joint(&self, joint: &Joint, centre: Point3<f64>) -> Vec<(Side, Solid)> {
         let inner = |own| Side { outer: false, own };
         let outer = |own| Side { outer: true, own };
@@ -153,7 +155,7 @@ impl Sizes {
         }
     }
 
-    /// A pin.
+    /// A pin along an axis.
     pub fn pin(&self, centre: Point3<f64>, axis: Unit<Vector3<f64>>) -> Solid {
         self.cylinder(centre, axis, self.pin, 1.2 * self.rod)
     }
@@ -163,7 +165,7 @@ impl Sizes {
         self.cylinder(centre, axis, self.collar, 2.0 * self.rod)
     }
 
-    /// A slider on a rail.
+    /// The slider of a rail.
     pub fn block(&self, centre: Point3<f64>, axis: Unit<Vector3<f64>>) -> Solid {
         Solid::Block { centre, axis, length: 1.6 * self.collar, width: self.collar }
     }
@@ -172,7 +174,8 @@ impl Sizes {
         self.cylinder(centre, axis, 1.6 * self.collar, 2.0 * self.rod)
     }
 
-    /// As far as the slider goes: `advance` metres for one of the coordinate.
+    /// A rail as long as the slider's travel; the slider moves `advance` metres per unit of the
+    /// coordinate.
     fn rail(&self, joint: &Joint, coordinate: usize, advance: f64, centre: Point3<f64>) -> Solid {
         let coordinate = &joint.coordinates[coordinate];
         let [low, high] = match coordinate.limits {
@@ -180,7 +183,7 @@ impl Sizes {
             None => [-self.travel, self.travel],
         };
         let (low, high) = (low.min(high), low.max(high));
-        // A little farther, so that the slider at its limit is still on it.
+        // A little longer, so that the slider is still on it at its limit.
         let at = |s: f64| centre + joint.axis.into_inner() * s;
         Solid::rod([at(low - self.collar), at(high + self.collar)], 0.6 * self.rod)
     }

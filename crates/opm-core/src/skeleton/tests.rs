@@ -1,4 +1,5 @@
-//! Skeletons of the shipped mechanisms: at home, and that what shares a joint stays together.
+//! Skeletons of the shipped mechanisms: their frames at home, and that bodies with a common joint
+//! stay together.
 
 use super::*;
 use crate::decomposition::mobility::frame;
@@ -7,24 +8,26 @@ use crate::mechanism::examples::EXAMPLES;
 use crate::mechanism::file;
 use std::collections::HashSet;
 
-/// Rounding of a leg's product of exponentials, as a share of the mechanism's size.
+/// Tolerance: rounding of a leg's product of exponentials, as a share of the mechanism's size.
 const ROUNDING: f64 = 1e-12;
 
 fn manipulators() -> Vec<Manipulator> {
     let mechanism = |text| file::read(text).unwrap().mechanism;
     let all: Vec<_> =
         EXAMPLES.iter().filter_map(|e| Manipulator::new(mechanism(e.text)).ok()).collect();
-    assert!(all.len() >= EXAMPLES.len() - 1, "all but the linkage");
+    assert!(all.len() >= EXAMPLES.len() - 1, "all mechanisms except the linkage");
     all
 }
 
 fn skeleton(manipulator: &Manipulator) -> Skeleton {
-    let cuts =
-        Cuts { decomposition: manipulator.decomposition(), imaginary: manipulator.imaginary() };
-    Skeleton::new(manipulator.mechanism(), cuts)
+    let imaginary_joints = ImaginaryJoints {
+        decomposition: manipulator.decomposition(),
+        imaginary: manipulator.imaginary(),
+    };
+    Skeleton::new(manipulator.mechanism(), imaginary_joints)
 }
 
-/// Transforms to the base.
+/// The transforms from each body's frame to the base's.
 fn absolute(skeleton: &Skeleton, placed: &[Isometry3<f64>]) -> Vec<Isometry3<f64>> {
     let mut all: Vec<Isometry3<f64>> = Vec::new();
     for (body, transform) in skeleton.bodies().iter().zip(placed) {
@@ -40,9 +43,9 @@ fn at_home_frames_stand_at_their_origins() {
         let joints: Vec<f64> = manipulator.coordinates().iter().map(|c| c.home).collect();
         let imaginary: Vec<f64> = manipulator.imaginary().iter().map(|j| j.home).collect();
         let platform = Isometry3::identity();
-        let posture = Posture { joints: &joints, imaginary: &imaginary, platform };
+        let configuration = Configuration { joints: &joints, imaginary: &imaginary, platform };
         let mut placed = Vec::new();
-        skeleton.place(&posture, &mut placed);
+        skeleton.place(&configuration, &mut placed);
         for (body, g) in skeleton.bodies().iter().zip(absolute(&skeleton, &placed)) {
             assert!((g.translation.vector - body.origin.coords).norm() < ROUNDING, "{}", body.name);
             assert!(g.rotation.angle() < ROUNDING, "{}", body.name);
@@ -52,8 +55,9 @@ fn at_home_frames_stand_at_their_origins() {
     }
 }
 
-/// Every joint, real or imaginary, is seated in two bodies, whose views of it agree at poses around
-/// home. The platform is placed by the pose alone, so that this is also the closure of every leg.
+/// Every joint, real or imaginary, belongs to two bodies. Its centre and axis agree in both of
+/// them, at poses around home. The platform is moved by the pose alone, so this also tests the
+/// closure of every leg.
 #[test]
 fn what_shares_a_joint_stays_together() {
     for manipulator in manipulators() {
@@ -81,7 +85,7 @@ fn what_shares_a_joint_stays_together() {
             reached += 1;
             let platform = manipulator.task().displacement(&pose);
             let (joints, imaginary) = (&solution.joints, &solution.imaginary);
-            skeleton.place(&Posture { joints, imaginary, platform }, &mut placed);
+            skeleton.place(&Configuration { joints, imaginary, platform }, &mut placed);
             let frames = absolute(&skeleton, &placed);
             let mut seats: Vec<(&Seat, Isometry3<f64>)> = Vec::new();
             for (body, g) in skeleton.bodies().iter().zip(&frames) {

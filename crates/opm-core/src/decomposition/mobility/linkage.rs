@@ -1,4 +1,5 @@
-//! Legs as chains of unit freedoms in the normalised frame: closure, ranks, and displaced poses.
+//! Legs as chains of unit freedoms in the normalised frame: loop closure, ranks and displaced
+//! poses.
 
 use super::{MAX_FREEDOMS, MobilityError, frame};
 use crate::group::screw::Screw;
@@ -7,37 +8,38 @@ use crate::mechanism::Mechanism;
 use crate::numeric::svd;
 use nalgebra::{DMatrix, Isometry3, Vector6};
 
-/// A mechanism as screws: one freedom after the other, leg by leg, in its normalised frame.
+/// A mechanism as screws in its normalised frame: freedom by freedom, leg by leg.
 pub(crate) struct Linkage {
     pub frame: Frame,
-    /// Whether a freedom is driven, leg by leg.
+    /// For every freedom, leg by leg, whether it is actuated.
     pub actuated: Vec<bool>,
-    /// Normalised screws at home.
+    /// The normalised screws at home.
     legs: Vec<Vec<Screw>>,
 }
 
-/// Where the joints of every leg are, and where each leg would put the platform.
+/// The screws of every leg in a pose, and the displacement of the platform that each leg gives.
 pub(crate) struct Pose {
     screws: Vec<Vec<Screw>>,
     tips: Vec<Isometry3<f64>>,
 }
 
-/// Dimensions that a pose of a mechanism has to first order.
+/// The ranks of the first-order kinematics in a pose.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Ranks {
-    /// Of the span of all screws.
+    /// Dimension of the span of all screws.
     pub lambda: usize,
-    /// First-order motions.
+    /// The number of independent first-order motions.
     pub mobility: usize,
-    /// First-order motions with the actuators locked.
+    /// The number of independent first-order motions with the actuators locked.
     pub locked: usize,
-    /// Of the span of each leg's screws.
+    /// Dimension of the span of each leg's screws.
     pub legs: Vec<usize>,
 }
 
-/// The loop-closure matrix of unit screws, leg by leg: six rows a leg, one column a screw and six
-/// for the platform's twist. Its kernel are the first-order motions `(q̇, t)`, `J_k q̇_k − t = 0`; no
-/// leg is singled out, so a permutation of legs permutes rows and columns.
+/// The loop-closure matrix of unit screws: six rows per leg, one column per screw (leg by leg), and
+/// six columns for the platform's twist. Its kernel is the set of first-order motions `(q̇, t)`
+/// with `J_k q̇_k − t = 0`. No leg is singled out, so a permutation of the legs only permutes rows
+/// and columns.
 pub(crate) fn loop_closure(legs: &[Vec<Vector6<f64>>]) -> DMatrix<f64> {
     let freedoms: usize = legs.iter().map(Vec::len).sum();
     let mut closure = DMatrix::zeros(6 * legs.len(), freedoms + 6);
@@ -95,7 +97,8 @@ impl Linkage {
         self.pose(&vec![0.0; self.actuated.len()])
     }
 
-    /// The pose at given coordinates (radians, and lengths in the frame's unit), closed or not.
+    /// The pose at given coordinates (radians, and lengths in the frame's unit), whether it closes
+    /// or not.
     pub fn pose(&self, coordinates: &[f64]) -> Pose {
         let mut coordinates = coordinates.iter();
         let (mut screws, mut tips) = (vec![], vec![]);
@@ -112,13 +115,13 @@ impl Linkage {
         Pose { screws, tips }
     }
 
-    /// Unit screws of a pose, leg by leg.
+    /// The unit screws of a pose, leg by leg.
     pub fn units(&self, pose: &Pose) -> Vec<Vec<Vector6<f64>>> {
         let unit = |screw: &Screw| screw.to_vector().normalize();
         pose.screws.iter().map(|leg| leg.iter().map(unit).collect()).collect()
     }
 
-    /// Those of the freedoms that are not driven.
+    /// The unit screws of the passive freedoms, leg by leg.
     pub fn passive(&self, units: &[Vec<Vector6<f64>>]) -> Vec<Vec<Vector6<f64>>> {
         let mut actuated = self.actuated.iter();
         let keep = |leg: &Vec<Vector6<f64>>| {
@@ -127,7 +130,7 @@ impl Linkage {
         units.iter().map(keep).collect()
     }
 
-    /// Dimensions of a pose, with singular values under `tolerance` of the largest as zero.
+    /// The ranks in a pose. Singular values below `tolerance` of the largest count as zero.
     pub fn ranks(&self, pose: &Pose, tolerance: f64) -> Ranks {
         let units = self.units(pose);
         let nullity = |legs: &[Vec<Vector6<f64>>]| {
@@ -149,8 +152,8 @@ fn rank(vectors: &[Vector6<f64>], tolerance: f64) -> usize {
 }
 
 impl Pose {
-    /// By how much each leg misses a platform displacement: a twist for each, six rows a leg, of
-    /// first order in the error.
+    /// The difference between each leg's displacement and that of the platform: one twist (six
+    /// rows) per leg, to first order.
     pub fn gaps(&self, platform: &Isometry3<f64>) -> nalgebra::DVector<f64> {
         let gap = |tip: &Isometry3<f64>| {
             let error = tip * platform.inverse();
@@ -161,7 +164,7 @@ impl Pose {
         twists.into()
     }
 
-    /// Derivative of [`Pose::gaps`] by the coordinates and by a twist of the platform.
+    /// The derivative of [`Pose::gaps`] by the coordinates and by a twist of the platform.
     pub fn derivative(&self) -> DMatrix<f64> {
         let vectors = |leg: &Vec<Screw>| leg.iter().map(|s| s.to_vector()).collect();
         loop_closure(&self.screws.iter().map(vectors).collect::<Vec<_>>())
@@ -173,7 +176,7 @@ mod tests {
     use super::*;
     use crate::decomposition::samples;
 
-    /// Central differences of step 1e-6 are good to the square of it, and to rounding over it.
+    /// The error of central differences with step 1e-6 is its square, plus rounding divided by it.
     const DIFFERENCE: f64 = 1e-8;
 
     #[test]
@@ -181,7 +184,7 @@ mod tests {
         let mechanism = samples::PlanoSpherical::default().mechanism();
         let linkage = Linkage::new(&mechanism).unwrap();
         let n = linkage.actuated.len();
-        // The derivative holds where the legs meet: at home.
+        // The formula holds where the legs meet: at home.
         let derivative = linkage.home().derivative();
         let step = 1e-6;
         for column in 0..n + 6 {

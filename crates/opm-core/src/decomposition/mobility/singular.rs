@@ -1,10 +1,10 @@
-//! Is home a singular pose? Its ranks beside those of assembled poses nearby.
+//! Singularity of the home pose: its ranks compared with those of assembled poses nearby.
 //!
-//! Ranks drop in special poses and never rise, so a pose is singular if some pose nearby has a
-//! higher rank. A pose nearby is found by a first-order motion of finite size, projected back onto
-//! the loop closure by Levenberg-Marquardt steps damped by the remaining gap, which converge
-//! quadratically also where the closure's rank is deficient, as it is in every overconstrained
-//! mechanism (Fan and Yuan, Computing 74, 2005).
+//! Ranks drop in special poses and never rise, so a pose is singular if a pose nearby has a higher
+//! rank. Such a pose is found by a first-order motion of finite size, which is projected back onto
+//! the loop closure by Levenberg-Marquardt steps with the remaining gap as damping. They converge
+//! quadratically even if the closure's rank is deficient (Fan and Yuan, Computing 74, 2005), as it
+//! is in every overconstrained mechanism.
 
 use super::linkage::{Linkage, Pose, Ranks};
 use crate::group::screw::Screw;
@@ -14,61 +14,63 @@ use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, DVector, Isometry3, Vector6};
 use std::fmt;
 
-/// Sizes of the motion to a nearby pose, tried in this order: radians, and shares of the
-/// characteristic length. Near a singular pose ranks cannot be told from those at it, so the first
-/// that closes is taken.
+/// Sizes of the motion to a nearby pose, in the order in which they are tried: radians, and shares
+/// of the characteristic length. Near a singular pose its ranks cannot be distinguished from those
+/// nearby, so the largest motion that closes is taken.
 const NEARBY: [f64; 3] = [0.3, 0.1, 0.03];
-/// A projection that ends with less than this share of the motion has gone back home.
+/// A projection that leaves less than this share of the motion has returned to home.
 const AWAY: f64 = 0.3;
-/// First-order motions tried; each is generic by itself, more only guard against a coincidence.
+/// The number of first-order motions that are tried. Each one is generic; more of them only guard
+/// against coincidences.
 const SAMPLES: usize = 3;
-/// Steps of the projection, and what counts as closed. Coordinates with six digits close an
-/// overconstrained mechanism no better than the tolerance of ranks.
+/// The largest number of projection steps, and the gap that counts as closed. Coordinates with six
+/// digits close an overconstrained mechanism only to within the tolerance of ranks.
 const MAX_STEPS: usize = 40;
 const CLOSED: f64 = 1e-12;
-/// A step that leaves more than this share of the gap has met the rounding of the input.
+/// A step that leaves more than this share of the gap has reached the rounding of the input.
 const STALLED: f64 = 0.99;
-/// A singular value that is zero at home but not in general grows with the distance from home. What
-/// is this large is neither rounding nor the zero at home itself.
+/// A singular value that is zero at home, but not in general, grows with the distance from home.
+/// One of this size is neither rounding nor the zero at home itself.
 const CLEARLY_NONZERO: f64 = 3.0 * TOLERANCE;
 
 /// One respect in which the home pose is more degenerate than assembled poses nearby.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HomeSingularity {
-    /// Serial singularity: a leg's joint screws are dependent, so the leg cannot move the platform
-    /// in some direction, and two of its working modes meet.
+    /// Serial singularity: the joint screws of a leg are linearly dependent. The leg cannot move
+    /// the platform in some direction, and two of its working modes meet.
     Serial {
-        /// Name of the leg.
+        /// The name of the leg.
         leg: String,
-        /// Dimension of the span of its screws at home.
+        /// Dimension of the span of the leg's screws at home.
         home: usize,
-        /// The same nearby.
+        /// Dimension of the span of the leg's screws nearby.
         nearby: usize,
     },
-    /// Parallel singularity: more motions are left with the actuators locked than nearby.
+    /// Parallel singularity: with the actuators locked, more motions are left than nearby.
     Parallel {
-        /// Freedoms with the actuators locked at home.
+        /// The number of freedoms at home with the actuators locked.
         home: usize,
-        /// The same nearby.
+        /// The number of freedoms nearby with the actuators locked.
         nearby: usize,
     },
-    /// The mobility `N` at home is not that of the mechanism (constraint singularity).
+    /// Constraint singularity: the mobility `N` at home is larger than nearby.
     Constraint {
-        /// `N` at home.
+        /// Mobility `N` at home.
         home: usize,
-        /// `N` nearby.
+        /// Mobility `N` nearby.
         nearby: usize,
     },
-    /// No assembled pose nearby: the structure moves to first order (it is shaky), but not on.
+    /// No assembled pose nearby: the structure moves to first order (it is shaky), but not
+    /// finitely.
     Isolated {
-        /// `N` at home.
+        /// Mobility `N` at home.
         mobility: usize,
     },
-    /// All joint screws together span less than they do nearby.
+    /// The span of all joint screws is smaller at home than nearby.
     Span {
-        /// `lambda` at home.
+        /// Dimension `lambda` of the span at home.
         home: usize,
-        /// `lambda` nearby.
+        /// Dimension `lambda` of the span nearby.
         nearby: usize,
     },
 }
@@ -98,7 +100,7 @@ impl fmt::Display for HomeSingularity {
     }
 }
 
-/// Every respect in which home, with its `ranks`, is singular.
+/// Every respect in which home, with the given `ranks`, is singular.
 pub(super) fn singularities(
     linkage: &Linkage,
     ranks: &Ranks,
@@ -132,7 +134,7 @@ pub(super) fn singularities(
     found
 }
 
-/// The least degenerate ranks met nearby; `None` if no pose nearby closes.
+/// The least degenerate ranks found nearby; `None` if no pose nearby closes.
 fn generic_ranks(linkage: &Linkage) -> Option<Ranks> {
     let regular = |a: Ranks, b: Ranks| Ranks {
         lambda: a.lambda.max(b.lambda),
@@ -147,10 +149,10 @@ fn generic_ranks(linkage: &Linkage) -> Option<Ranks> {
         .reduce(regular)
 }
 
-/// An assembled pose at a distance from home, another one for every sample, by the first-order motions
-/// in `kernel`.
+/// An assembled pose at some distance from home, found with a first-order motion in `kernel`. Each
+/// sample is another pose.
 fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<Pose> {
-    // Fixed coefficients without a pattern: multiples of the golden ratio, modulo one.
+    // Fixed coefficients without a pattern: multiples of the golden ratio modulo one.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let coefficient =
         |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
@@ -158,8 +160,8 @@ fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<Pos
     NEARBY.iter().find_map(|size| project(linkage, &(&motion * (size / motion.amax()))))
 }
 
-/// The assembled pose near given coordinates and platform twist, stacked; `None` if there is none,
-/// or only home.
+/// The assembled pose nearest to given coordinates and a platform twist, stacked; `None` if there
+/// is none, or if it is home.
 fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
     let n = linkage.actuated.len();
     let mut q = start.rows(0, n).into_owned();

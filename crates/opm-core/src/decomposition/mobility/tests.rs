@@ -10,8 +10,8 @@ fn report(mechanism: &Mechanism) -> Mobility {
     mobility(mechanism).unwrap()
 }
 
-/// Manipulators 1 of any proportions that can be assembled, away from their singular poses by more
-/// than a twentieth, in the terms of the published singularity conditions.
+/// Manipulators 1 with any proportions that can be assembled and a distance of more than a
+/// twentieth from their singular poses, measured by the published singularity conditions.
 fn plano_spherical() -> impl Strategy<Value = PlanoSpherical> {
     let angles = [0.0..6.3, 0.0..6.3, 0.0..6.3];
     let arcs = [0.5..1.6, 0.5..1.6];
@@ -54,7 +54,7 @@ fn plano_spherical() -> impl Strategy<Value = PlanoSpherical> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, max_global_rejects: 100_000, ..Default::default() })]
 
-    /// No false alarm, and the published numbers for any proportions.
+    /// Regular manipulators are found regular, with the published numbers, for any proportions.
     #[test]
     fn regular_manipulators_are_regular(p in plano_spherical()) {
         let report = report(&p.mechanism());
@@ -65,8 +65,8 @@ proptest! {
     }
 }
 
-/// Links a1 and a2 of one leg in line: the slider has no lever on the imaginary joint (a parallel
-/// singularity of the lower section; the leg itself is as mobile as ever).
+/// The links a1 and a2 of one leg are in line, so the slider has no lever arm on the imaginary
+/// joint. This is a parallel singularity of the lower section; the leg itself is as mobile as ever.
 #[test]
 fn links_in_line_are_a_parallel_singularity() {
     let mut p = PlanoSpherical::default();
@@ -87,7 +87,7 @@ fn links_in_line_are_a_parallel_singularity() {
     assert!(error.to_string().contains(text), "{error}");
 }
 
-/// Link a1 square to its slider, the leg at full stretch: its joints are dependent.
+/// The link a1 is perpendicular to its slider and the leg is stretched: its joints are dependent.
 #[test]
 fn a_link_square_to_its_slider_is_a_serial_singularity() {
     let mut p = PlanoSpherical::default();
@@ -108,7 +108,8 @@ fn a_stretched_arm_is_a_serial_singularity() {
     assert_eq!(report(&p.mechanism()).singular, [serial]);
 }
 
-/// Three planar RRR legs whose locked legs' links meet in one point: the platform can turn there.
+/// Three planar RRR legs. If the lines of the outer links meet in one point, the platform can
+/// rotate about it.
 fn planar(links: [[[f64; 2]; 3]; 3]) -> Mechanism {
     let joint = |[x, y]: [f64; 2]| revolute(Vector3::z_axis(), Point3::new(x, y, 0.0));
     let leg = |[base, elbow, wrist]: [[f64; 2]; 3]| {
@@ -120,26 +121,26 @@ fn planar(links: [[[f64; 2]; 3]; 3]) -> Mechanism {
 #[test]
 fn three_forces_through_a_point_are_a_parallel_singularity() {
     let wrists = [[0.1, 0.0], [-0.05, 0.08], [-0.05, -0.08]];
-    // Outer links along the wrists' own radii, bases to the side.
+    // The outer links are along the radii of the wrists, the bases to the side.
     let meeting =
         wrists.map(|[x, y]| [[3.0 * x - 2.0 * y, 3.0 * y + 2.0 * x], [3.0 * x, 3.0 * y], [x, y]]);
     let singular = report(&planar(meeting)).singular;
     assert_eq!(singular, [HomeSingularity::Parallel { home: 1, nearby: 0 }]);
-    // Elbows off the radii: regular.
+    // With the elbows off the radii, the mechanism is regular.
     let apart = meeting.map(|[base, [x, y], wrist]| [base, [x - 0.5 * y, y + 0.5 * x], wrist]);
     let report = report(&planar(apart));
     assert_eq!((report.lambda, report.mobility, report.controlled), (3, 3, 3));
     assert_eq!(report.singular, []);
 }
 
-/// Four bars in one line: two motions meet in this pose, of which there is one elsewhere.
+/// Four bars in one line: two motions meet in this pose, elsewhere there is only one.
 #[test]
 fn a_flat_parallelogram_is_a_constraint_singularity() {
     let z = |x: f64| revolute(Vector3::z_axis(), Point3::new(x, 0.0, 0.0));
     let mut legs = vec![vec![z(0.0).actuated(), z(0.1)], vec![z(0.3), z(0.4)]];
     let singular = report(&mechanism("flat", legs.clone())).singular;
     assert!(singular.contains(&HomeSingularity::Constraint { home: 2, nearby: 1 }), "{singular:?}");
-    // Cranks turned up: regular.
+    // With the cranks turned up, the mechanism is regular.
     for (leg, x) in legs.iter_mut().zip([0.05, 0.35]) {
         leg[1] = revolute(Vector3::z_axis(), Point3::new(x, 0.08, 0.0));
     }
@@ -148,7 +149,7 @@ fn a_flat_parallelogram_is_a_constraint_singularity() {
     assert_eq!(report.singular, []);
 }
 
-/// Two rods end to end between fixed pins: shaky to first order, rigid to second.
+/// Two rods end to end between fixed pins move to first order but are rigid to second order.
 #[test]
 fn a_shaky_structure_is_singular() {
     let z = |x: f64| revolute(Vector3::z_axis(), Point3::new(x, 0.0, 0.0));
@@ -158,8 +159,8 @@ fn a_shaky_structure_is_singular() {
     assert_eq!(report.singular, [HomeSingularity::Isolated { mobility: 1 }]);
 }
 
-/// Bennett's 4R linkage moves although its four axes in space have rank 3 or 4 only by its
-/// proportions: sin(alpha) / a equal in both links. Denavit and Hartenberg's parameters, any angle.
+/// The four axes of Bennett's 4R linkage move only because of its proportions: sin(alpha) / a is
+/// equal in both links. It is built from Denavit and Hartenberg's parameters, at any angle.
 #[test]
 fn bennetts_four_bar_moves() {
     use nalgebra::{Isometry3, Translation3, UnitQuaternion};
@@ -203,10 +204,11 @@ fn spinning_struts_are_idle_and_not_loose() {
     assert_eq!((report.actuators, report.controlled), (6, 6));
     assert!(report.loose.is_empty() && report.singular.is_empty());
     let refused = decompose(&mechanism);
-    assert_eq!(
+    let expected = matches!(
         refused,
-        Err(DecomposeError::NoPartialSubspaces { lambda: 6, mobility: 12, odd: None })
+        Err(DecomposeError::NoPartialSubspaces { lambda: 6, mobility: 12, odd: None, .. })
     );
+    assert!(expected, "{refused:?}");
 }
 
 #[test]
@@ -215,14 +217,14 @@ fn redundant_actuators_are_named() {
     mechanism.legs[1].joints[1].actuated = true;
     let report = report(&mechanism);
     assert_eq!((report.actuators, report.controlled), (4, 3));
-    // Two sliders of leg 2 fix x and y, so that leg 3's slider repeats them, or either of leg 2's
-    // repeats the two others; only leg 1's alone controls the rotation.
+    // The two sliders of leg 2 fix x and y, so that leg 3's slider repeats them, or either of leg
+    // 2's sliders repeats the two others. Only leg 1's slider controls the rotation.
     assert_eq!(report.redundant, ["leg2.1", "leg2.2", "leg3.1"]);
     assert!(decompose(&mechanism).is_ok());
 }
 
 #[test]
-fn too_many_joints_are_told() {
+fn too_many_joints_are_reported() {
     let z = |i: usize| revolute(Vector3::z_axis(), Point3::new(i as f64, 0.0, 0.0));
     let legs = (0..MAX_FREEDOMS).map(|i| vec![z(i), z(i + 1)]).collect();
     let refused = mobility(&mechanism("many", legs));

@@ -1,11 +1,11 @@
-//! Orthonormal bases of sets of normalised screws.
+//! Orthonormal bases for sets of normalised screws.
 
 use super::TOLERANCE;
 use crate::group::screw::Screw;
 use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, Vector6};
 
-/// At most six orthonormal six-vectors, on the stack.
+/// A set of at most six orthonormal six-vectors, stored on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Basis {
     vectors: [Vector6<f64>; 6],
@@ -16,7 +16,7 @@ impl Basis {
     pub const EMPTY: Self =
         Self { vectors: [Vector6::new(0., 0., 0., 0., 0., 0.); 6], dimension: 0 };
 
-    /// Span of vectors, its rank decided by singular values.
+    /// The span of some vectors. Its rank is decided by singular values.
     pub fn span(vectors: &[Vector6<f64>]) -> Self {
         let rows = DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]);
         let svd = Svd::new(rows);
@@ -36,13 +36,15 @@ impl Basis {
         self.dimension
     }
 
-    /// What of a vector lies outside (projected twice: Gram-Schmidt loses digits in one go).
+    /// The component of a vector orthogonal to the span. It is projected twice, because one
+    /// Gram-Schmidt pass loses digits.
     pub fn residual(&self, vector: &Vector6<f64>) -> Vector6<f64> {
         let project = |v: Vector6<f64>| self.vectors().iter().fold(v, |v, b| v - b * b.dot(&v));
         project(project(*vector))
     }
 
-    /// Adds a direction if the vector sticks out by more than `tolerance`; says whether it did.
+    /// Adds a direction if the vector's component outside the span is longer than `tolerance`.
+    /// Returns whether it did.
     pub fn grow(&mut self, vector: &Vector6<f64>, tolerance: f64) -> bool {
         let residual = self.residual(vector);
         let length = residual.norm();
@@ -54,7 +56,8 @@ impl Basis {
         grows
     }
 
-    /// The largest part of a Lie bracket of two members that lies outside.
+    /// The length of the largest component, outside the span, of a Lie bracket of two basis
+    /// vectors.
     pub fn bracket_excess(&self) -> f64 {
         self.brackets().map(|v| self.residual(&v).norm()).fold(0.0, f64::max)
     }
@@ -66,7 +69,8 @@ impl Basis {
         })
     }
 
-    /// Smallest subspace around this one that holds its brackets, those longer than `tolerance`.
+    /// The smallest subspace that contains this one and its brackets; bracket components up to
+    /// `tolerance` are ignored.
     pub fn closure(mut self, tolerance: f64) -> Self {
         loop {
             let before = self;
@@ -79,7 +83,7 @@ impl Basis {
         }
     }
 
-    /// What both contain.
+    /// The intersection of two subspaces.
     pub fn intersection(&self, other: &Self) -> Self {
         let (own, theirs) = (self.vectors(), other.vectors());
         if own.is_empty() || theirs.is_empty() {
@@ -87,7 +91,7 @@ impl Basis {
         }
         let columns: Vec<_> = own.iter().copied().chain(theirs.iter().map(|v| -v)).collect();
         let svd = Svd::new(DMatrix::from_fn(6, columns.len(), |i, j| columns[j][i]));
-        // A kernel vector (x, y) says that A x = B y: the middle of the two is in both.
+        // A kernel vector (x, y) means A x = B y: the mean of the two lies in both.
         let common: Vec<_> = svd
             .kernel(TOLERANCE)
             .column_iter()

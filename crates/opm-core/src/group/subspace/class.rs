@@ -6,19 +6,19 @@ use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, Matrix3, Point3, Unit, Vector3, Vector6};
 use std::fmt;
 
-/// Class of a connected Lie subgroup of SE(3), with its geometry in base coordinates.
+/// A connected Lie subgroup of SE(3), with its geometry in base coordinates.
 ///
-/// An axis or a normal points up ([`UP`]). The point of an axis is the one nearest to the base's
-/// origin.
+/// An axis or a normal points up (see [`UP`]). The point of an axis is its point nearest to the
+/// base's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SubspaceClass {
-    /// No motion.
+    /// The trivial group: no motion.
     Identity,
     /// Rotation about a line.
     Rotation {
         /// Direction of the line.
         axis: Unit<Vector3<f64>>,
-        /// A point of the line, metres.
+        /// The point of the line nearest to the base's origin, metres.
         point: Point3<f64>,
     },
     /// Translation along a line.
@@ -26,16 +26,16 @@ pub enum SubspaceClass {
         /// Direction of the line.
         axis: Unit<Vector3<f64>>,
     },
-    /// Screw motion of one pitch about a line.
+    /// Screw motion of one given pitch about a line.
     Helical {
         /// Direction of the line.
         axis: Unit<Vector3<f64>>,
-        /// A point of the line, metres.
+        /// The point of the line nearest to the base's origin, metres.
         point: Point3<f64>,
-        /// Advance, metres a radian, right-handed where positive.
+        /// Advance in metres per radian; positive for a right-handed screw.
         pitch: f64,
     },
-    /// Translations in a plane.
+    /// Translations in all directions of a plane.
     TranslationalPlane {
         /// Normal of the plane.
         normal: Unit<Vector3<f64>>,
@@ -44,39 +44,40 @@ pub enum SubspaceClass {
     Cylindrical {
         /// Direction of the line.
         axis: Unit<Vector3<f64>>,
-        /// A point of the line, metres.
+        /// The point of the line nearest to the base's origin, metres.
         point: Point3<f64>,
     },
-    /// All translations.
+    /// All translations of space.
     TranslationalSpace,
-    /// Translations in a plane and rotations about its normals.
+    /// Planar motion: translations in a plane and rotations about its normals.
     Planar {
         /// Normal of the plane.
         normal: Unit<Vector3<f64>>,
     },
-    /// Rotations about a point.
+    /// Spherical motion: all rotations about one point.
     Spherical {
-        /// The point, metres.
+        /// The common point of all axes, metres.
         centre: Point3<f64>,
     },
-    /// Translations square to a direction and screw motions of one pitch about all its lines.
+    /// Translations perpendicular to a direction, and screw motions of one pitch about all lines
+    /// along it.
     PlanarHelical {
-        /// The direction.
+        /// The direction of the screw axes.
         axis: Unit<Vector3<f64>>,
-        /// Advance, metres a radian, right-handed where positive.
+        /// Advance in metres per radian; positive for a right-handed screw.
         pitch: f64,
     },
-    /// All translations and the rotations about all lines of one direction.
+    /// Schoenflies motion: all translations, and rotations about all lines of one direction.
     Schoenflies {
-        /// The direction.
+        /// The direction of the rotation axes.
         axis: Unit<Vector3<f64>>,
     },
-    /// All displacements.
+    /// All displacements: SE(3) itself.
     Full,
 }
 
 impl SubspaceClass {
-    /// Number of freedoms: 0, 1, 2, 3, 4 or 6.
+    /// The dimension of the group: 0, 1, 2, 3, 4 or 6.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Identity => 0,
@@ -91,7 +92,8 @@ impl SubspaceClass {
         }
     }
 
-    /// The field's word for it, lower case: `planar`, `spherical`, `translational plane`, ...
+    /// The standard name of the group in lower case: `planar`, `spherical`, `translational plane`,
+    /// ...
     pub fn name(&self) -> &'static str {
         match self {
             Self::Identity => "identity",
@@ -109,7 +111,7 @@ impl SubspaceClass {
         }
     }
 
-    /// As many independent screws as it has freedoms; they span its Lie algebra.
+    /// Independent screws that span the group's Lie algebra, one per dimension.
     pub fn screws(&self) -> Vec<Screw> {
         let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
         let origin = Point3::origin();
@@ -140,7 +142,8 @@ impl SubspaceClass {
         }
     }
 
-    /// A class found in a normalised frame, in base coordinates and metres, its axis pointing up.
+    /// Converts a class found in a normalised frame to base coordinates and metres, with its axis
+    /// pointing up.
     pub(crate) fn restored(&self, frame: &Frame) -> Self {
         let metres = |pitch: f64| pitch * frame.length;
         let place = |axis, point: &Point3<f64>| nearest_origin(axis, frame.restored_point(point));
@@ -172,14 +175,14 @@ impl SubspaceClass {
 }
 
 impl SubspaceClass {
-    /// The same one-parameter motion, its axis on the side of `hint`.
+    /// The same one-parameter motion, with its axis on the side of `hint`.
     pub(crate) fn towards(self, hint: &Vector3<f64>) -> Self {
-        let turned = |axis: Unit<Vector3<f64>>| if axis.dot(hint) < 0.0 { -axis } else { axis };
+        let oriented = |axis: Unit<Vector3<f64>>| if axis.dot(hint) < 0.0 { -axis } else { axis };
         match self {
-            Self::Rotation { axis, point } => Self::Rotation { axis: turned(axis), point },
-            Self::Translation { axis } => Self::Translation { axis: turned(axis) },
+            Self::Rotation { axis, point } => Self::Rotation { axis: oriented(axis), point },
+            Self::Translation { axis } => Self::Translation { axis: oriented(axis) },
             Self::Helical { axis, point, pitch } => {
-                Self::Helical { axis: turned(axis), point, pitch }
+                Self::Helical { axis: oriented(axis), point, pitch }
             }
             other => other,
         }
@@ -216,24 +219,24 @@ impl fmt::Display for SubspaceClass {
     }
 }
 
-/// Two directions square to one and to each other.
+/// Two unit vectors perpendicular to an axis and to each other.
 fn across(axis: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let thin = axis.iamin();
     let u = Unit::new_normalize(axis.cross(&Vector3::ith(thin, 1.0)));
     [u, Unit::new_normalize(axis.cross(&u))]
 }
 
-/// What decides which of two opposite directions points up: the one on this vector's side.
+/// The vector that decides which of two opposite directions points up: the one on its side.
 ///
-/// That is the one with positive z, of nearly level directions the one with positive y, and of those
-/// nearly along x the one with positive x. "Nearly" so that a small turn of a mechanism turns none of
-/// its directions round: along y they do 22 degrees below the level, along x 3 degrees, and level
-/// ones 8 degrees from x. Of the directions of usual designs, with all angles multiples of 15 degrees,
-/// none is nearer than 0.7 degrees to where that happens, and none in a coordinate plane nearer than
-/// 2.8.
+/// That is the direction with positive z; among nearly horizontal directions, the one with positive
+/// y; among those nearly along x, the one with positive x. "Nearly" keeps small rotations of a
+/// mechanism from reversing its directions. A direction along y is reversed when it points 22
+/// degrees below the horizontal, one along x at 3 degrees, and a horizontal one at 8 degrees from
+/// x. If all angles of a design are multiples of 15 degrees, no direction is nearer than 0.7
+/// degrees to such a reversal, and none in a coordinate plane is nearer than 2.8 degrees.
 pub const UP: [f64; 3] = [0.055, 0.41, 1.0];
 
-/// Whether a direction points up.
+/// Whether a direction points up (see [`UP`]).
 pub(crate) fn points_up(direction: &Vector3<f64>) -> bool {
     direction.dot(&Vector3::from(UP)) >= 0.0
 }
@@ -248,55 +251,62 @@ fn nearest_origin(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Point3<f64> {
     point - axis.into_inner() * axis.dot(&point.coords)
 }
 
-/// A group that screws generate, in the normalised frame of the screws.
+/// A group fitted to screws, in the normalised frame of the screws.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     pub class: SubspaceClass,
-    /// Of the group's Lie algebra.
+    /// Orthonormal basis of the group's Lie algebra.
     pub basis: Basis,
-    /// Largest distance of one of the screws from it.
+    /// Largest distance of one of the screws from the algebra.
     pub deviation: f64,
 }
 
-/// Which way a set of screws turns.
-enum Turning {
-    Nowhere,
-    About(Unit<Vector3<f64>>),
-    Anywhere,
+/// The rotation axes of a set of screws.
+enum RotationAxes {
+    /// The screws are translations only.
+    None,
+    /// All axes have this direction.
+    Parallel(Unit<Vector3<f64>>),
+    /// The axes have several directions.
+    Several,
 }
 
-/// The group whose Lie algebra is the span of unit normalised screws; `None` if that is not closed.
+/// The group whose Lie algebra is the span of unit normalised screws; `None` if the span is not
+/// closed under the bracket.
 ///
-/// Rank and directions of rotation leave one class to consider; its geometry is fitted to the given
-/// screws by least squares, and the span is closed exactly if every screw then lies in the group's
-/// algebra. (Brackets of a computed basis would tell the same of exact screws; of rounded ones they
-/// enlarge the rounding by the inverse of the smallest angle between the screws.)
+/// The rank and the directions of rotation leave only one candidate class. Its geometry is fitted
+/// to the given screws by least squares. The span is closed exactly if every screw then lies in the
+/// group's algebra. (Brackets of a computed basis would decide the same for exact screws. For
+/// rounded screws they amplify the rounding by the inverse of the smallest angle between the
+/// screws.)
 pub(crate) fn fit(screws: &[Vector6<f64>]) -> Option<Fit> {
     let angular: Vec<Vector3<f64>> = screws.iter().map(|s| s.fixed_rows::<3>(0).into()).collect();
     let linear: Vec<Vector3<f64>> = screws.iter().map(|s| s.fixed_rows::<3>(3).into()).collect();
-    let class = match (Basis::span(screws).dimension(), turning(&angular)) {
+    let class = match (Basis::span(screws).dimension(), rotation_axes(&angular)) {
         (0, _) => SubspaceClass::Identity,
-        (1, Turning::Nowhere) => SubspaceClass::Translation { axis: principal(&linear, 0) },
-        (2, Turning::Nowhere) => {
+        (1, RotationAxes::None) => SubspaceClass::Translation { axis: principal(&linear, 0) },
+        (2, RotationAxes::None) => {
             SubspaceClass::TranslationalPlane { normal: principal(&linear, 2) }
         }
-        (3, Turning::Nowhere) => SubspaceClass::TranslationalSpace,
-        (1, Turning::About(axis)) => {
+        (3, RotationAxes::None) => SubspaceClass::TranslationalSpace,
+        (1, RotationAxes::Parallel(axis)) => {
             let point = line_point(&angular, &linear);
             match pitch(&angular, &linear, axis) {
                 0.0 => SubspaceClass::Rotation { axis, point },
                 pitch => SubspaceClass::Helical { axis, point, pitch },
             }
         }
-        (2, Turning::About(axis)) => {
+        (2, RotationAxes::Parallel(axis)) => {
             SubspaceClass::Cylindrical { axis, point: line_point(&angular, &linear) }
         }
-        (3, Turning::About(axis)) => match pitch(&angular, &linear, axis) {
+        (3, RotationAxes::Parallel(axis)) => match pitch(&angular, &linear, axis) {
             0.0 => SubspaceClass::Planar { normal: axis },
             pitch => SubspaceClass::PlanarHelical { axis, pitch },
         },
-        (4, Turning::About(axis)) => SubspaceClass::Schoenflies { axis },
-        (3, Turning::Anywhere) => SubspaceClass::Spherical { centre: centre(&angular, &linear)? },
+        (4, RotationAxes::Parallel(axis)) => SubspaceClass::Schoenflies { axis },
+        (3, RotationAxes::Several) => {
+            SubspaceClass::Spherical { centre: centre(&angular, &linear)? }
+        }
         (6, _) => SubspaceClass::Full,
         _ => return None,
     };
@@ -306,32 +316,33 @@ pub(crate) fn fit(screws: &[Vector6<f64>]) -> Option<Fit> {
     (deviation <= TOLERANCE).then_some(Fit { class, basis, deviation })
 }
 
-fn turning(angular: &[Vector3<f64>]) -> Turning {
+fn rotation_axes(angular: &[Vector3<f64>]) -> RotationAxes {
     if angular.iter().all(|w| w.norm() <= TOLERANCE) {
-        return Turning::Nowhere;
+        return RotationAxes::None;
     }
     let axis = principal(angular, 0);
     if angular.iter().all(|w| w.cross(&axis).norm() <= TOLERANCE) {
-        Turning::About(axis)
+        RotationAxes::Parallel(axis)
     } else {
-        Turning::Anywhere
+        RotationAxes::Several
     }
 }
 
-/// Principal direction of a set of vectors: 0 along which they are longest, 2 shortest.
+/// A principal direction of a set of vectors: 0 is the direction of largest extent, 2 of smallest.
 fn principal(vectors: &[Vector3<f64>], which: usize) -> Unit<Vector3<f64>> {
     let svd = Svd::new(DMatrix::from_fn(vectors.len(), 3, |i, j| vectors[i][j]));
     Unit::new_normalize(svd.right.fixed_view::<3, 1>(0, which).into_owned())
 }
 
-/// Point `p` nearest to the origin of the common axis of parallel rotations `(ω; p × ω + h ω)`.
+/// The point `p`, nearest to the origin, on the common axis of parallel rotations `(ω; p × ω + h
+/// ω)`.
 fn line_point(angular: &[Vector3<f64>], linear: &[Vector3<f64>]) -> Point3<f64> {
     let weight: f64 = angular.iter().map(Vector3::norm_squared).sum();
     let moment: Vector3<f64> = angular.iter().zip(linear).map(|(w, v)| w.cross(v)).sum();
     Point3::from(moment / weight)
 }
 
-/// Common pitch along `axis`; exactly zero if it is within the tolerance.
+/// The common pitch along `axis`; exactly zero if it is within the tolerance.
 fn pitch(angular: &[Vector3<f64>], linear: &[Vector3<f64>], axis: Unit<Vector3<f64>>) -> f64 {
     let (mut advance, mut weight) = (0.0, 0.0);
     for (w, v) in angular.iter().zip(linear) {
@@ -342,7 +353,7 @@ fn pitch(angular: &[Vector3<f64>], linear: &[Vector3<f64>], axis: Unit<Vector3<f
     if pitch.abs() <= TOLERANCE { 0.0 } else { pitch }
 }
 
-/// Point `p` that rotations `(ω; p × ω)` have in common.
+/// The common point `p` of rotations `(ω; p × ω)`.
 fn centre(angular: &[Vector3<f64>], linear: &[Vector3<f64>]) -> Option<Point3<f64>> {
     let normal: Matrix3<f64> =
         angular.iter().map(|w| Matrix3::identity() * w.norm_squared() - w * w.transpose()).sum();

@@ -1,17 +1,19 @@
-//! The frame in which ranks are decided: a mechanism's own middle, and its own size as the unit.
+//! The frame in which ranks are decided: its origin is the mechanism's middle, its unit of length
+//! the mechanism's size.
 
 use super::TOLERANCE;
 use crate::group::screw::Screw;
 use nalgebra::{Matrix3, Point3, Vector3, Vector6};
 
-/// Below this share of the largest, the middle is not determined in a direction (axes all but
-/// parallel), and the points that were given decide.
+/// An eigenvalue below this share of the largest does not determine the middle in its direction
+/// (the axes are nearly parallel). The given points decide there.
 const DETERMINED: f64 = 1e-2;
 
-/// Shorter than this share of the coordinates, a length is their rounding: to six digits, at worst.
+/// A length below this share of the coordinates may be only their rounding: six digits, at worst.
 const ROUNDING: f64 = 5e-6;
 
-/// Origin in the middle of a set of axes, lengths over their spread.
+/// A frame for normalised screws: its origin is in the middle of a set of axes, its unit of length is
+/// their spread.
 ///
 /// Screws mix radians and metres, so the rank of a set of them within a tolerance depends on the
 /// unit of length and on the origin. Both are taken from the axes themselves: rigid displacement,
@@ -20,15 +22,15 @@ const ROUNDING: f64 = 5e-6;
 pub struct Frame {
     /// The point nearest to all axes, in base coordinates, metres.
     pub origin: Point3<f64>,
-    /// Characteristic length, metres: root mean square of the axes' distances from the origin and
-    /// of their pitches.
+    /// The characteristic length, metres: the root mean square of the axes' distances from the origin
+    /// and of their pitches.
     pub length: f64,
 }
 
 impl Frame {
-    /// The frame of a set of joint screws, each with a point of its axis (that of a translation is
-    /// not read). Axes that all meet are measured by the spread of the points; with no length at
-    /// all, one metre.
+    /// The frame of a set of joint screws, each with a point on its axis (ignored for a translation).
+    /// If all axes meet in one point, the length is the spread of the given points; if that is zero
+    /// too, it is one metre.
     pub fn of(axes: &[(Screw, Point3<f64>)]) -> Self {
         let lines: Vec<(Vector3<f64>, Vector3<f64>, f64)> = axes
             .iter()
@@ -69,7 +71,7 @@ impl Frame {
         Self { origin: origin.into(), length }
     }
 
-    /// A screw as seen from this frame. A translation keeps its unit rate: its coordinate counts in
+    /// A screw in this frame. A translation keeps its unit rate: its coordinate is measured in
     /// characteristic lengths.
     pub fn normalised(&self, screw: &Screw) -> Screw {
         let moved = screw.linear + screw.angular.cross(&self.origin.coords);
@@ -77,19 +79,19 @@ impl Frame {
         Screw { angular: screw.angular, linear: moved / unit }
     }
 
-    /// A screw as seen from this frame, scaled to unit length: what ranks are decided on.
+    /// A screw in this frame, scaled to unit length. Ranks are decided on these.
     pub(crate) fn unit(&self, screw: &Screw) -> Vector6<f64> {
         let vector = self.normalised(screw).to_vector();
         vector.try_normalize(0.0).unwrap_or(vector)
     }
 
-    /// A normalised screw in base coordinates, metres.
+    /// Converts a normalised screw to base coordinates and metres.
     pub(crate) fn restored(&self, vector: &Vector6<f64>) -> Screw {
         let Screw { angular, linear } = Screw::from_vector(vector);
         Screw { angular, linear: linear * self.length - angular.cross(&self.origin.coords) }
     }
 
-    /// A normalised point in base coordinates, metres.
+    /// Converts a normalised point to base coordinates and metres.
     pub(crate) fn restored_point(&self, point: &Point3<f64>) -> Point3<f64> {
         self.origin + point.coords * self.length
     }

@@ -2,7 +2,8 @@ use super::*;
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use proptest::prelude::*;
 
-/// Geometry fitted to exact screws: rounding of a few dozen operations on numbers about one.
+/// Tolerance for geometry fitted to exact screws: the rounding of a few dozen operations on numbers
+/// near one.
 const EXACT: f64 = 1e-13;
 
 fn direction() -> impl Strategy<Value = Unit<Vector3<f64>>> {
@@ -16,12 +17,12 @@ fn point() -> impl Strategy<Value = Point3<f64>> {
     [-1.0..1.0, -1.0..1.0, -1.0..1.0].prop_map(Point3::from)
 }
 
-/// Pitches that are clearly none.
+/// Pitches that are clearly not zero.
 fn pitch() -> impl Strategy<Value = f64> {
     prop_oneof![0.05..0.8, -0.8..-0.05]
 }
 
-/// One group of every kind, anywhere.
+/// One group of every kind, at any place and in any direction.
 fn group() -> impl Strategy<Value = SubspaceClass> {
     use SubspaceClass::*;
     let all = (0..12_usize, direction(), point(), pitch());
@@ -41,12 +42,13 @@ fn group() -> impl Strategy<Value = SubspaceClass> {
     })
 }
 
-/// A frame that is not the base's.
+/// A frame that differs from the base's.
 fn frame() -> impl Strategy<Value = Frame> {
     (point(), 0.3..3.0).prop_map(|(origin, length)| Frame { origin, length })
 }
 
-/// Mixtures of a group's basis by a well-conditioned matrix: as many screws, none special.
+/// Combinations of a group's basis by a well-conditioned matrix: as many screws, none of them
+/// special.
 fn mixed(screws: &[Screw], weights: &[f64]) -> Vec<Screw> {
     let n = screws.len();
     let mix = |i: usize| {
@@ -59,7 +61,7 @@ fn mixed(screws: &[Screw], weights: &[f64]) -> Vec<Screw> {
 
 type Geometry = (Option<Unit<Vector3<f64>>>, Option<Point3<f64>>, f64);
 
-/// Axis or normal, point and pitch of a class, where it has them.
+/// Axis or normal, point and pitch of a class, as far as it has them.
 fn geometry(class: &SubspaceClass) -> Geometry {
     use SubspaceClass::*;
     match *class {
@@ -74,7 +76,7 @@ fn geometry(class: &SubspaceClass) -> Geometry {
 }
 
 proptest! {
-    /// Every group is found again from a mixture of its screws, with its geometry.
+    /// Every group is recovered, with its geometry, from combinations of its screws.
     #[test]
     fn groups_are_recognised(
         group in group(), frame in frame(), weights in prop::collection::vec(-1.0..1.0, 36),
@@ -96,8 +98,8 @@ proptest! {
         prop_assert!((pitch - h).abs() < 10.0 * EXACT);
     }
 
-    /// A subgroup's algebra is closed because its displacements are: products of exponentials of
-    /// members carry members into members.
+    /// A subgroup's algebra is invariant under the group's own displacements: products of
+    /// exponentials carry members to members.
     #[test]
     fn a_groups_own_displacements_keep_it(
         group in group(), frame in frame(), weights in prop::collection::vec(-1.0..1.0, 36),
@@ -110,9 +112,9 @@ proptest! {
         }
     }
 
-    /// The brackets' closure of any screws is one of the listed groups, and a class is found exactly
-    /// where the brackets stay inside: the list has no gap. Screws are drawn from few directions,
-    /// points and pitches, so that special positions are the rule.
+    /// The closure of any screws under the bracket is one of the listed groups, and a class is
+    /// found exactly where the span is already closed: the list is complete. The screws are drawn
+    /// from few directions, points and pitches, so that special positions are common.
     #[test]
     fn closures_are_the_listed_groups(
         draws in prop::collection::vec((0..4_usize, 0..3_usize, 0..4_usize), 1..5),
@@ -137,10 +139,11 @@ proptest! {
         }
     }
 
-    /// Two spherical subspaces meet in the line of their centres, two planar ones in the line of
-    /// both planes, a spherical and a planar one in the normal through the centre.
+    /// Two spherical subspaces intersect in the rotation about the line of their centres, two
+    /// planar ones in the translation along the line of both planes, a spherical and a planar one
+    /// in the rotation about the normal through the centre.
     #[test]
-    fn intersections_are_what_geometry_says(
+    fn intersections_agree_with_geometry(
         a in direction(), b in direction(), p in point(), q in point(), frame in frame(),
     ) {
         prop_assume!(a.cross(&b).norm() > 0.1 && (p - q).norm() > 0.1);
@@ -176,14 +179,14 @@ proptest! {
         let (here, there) = (Frame::of(&axes), Frame::of(&moved));
         prop_assert!((g * here.origin - there.origin).norm() < 1e-11);
         prop_assert!((here.length - there.length).abs() < 1e-12);
-        // Screws say the same in both.
+        // The screws have the same components in both frames.
         for ((s, _), (m, _)) in axes.iter().zip(&moved) {
             let turned = Isometry3::from_parts(Default::default(), g.rotation);
             let difference = here.normalised(s).transformed(&turned).to_vector()
                 - there.normalised(m).to_vector();
             prop_assert!(difference.norm() < 1e-10);
         }
-        // The length is that of the lines, not of the points they were given with.
+        // The length depends on the lines, not on the points with which they are given.
         let slid: Vec<_> =
             axes.iter().map(|(s, p)| (*s, p + s.angular * along)).collect();
         if lines.iter().any(|(a, ..)| a.cross(&lines[0].0).norm() > 0.5) {
@@ -209,14 +212,14 @@ fn concurrent_axes_and_no_axes_have_a_frame() {
     };
     let frame = Frame::of(&[x, y, z].map(at));
     assert!(frame.origin.coords.norm() < EXACT);
-    // The spread of the points stands in: each is 0.2 √(2/3) from their mean.
+    // The spread of the points is used instead: each is 0.2 √(2/3) from their mean.
     assert!((frame.length - 0.2 * (2.0_f64 / 3.0).sqrt()).abs() < EXACT);
     let none = Frame::of(&[(Screw::translation(x), Point3::new(9.0, 9.0, 9.0))]);
     assert_eq!(none, Frame { origin: Point3::origin(), length: 1.0 });
 }
 
 #[test]
-fn a_pitch_within_the_tolerance_is_none() {
+fn a_pitch_within_the_tolerance_is_zero() {
     let frame = Frame { origin: Point3::origin(), length: 1.0 };
     let class = |pitch| {
         let screws = SubspaceClass::PlanarHelical { axis: Vector3::z_axis(), pitch }.screws();
@@ -227,7 +230,7 @@ fn a_pitch_within_the_tolerance_is_none() {
 }
 
 #[test]
-fn classes_are_told_in_words() {
+fn classes_are_displayed_in_words() {
     let class = SubspaceClass::Helical {
         axis: Vector3::z_axis(),
         point: Point3::new(0.1, -0.0, -1e-9),
@@ -239,8 +242,8 @@ fn classes_are_told_in_words() {
     );
 }
 
-/// Axes that meet in one point have no size of their own, wherever that point is and however it is
-/// rounded.
+/// Axes that meet in one point have no characteristic length, wherever that point is and however
+/// its coordinates are rounded.
 #[test]
 fn axes_that_meet_in_one_point_are_measured_in_metres() {
     for digits in [15, 6] {

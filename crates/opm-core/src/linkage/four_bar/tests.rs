@@ -1,4 +1,4 @@
-//! Against the textbook's input-output equation, in coordinates of its own.
+//! Comparison with the input-output equation of the textbook, in coordinates of its own.
 
 use super::*;
 use crate::numeric::angle::unit;
@@ -6,7 +6,7 @@ use nalgebra::{Rotation3, UnitQuaternion};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// Rounding of a few dozen operations on numbers up to one.
+/// Tolerance: the rounding of a few dozen operations on numbers up to one.
 const ROUNDING: f64 = 1e-12;
 
 /// Arcs of the input crank, the coupler, the output crank and the base, as in McCarthy and Soh.
@@ -19,9 +19,9 @@ struct Arcs {
 }
 
 impl Arcs {
-    /// The input axis along z, the output axis `base` from it towards x; the cranks at these angles
-    /// from the base. Axes in the order of the loop: input, coupler at the crank, coupler at the
-    /// output, output.
+    /// The axes for these angles of the cranks from the base: the input axis along z, the output
+    /// axis at the arc `base` from it towards x. They are in the order of the loop: input, coupler
+    /// at the input crank, coupler at the output crank, output.
     fn axes(&self, input: f64, output: f64) -> [Unit<Vector3<f64>>; 4] {
         let tilt = |arc: f64| Rotation3::from_axis_angle(&Vector3::y_axis(), arc);
         let turn = |angle: f64| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
@@ -34,7 +34,8 @@ impl Arcs {
         ]
     }
 
-    /// `A cos ψ + B sin ψ = C` of the output crank's angle for one of the input's.
+    /// The coefficients of `A cos ψ + B sin ψ = C` for the output crank's angle ψ at an input
+    /// angle.
     fn equation(&self, input: f64) -> [f64; 3] {
         let (sa, ca) = self.crank.sin_cos();
         let (sb, cb) = self.output.sin_cos();
@@ -47,7 +48,7 @@ impl Arcs {
         ]
     }
 
-    /// Its roots.
+    /// The two roots of the equation.
     fn outputs(&self, input: f64) -> Option<[f64; 2]> {
         let [a, b, c] = self.equation(input);
         let spread = (c / a.hypot(b)).acos();
@@ -64,7 +65,7 @@ impl Arcs {
         t1 * t2 > 0.0 && t3 * t4 > 0.0
     }
 
-    /// How far the sums are from changing their sign.
+    /// The distance of these sums from changing their sign.
     fn margin(&self) -> f64 {
         let Self { crank: a, coupler: n, output: b, base: g } = *self;
         let t =
@@ -73,7 +74,7 @@ impl Arcs {
     }
 }
 
-/// A loop assembled at these angles of its two cranks.
+/// A loop that is assembled at these angles of its two cranks.
 #[derive(Clone, Debug)]
 struct Assembled {
     arcs: Arcs,
@@ -90,7 +91,7 @@ impl Assembled {
     }
 }
 
-/// Any arcs from 0.1 to pi - 0.1, assembled anywhere: the coupler's arc is the one that fits.
+/// Any arcs from 0.1 to pi - 0.1, assembled at any angles: the coupler's arc is the one that fits.
 fn assembled() -> impl Strategy<Value = Assembled> {
     let arc = || 0.1..PI - 0.1;
     ([arc(), arc(), arc()], [-PI..PI, -PI..PI]).prop_filter_map(
@@ -108,7 +109,7 @@ fn off(a: f64, b: f64) -> f64 {
     (unit(a) - unit(b)).norm()
 }
 
-/// The loop's product of exponentials.
+/// The distance of the loop's product of exponentials from the identity.
 fn closure(axes: &[Unit<Vector3<f64>>; 4], q: [f64; 4]) -> f64 {
     let product = axes
         .iter()
@@ -120,8 +121,9 @@ fn closure(axes: &[Unit<Vector3<f64>>; 4], q: [f64; 4]) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-    /// Driven by the input, the output's angles are the two roots of the textbook's equation. In the
-    /// loop the output joint turns the base against the crank, so that it counts the other way.
+    /// For a given input, the output's angles are the two roots of the textbook's equation. In the
+    /// loop, the output joint rotates the base relative to the crank, so its angle has the opposite
+    /// sign.
     #[test]
     fn the_output_is_the_textbook_s(assembled in assembled(), input in -PI..PI) {
         let Assembled { arcs, input: home, output, four_bar, .. } = assembled;
@@ -134,7 +136,7 @@ proptest! {
         let Some(expected) = expected else { return Ok(()) };
         let found = Branch::BOTH.map(|branch| {
             let amounts = driven.solve(unit(input - home), branch).unwrap();
-            // Seen from the base, which turns about the output's axis as the loop's last joint.
+            // Seen from the base, which rotates about the output's axis as the loop's last joint.
             output - amounts[2].value()
         });
         for (psi, other) in [(found[0], found[1]), (found[1], found[0])] {
@@ -144,7 +146,7 @@ proptest! {
         }
     }
 
-    /// Whichever joint drives it, both branches close the loop, and have the sign that they say.
+    /// Whichever joint drives it, both branches close the loop and have the sign of their names.
     #[test]
     fn both_branches_close_the_loop(assembled in assembled(), driver in 0..4_usize, input in -PI..PI,
     ) {
@@ -165,7 +167,7 @@ proptest! {
         }
     }
 
-    /// Home is a position, in the branch that says so.
+    /// Home is a solution, in the branch given by `home`.
     #[test]
     fn home_is_reproduced(assembled in assembled(), driver in 0..4_usize) {
         let Assembled { axes, four_bar, .. } = assembled;
@@ -178,8 +180,8 @@ proptest! {
         }
     }
 
-    /// A crank by the textbook's signs never folds; anything else does, and closes on one side of each
-    /// dead point only.
+    /// A crank by the textbook's signs never folds. Any other input folds, and the loop closes on
+    /// only one side of each dead point.
     #[test]
     fn cranks_turn_all_the_way_round(assembled in assembled()) {
         let Assembled { arcs, four_bar, .. } = assembled;
@@ -195,7 +197,8 @@ proptest! {
     }
 }
 
-/// Equal opposite arcs: both four-bars that fold into a plane pass through it, without leaving.
+/// With equal opposite arcs, the input passes both configurations that fold into a plane without
+/// leaving its range.
 #[test]
 fn change_points_are_inside() {
     let arcs = Arcs { crank: 0.6, coupler: 1.1, output: 0.6, base: 1.1 };
@@ -215,7 +218,7 @@ fn change_points_are_inside() {
     }
 }
 
-/// A kite folds its coupler's end onto the base: the output is free there, and stays at home.
+/// A kite folds its coupler's end onto the base: the output is then arbitrary, and stays at home.
 #[test]
 fn a_free_angle_is_home() {
     let arcs = Arcs { crank: 0.9, coupler: 0.5, output: 0.5, base: 0.9 };
@@ -238,7 +241,7 @@ fn parallel_neighbours_are_refused() {
     }
 }
 
-/// NaN and infinity do not close.
+/// The loop does not close for NaN and infinity.
 #[test]
 fn no_number_no_position() {
     let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];

@@ -6,7 +6,8 @@ use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::Leg;
 use nalgebra::{DMatrix, Point3, Vector3};
 
-/// Numbers in the joint lists have 12 decimals, of millimetres and degrees; unit vectors have 14.
+/// Tolerance: numbers in the joint lists have 12 decimals, in millimetres and degrees; unit vectors
+/// have 14.
 const WRITTEN: f64 = 1e-13;
 
 fn read(name: &str) -> file::MechanismFile {
@@ -23,8 +24,8 @@ fn every_example_can_be_read_under_its_own_name() {
     assert_eq!(find("plano-spherical"), None);
 }
 
-/// The shipped joint list of a family is what the family assembles to; where it is not, the message
-/// is the text that the file should have below its comment.
+/// The shipped joint list of a family is what the family assembles to. If it is not, the message is
+/// the text that the file should have below its comment.
 #[test]
 fn joint_lists_are_the_assembled_families() {
     for name in ["plano-spherical-5dof", "translational-helical-3dof", "planar-planar-5dof"] {
@@ -87,7 +88,8 @@ fn bennett_s_linkage_is_a_regular_single_loop_of_one_freedom() {
     let mechanism = read("bennett-double-spherical-6r").mechanism;
     let screws: Vec<Screw> = mechanism.legs.iter().flat_map(Leg::screws).collect();
     assert_eq!(screws.len(), 6);
-    // In units of the distance of the centres, so that both halves of a screw weigh alike.
+    // Lengths are in units of the distance between the centres, so that both halves of a screw have
+    // equal weight.
     let columns: Vec<_> =
         screws.iter().map(|s| Screw { linear: s.linear / 0.2, ..*s }.to_vector()).collect();
     let mut singular: Vec<f64> = DMatrix::from_fn(6, 6, |row, column| columns[column][row])

@@ -1,4 +1,4 @@
-//! What every family needs to place its joints at home, and what can go wrong with that.
+//! Placing a family's joints at home, and the problems that can occur.
 
 use crate::chain::{ChainError, ReachDeficit};
 use crate::group::JointDisplacement;
@@ -10,15 +10,15 @@ use nalgebra::Isometry3;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// How far outside its limits a joint may be at home, metres or radians: home values are computed,
-/// and one that belongs on a limit counts as inside.
+/// Tolerance for limits at home, metres or radians. Home values are computed, so a joint that is
+/// meant to be on a limit may be this far outside and still counts as inside.
 const ON_LIMIT: f64 = 1e-12;
 
-/// Why a parameter set does not assemble: every problem, at least one.
+/// Why a set of parameters does not assemble: a list of all problems, at least one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.describe())]
 pub struct AssemblyError {
-    /// In the order of the legs.
+    /// The problems, in the order of the legs.
     pub problems: Vec<AssemblyProblem>,
 }
 
@@ -31,17 +31,18 @@ impl AssemblyError {
 /// One problem of a parameter set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyProblem {
-    /// Which leg, counted as in [`Mechanism::legs`](crate::mechanism::Mechanism::legs); `None`: home,
-    /// or the mechanism as a whole.
+    /// The index of the leg in [`Mechanism::legs`](crate::mechanism::Mechanism::legs); `None` if
+    /// the problem is with home or with the mechanism as a whole.
     pub leg: Option<usize>,
-    /// The parameter to blame, as files write it; `None`: the leg as a whole.
+    /// The parameter that causes the problem, as files write it; `None` if it is the leg as a
+    /// whole.
     pub parameter: Option<&'static str>,
-    /// What is wrong with it.
+    /// What is wrong.
     pub reason: AssemblyReason,
 }
 
 impl AssemblyProblem {
-    /// The problem with its numbers in the units of a file, without the place.
+    /// Describes the problem with its numbers in the units of a file, without its location.
     pub fn describe(&self, units: FileUnits) -> String {
         let reason = self.reason.describe(units);
         match self.parameter {
@@ -60,57 +61,57 @@ impl fmt::Display for AssemblyProblem {
     }
 }
 
-/// What is wrong with a parameter or a leg. Values are SI.
+/// What is wrong with a parameter or with a leg. Values are in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblyReason {
-    /// A NaN or an infinity.
+    /// The parameter is NaN or infinite.
     NotFinite,
-    /// A length that must be above zero.
+    /// A length must be positive and is not; its value in metres.
     NotPositive(f64),
-    /// A length that must not be below zero.
+    /// A length must not be negative and is; its value in metres.
     Negative(f64),
-    /// An arc that is not above zero and below half a turn.
+    /// An arc must be above zero and below π and is not; its value in radians.
     NotAnArc(f64),
-    /// A helical joint without advance: a revolute one.
+    /// A helical joint has no advance, so that it would be revolute.
     NoPitch,
-    /// Not as many legs of a kind as the family has.
+    /// The number of legs of a kind is not the family's.
     LegCount {
-        /// How many there are.
+        /// The number of legs found.
         found: usize,
-        /// How many it has.
+        /// The number of legs that the family has.
         expected: usize,
     },
-    /// No leg has a pitch.
+    /// No leg has a pitch, where exactly one leg must be helical.
     NoHelicalLeg,
-    /// So many legs have a pitch.
+    /// Several legs have a pitch, where exactly one leg must be helical; their number.
     HelicalLegs(usize),
-    /// Another direction than the first leg's, where all must be one.
+    /// The leg's direction differs from the first leg's, where all legs must have the same one.
     Direction {
-        /// Radians, this leg's.
+        /// Direction of this leg, radians.
         angle: f64,
-        /// Radians, the first leg's.
+        /// Direction of the first leg, radians.
         expected: f64,
     },
-    /// Two legs of one name.
+    /// Two legs have the same name.
     SameName(String),
-    /// The freedoms of the leg are dependent everywhere.
+    /// The joints of the leg are linearly dependent in every pose.
     Degenerate(ChainError),
-    /// The leg does not reach its place at home.
+    /// The leg does not reach its end position at home.
     OutOfReach {
         /// The links that are too short or too long.
         links: &'static str,
-        /// By how much.
+        /// The reach deficit: by how much the leg misses.
         gap: ReachDeficit,
     },
-    /// A joint's value at home is not within its limits.
+    /// The value of a joint at home is outside its limits.
     OutsideLimits {
-        /// The joint.
+        /// The joint's name.
         joint: String,
-        /// Its value at home.
+        /// The joint's value at home.
         home: f64,
-        /// Its limits.
+        /// The joint's lowest and highest value.
         limits: [f64; 2],
-        /// What these are.
+        /// Whether these values are angles or lengths.
         quantity: Quantity,
     },
 }
@@ -133,10 +134,11 @@ impl AssemblyReason {
             ),
             Self::NoPitch => "is 0, expected an advance per radian: a helical joint".into(),
             Self::LegCount { found, expected } => {
-                format!("is there {found} times, expected {expected} legs")
+                let legs = if *found == 1 { "leg" } else { "legs" };
+                format!("gives {found} {legs}, expected {expected}")
             }
             Self::NoHelicalLeg => {
-                "never has a `pitch`, expected one in exactly one leg, the helical one".into()
+                "has no `pitch`, expected it for exactly one leg, the helical one".into()
             }
             Self::HelicalLegs(count) => {
                 format!("is given for {count} legs, expected it for exactly one, the helical leg")
@@ -150,13 +152,15 @@ impl AssemblyReason {
             Self::SameName(name) => {
                 format!("is {name:?} for two legs, expected different names")
             }
-            Self::Degenerate(error) => format!("the leg has dependent joints: {error}"),
+            Self::Degenerate(error) => {
+                format!("the joints of the leg are linearly dependent: {error}")
+            }
             Self::OutOfReach { links, gap } => format!(
                 "home is out of this leg's reach by {}, expected {links} that reach it",
                 units.show(gap.excess, gap.quantity)
             ),
             Self::OutsideLimits { joint, home, limits: [low, high], quantity } => format!(
-                "leave out home: {joint} is {} there, expected it between {} and {}",
+                "exclude home: {joint} is {} there, expected it between {} and {}",
                 units.show(*home, *quantity),
                 units.show(*low, *quantity),
                 units.show(*high, *quantity)
@@ -165,7 +169,7 @@ impl AssemblyReason {
     }
 }
 
-/// The problems of one leg, or of home, as they are found.
+/// Collects the problems of one leg, or of home.
 #[derive(Default)]
 pub(super) struct Problems(Vec<(Option<&'static str>, AssemblyReason)>);
 
@@ -174,7 +178,7 @@ impl Problems {
         self.0.push((parameter, reason));
     }
 
-    /// So many legs of a kind were found, where the family has another number.
+    /// Adds a problem if the number of legs of a kind is not the family's.
     pub(super) fn leg_count(&mut self, kind: &'static str, found: usize, expected: usize) {
         if found != expected {
             self.add(Some(kind), AssemblyReason::LegCount { found, expected });
@@ -230,13 +234,13 @@ impl From<ChainError> for Problems {
     }
 }
 
-/// A leg that does not reach, by its links.
+/// Makes the problem of a leg that does not reach, given the links concerned.
 pub(super) fn out_of_reach(links: &'static str) -> impl Fn(ReachDeficit) -> Problems {
     move |gap| Problems(vec![(None, AssemblyReason::OutOfReach { links, gap })])
 }
 
-/// The legs, or every problem of all of them and of home. Each leg comes with its name, which it
-/// keeps where it does not assemble.
+/// Assembles all legs, or collects every problem of the legs and of home. Each leg comes with its
+/// name, because its name is needed even if it does not assemble.
 pub(super) fn all_legs<'a>(
     home: Problems,
     legs: impl IntoIterator<Item = (&'a str, Result<Leg, Problems>)>,
@@ -259,9 +263,9 @@ pub(super) fn all_legs<'a>(
     if problems.is_empty() { Ok(assembled) } else { Err(AssemblyError { problems }) }
 }
 
-/// One-degree joints, base first, laid out where every joint is zero, carried to where they have
-/// these values: each moves with the joints before it (product of exponentials). An angle is taken
-/// modulo a turn: in `(-π, π]`, or within the joint's limits where it has some.
+/// Carries one-degree-of-freedom joints, from base to platform, from the layout where every joint
+/// is zero to the given values. Each joint moves with the joints before it (product of
+/// exponentials). An angle is reported in `(-π, π]`, or within the joint's limits if it has some.
 pub(super) fn carried(
     reference: impl IntoIterator<Item = (Joint, JointDisplacement)>,
 ) -> Result<Vec<Joint>, Problems> {
@@ -291,7 +295,7 @@ pub(super) fn carried(
 fn home_value(amount: JointDisplacement, limits: Option<[f64; 2]>) -> f64 {
     match (amount, limits) {
         (JointDisplacement::Direction(_), Some([low, high])) => amount.nearest((low + high) / 2.0),
-        // atan2 gives -π for a turn of -1 with a negative zero.
+        // atan2 gives -π for a rotation of -1 with a negative zero.
         _ if matches!(amount, JointDisplacement::Direction(_)) && amount.value() <= -PI => PI,
         _ => amount.value(),
     }

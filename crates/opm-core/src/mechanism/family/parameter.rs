@@ -1,5 +1,5 @@
-//! The parameters of a family as data: what files call them, what they are, and where they are kept.
-//! Files are read and written by this list, and parameters changed by name without a file.
+//! The parameters of a family as data: their names in files, their meaning, and where their values
+//! are stored. Files are read and written by this list, and parameters are changed by name with it.
 
 use super::Family;
 use crate::mechanism::file::{FileUnits, checks};
@@ -8,33 +8,34 @@ use std::fmt::Write;
 
 /// One parameter of home or of a leg.
 pub(in crate::mechanism) struct Parameter<'a> {
-    /// What files call it; limits, what they call it in the leg's `limits`.
+    /// The key in files. For limits, it is the key inside the leg's `limits`.
     pub key: &'static str,
-    /// What a file is told that lacks it.
+    /// What the message says was expected if a file lacks the parameter.
     pub expected: &'static str,
-    pub slot: Slot<'a>,
+    /// The stored value.
+    pub target: ParameterRef<'a>,
 }
 
-/// Where a parameter is kept; SI.
-pub(in crate::mechanism) enum Slot<'a> {
+/// A reference to the stored value of a parameter, SI.
+pub(in crate::mechanism) enum ParameterRef<'a> {
     Number(Quantity, &'a mut f64),
-    /// That a leg may have or not.
+    /// A number that a leg may lack.
     Optional(Quantity, &'a mut Option<f64>),
-    /// Of the plane, lengths.
+    /// A point in the plane; both coordinates are lengths.
     Point(&'a mut [f64; 2]),
     Limits(Quantity, &'a mut Option<[f64; 2]>),
 }
 
 /// The parameters of home, or of one leg.
 pub(in crate::mechanism) struct Group<'a> {
-    /// What files call the table that they stand in.
+    /// The key of the table in files.
     pub table: TableKey,
-    /// `home`, or the leg's name.
+    /// `home`, or the name of the leg.
     pub name: String,
     pub parameters: Vec<Parameter<'a>>,
 }
 
-/// The key of a table, or of an array of tables.
+/// The key of a table, or of an array of tables, in files.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::mechanism) enum TableKey {
     Home,
@@ -42,22 +43,22 @@ pub(in crate::mechanism) enum TableKey {
     Legs(&'static str),
 }
 
-/// The value of a parameter: metres and radians.
+/// The value of a parameter, in metres and radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterValue {
-    /// Of limits: there are none.
+    /// No limits.
     None,
-    /// A length, an angle, or a pitch.
+    /// A length, an angle, or a pitch in metres per radian.
     Number(f64),
-    /// A point of the plane, or lowest and highest value.
+    /// A point in the plane, or the lowest and highest value of limits.
     Pair([f64; 2]),
 }
 
-/// Why parameters could not be changed: every problem, at least one.
+/// Why parameters could not be changed: a list of all problems, at least one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .problems.join("; "))]
 pub struct ParameterErrors {
-    /// Each with the name of the parameter and what was expected.
+    /// The problems. Each starts with the name of the parameter.
     pub problems: Vec<String>,
 }
 
@@ -68,61 +69,63 @@ impl<'a> Group<'a> {
 }
 
 impl Parameter<'_> {
-    /// Its name in its group: `h`, `limits.S`.
+    /// The parameter's name within its group: `h`, `limits.S`.
     fn name(&self) -> String {
-        match self.slot {
-            Slot::Limits(..) => format!("limits.{}", self.key),
+        match self.target {
+            ParameterRef::Limits(..) => format!("limits.{}", self.key),
             _ => self.key.to_owned(),
         }
     }
 
-    /// Whether this is its name in its group.
+    /// Whether the parameter has this name within its group.
     fn is_called(&self, name: &str) -> bool {
-        match self.slot {
-            Slot::Limits(..) => name.strip_prefix("limits.") == Some(self.key),
+        match self.target {
+            ParameterRef::Limits(..) => name.strip_prefix("limits.") == Some(self.key),
             _ => name == self.key,
         }
     }
 
-    /// What it is, if the leg has it.
+    /// The parameter's value; `None` if the leg has no such parameter.
     pub fn value(&self) -> Option<ParameterValue> {
-        match &self.slot {
-            Slot::Number(_, value) => Some(ParameterValue::Number(**value)),
-            Slot::Optional(_, value) => value.map(ParameterValue::Number),
-            Slot::Point(point) => Some(ParameterValue::Pair(**point)),
-            Slot::Limits(_, limits) => {
+        match &self.target {
+            ParameterRef::Number(_, value) => Some(ParameterValue::Number(**value)),
+            ParameterRef::Optional(_, value) => value.map(ParameterValue::Number),
+            ParameterRef::Point(point) => Some(ParameterValue::Pair(**point)),
+            ParameterRef::Limits(_, limits) => {
                 Some(limits.map_or(ParameterValue::None, ParameterValue::Pair))
             }
         }
     }
 
-    /// Sets it, or says what is wrong with the value.
+    /// Sets the value, or describes what is wrong with it.
     fn set(&mut self, value: ParameterValue) -> Result<(), String> {
         use ParameterValue::{Number, Pair};
         let size = |value, quantity| checks::size(checks::finite(value)?, quantity, FileUnits::SI);
-        match (&mut self.slot, value) {
-            (Slot::Number(quantity, slot), Number(value)) => **slot = size(value, *quantity)?,
-            (Slot::Optional(quantity, slot), Number(value)) => {
-                **slot = Some(size(value, *quantity)?);
+        match (&mut self.target, value) {
+            (ParameterRef::Number(quantity, target), Number(value)) => {
+                **target = size(value, *quantity)?
             }
-            (Slot::Point(slot), Pair([x, y])) => {
-                **slot = [size(x, Quantity::Length)?, size(y, Quantity::Length)?];
+            (ParameterRef::Optional(quantity, target), Number(value)) => {
+                **target = Some(size(value, *quantity)?);
             }
-            (Slot::Limits(_, slot), ParameterValue::None) => **slot = None,
-            (Slot::Limits(quantity, slot), Pair([low, high])) => {
+            (ParameterRef::Point(target), Pair([x, y])) => {
+                **target = [size(x, Quantity::Length)?, size(y, Quantity::Length)?];
+            }
+            (ParameterRef::Limits(_, target), ParameterValue::None) => **target = None,
+            (ParameterRef::Limits(quantity, target), Pair([low, high])) => {
                 let limits = [size(low, *quantity)?, size(high, *quantity)?];
-                **slot = Some(checks::ordered(limits, *quantity, FileUnits::SI)?);
+                **target = Some(checks::ordered(limits, *quantity, FileUnits::SI)?);
             }
-            (slot, value) => {
+            (target, value) => {
                 let found = match value {
                     ParameterValue::None => "nothing",
                     Number(_) => "a number",
                     Pair(_) => "a pair",
                 };
-                let expected = match slot {
-                    Slot::Number(..) | Slot::Optional(..) => "a number",
-                    Slot::Point(_) => "a point [x, y]",
-                    Slot::Limits(..) => "limits [lowest, highest] or none",
+                let expected = match target {
+                    ParameterRef::Number(..) | ParameterRef::Optional(..) => "a number",
+                    ParameterRef::Point(_) => "a point [x, y]",
+                    ParameterRef::Limits(..) => "limits [lowest, highest] or none",
                 };
                 return Err(format!("is {found}, expected {expected}"));
             }
@@ -140,8 +143,8 @@ impl Family {
         }
     }
 
-    /// Every parameter in the order of files, by its name: `home.x`; of a leg `leg1.h`, of its limits
-    /// `leg1.limits.S`. Metres and radians.
+    /// Every parameter with its name, in the order of files: `home.x`, then `leg1.h` and
+    /// `leg1.limits.S` for a leg. Values are in metres and radians.
     pub fn parameters(&self) -> Vec<(String, ParameterValue)> {
         let mut family = self.clone();
         let groups = family.groups();
@@ -153,13 +156,16 @@ impl Family {
         named.collect()
     }
 
-    /// The family with some parameters changed, by the names of [`Family::parameters`]. What follows
-    /// the dot alone (`h`, `limits.S`) is that parameter wherever there is one; a whole name goes
-    /// before it.
+    /// A copy of the family with some parameters changed, by the names of [`Family::parameters`].
+    ///
+    /// A full name such as `leg1.h` changes one parameter. A name without the group, such as `h` or
+    /// `limits.S`, changes that parameter in every group that has it. Where both are given, the
+    /// full name wins.
     ///
     /// # Errors
-    /// Every name that is no parameter, and every value that is none: not finite, larger than any
-    /// machine, limits reversed. Whether the parameters fit together, [`Family::assemble`] says.
+    /// [`ParameterErrors`] lists every unknown name and every invalid value: not finite, larger
+    /// than any machine, or reversed limits. Whether the parameters fit together is checked by
+    /// [`Family::assemble`].
     pub fn with<'n>(
         &self,
         changes: impl IntoIterator<Item = (&'n str, ParameterValue)>,
@@ -181,7 +187,7 @@ impl Family {
             let every = every.filter(|p| p.value().is_some() && p.is_called(name));
             match every.map(|p| p.set(value)).collect::<Vec<_>>() {
                 set if set.is_empty() => {
-                    problems.push(format!("`{name}` is no parameter; {}", known(&groups)));
+                    problems.push(format!("`{name}` is not a parameter; {}", known(&groups)));
                 }
                 set => {
                     let problem = set.into_iter().find_map(Result::err);
@@ -197,7 +203,8 @@ impl Family {
         if problems.is_empty() { Ok(family) } else { Err(ParameterErrors { problems }) }
     }
 
-    /// The text of a file that gives this very family, to the last bit: in metres and radians.
+    /// The text of a mechanism file of this family, in metres and radians. Reading it gives the
+    /// same parameters to the last bit.
     pub fn write(&self) -> String {
         let mut family = self.clone();
         let (word, name, mode) = (self.word(), self.name().to_owned(), self.mode());
@@ -213,7 +220,7 @@ impl Family {
                     ParameterValue::Number(value) => format!("{value:?}"),
                     ParameterValue::Pair([a, b]) => format!("[{a:?}, {b:?}]"),
                 };
-                Some((matches!(p.slot, Slot::Limits(..)), format!("{} = {value}", p.key)))
+                Some((matches!(p.target, ParameterRef::Limits(..)), format!("{} = {value}", p.key)))
             };
             let (limits, others): (Vec<_>, Vec<_>) =
                 group.parameters.iter().filter_map(entry).partition(|(limit, _)| *limit);
@@ -244,7 +251,8 @@ impl Family {
         text + &body
     }
 
-    /// What is wrong with these parameters, each problem with the name of its leg; SI.
+    /// Describes why these parameters do not assemble, each problem with the name of its leg, in SI
+    /// units.
     pub fn explain(&self, error: &super::AssemblyError) -> ParameterErrors {
         let mut family = self.clone();
         let groups = family.groups();
@@ -260,7 +268,7 @@ impl Family {
     }
 }
 
-/// The names that there are; legs of the same parameters together.
+/// Lists the known names, with legs that have the same parameters in one group.
 fn known(groups: &[Group<'_>]) -> String {
     let mut kinds: Vec<(Vec<&str>, Vec<String>)> = vec![];
     for group in groups {
@@ -285,28 +293,28 @@ fn quoted(name: &str) -> String {
 /// Constructors that read as a table of a family's parameters.
 impl<'a> Parameter<'a> {
     pub fn angle(key: &'static str, value: &'a mut f64, expected: &'static str) -> Self {
-        Self { key, expected, slot: Slot::Number(Quantity::Angle, value) }
+        Self { key, expected, target: ParameterRef::Number(Quantity::Angle, value) }
     }
 
     pub fn length(key: &'static str, value: &'a mut f64, expected: &'static str) -> Self {
-        Self { key, expected, slot: Slot::Number(Quantity::Length, value) }
+        Self { key, expected, target: ParameterRef::Number(Quantity::Length, value) }
     }
 
-    /// Length per radian, of a leg that may have none.
+    /// A length per radian, of a leg that may have none.
     pub fn pitch(key: &'static str, value: &'a mut Option<f64>, expected: &'static str) -> Self {
-        Self { key, expected, slot: Slot::Optional(Quantity::Length, value) }
+        Self { key, expected, target: ParameterRef::Optional(Quantity::Length, value) }
     }
 
     pub fn point(key: &'static str, value: &'a mut [f64; 2], expected: &'static str) -> Self {
-        Self { key, expected, slot: Slot::Point(value) }
+        Self { key, expected, target: ParameterRef::Point(value) }
     }
 
-    pub fn travel(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
-        Self { key, expected: "limits", slot: Slot::Limits(Quantity::Length, limits) }
+    pub fn length_limits(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
+        Self { key, expected: "limits", target: ParameterRef::Limits(Quantity::Length, limits) }
     }
 
-    pub fn turn(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
-        Self { key, expected: "limits", slot: Slot::Limits(Quantity::Angle, limits) }
+    pub fn angle_limits(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
+        Self { key, expected: "limits", target: ParameterRef::Limits(Quantity::Angle, limits) }
     }
 }
 

@@ -1,11 +1,11 @@
 //! A 5-DoF manipulator of two planar subspaces, 3-PRR(RR) + RR(RRR), designed for this project.
 //!
-//! A vertical plane moves in the base's xy plane, and the platform moves in the vertical one: with
-//! `e(t) = (cos t, sin t)`, `n(t) = e(t + π/2)`, `O = (x, y)` and all heights over the base, the
-//! vertical plane contains O and the direction `n(θ)`, and its points are `(u, z)`, along `n(θ)`
-//! from O and up. The platform's point is `(0, w)` in it, and φ turns the platform from `n(θ)`
-//! upward. Three slider legs carry it on rods, one arm on a folding support. Slider leg i is
-//!
+//! A vertical plane moves over the base's xy plane, and the platform moves in the vertical plane.
+//! With `e(t) = (cos t, sin t)`, `n(t) = e(t + π/2)` and `O = (x, y)`, the vertical plane contains
+//! O and the direction `n(θ)`. Its points are `(u, z)`: u along `n(θ)` from O, z the height over
+//! the base. The platform's reference point is `(0, w)` in the vertical plane, and φ rotates the
+//! platform from `n(θ)` upward. Three slider legs hold the platform with rods, and one arm holds it
+//! with a folding support. Slider leg i is
 //! ```text
 //! A = h e(α) + S n(α)      S{i}      prismatic along n(α), actuated
 //! C = A + a1 e(α+π/2+φ1)   phi1{i}   revolute at A, along +z
@@ -43,127 +43,128 @@ use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// How many slider legs there are.
+/// The number of slider legs.
 pub const SLIDER_LEGS: usize = 3;
 
 /// The pose in which the mechanism is assembled: metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Home {
-    /// O along the base's x.
+    /// O along the base's x, metres.
     pub x: f64,
-    /// O along the base's y.
+    /// O along the base's y, metres.
     pub y: f64,
-    /// Height of the platform's point.
+    /// Height of the platform's reference point, metres.
     pub w: f64,
-    /// φ.
+    /// The platform's angle φ in the vertical plane, radians.
     pub phi: f64,
 }
 
-/// Limits of a slider leg's joints, lowest and highest value; metres and radians.
+/// Limits of a slider leg's joints: lowest and highest value, metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliderLimits {
-    /// S.
+    /// Limits of the slider S, metres.
     pub s: Option<[f64; 2]>,
-    /// φ1.
+    /// Limits of φ1, radians.
     pub phi1: Option<[f64; 2]>,
-    /// φ2.
+    /// Limits of φ2, radians.
     pub phi2: Option<[f64; 2]>,
-    /// ρ.
+    /// Limits of the rod's angle ρ, radians.
     pub rod: Option<[f64; 2]>,
-    /// The rod's joint at the platform.
+    /// Limits of the rod's joint at the platform, radians.
     pub hinge: Option<[f64; 2]>,
 }
 
-/// A PRR(RR) leg: metres and radians.
+/// The parameters of a PRR(RR) leg, metres and radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SliderLeg {
-    /// Name, unique in the mechanism.
+    /// The leg's name, unique in the mechanism.
     pub name: String,
-    /// α: the slider runs along `n(α)`.
+    /// Angle α: the slider moves along `n(α)`.
     pub alpha: f64,
-    /// h: distance of the slider's line from the base's origin.
+    /// Distance h of the slider's line from the base's origin.
     pub h: f64,
-    /// Link that the slider carries.
+    /// Length of the link that the slider carries.
     pub a1: f64,
-    /// c: distance of C from the vertical plane, along `e(θ)`.
+    /// Distance c of C from the vertical plane, along `e(θ)`.
     pub c: f64,
-    /// g: height of the rod's lower end.
+    /// Height g of the rod's lower end.
     pub g: f64,
-    /// l: the rod.
+    /// Length l of the rod.
     pub l: f64,
-    /// K in the platform: along `n(θ)` and up from the platform's point, where `φ = 0`.
+    /// The point K in the platform for `φ = 0`: its offset from the platform's reference point,
+    /// along `n(θ)` and up.
     pub platform: [f64; 2],
-    /// `+`: the rod stands on the side of larger u.
+    /// Branch of the upper section; `+`: the rod's lower end is on the side of larger u.
     pub upper: Branch,
-    /// `+`: S with plus its square root.
+    /// Branch of the lower section; `+`: S has the plus sign of its square root.
     pub slider: Branch,
-    /// Limits of its joints.
+    /// Limits of the leg's joints.
     pub limits: SliderLimits,
 }
 
-/// Limits of the arm's joints, lowest and highest value; radians.
+/// Limits of the arm's joints: lowest and highest value, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmLimits {
-    /// φ14.
+    /// Limits of φ14.
     pub phi1: Option<[f64; 2]>,
-    /// φ24.
+    /// Limits of φ24.
     pub phi2: Option<[f64; 2]>,
-    /// The support's joint at the arm.
+    /// Limits of the support's joint at the arm.
     pub fold1: Option<[f64; 2]>,
-    /// The support's middle joint.
+    /// Limits of the support's middle joint.
     pub fold2: Option<[f64; 2]>,
-    /// The support's joint at the platform.
+    /// Limits of the support's joint at the platform.
     pub hinge: Option<[f64; 2]>,
 }
 
-/// The RR(RRR) leg: metres and radians.
+/// The parameters of the RR(RRR) leg, metres and radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmLeg {
-    /// Name, unique in the mechanism.
+    /// The leg's name, unique in the mechanism.
     pub name: String,
-    /// D, where it stands in the plane.
+    /// The point D where the arm is mounted, in the base's xy plane.
     pub base: [f64; 2],
-    /// Link from D.
+    /// Length of the arm's link from D.
     pub b1: f64,
-    /// c: distance of E from the vertical plane, along `e(θ)`.
+    /// Distance c of E from the vertical plane, along `e(θ)`.
     pub c: f64,
-    /// f: from E to the support, along `n(θ)`.
+    /// Distance f from E to the support, along `n(θ)`.
     pub f: f64,
-    /// g: height of the support's lower end.
+    /// Height g of the support's lower end.
     pub g: f64,
-    /// Lower link of the support.
+    /// Length of the support's lower link.
     pub d1: f64,
-    /// Upper link of the support.
+    /// Length of the support's upper link.
     pub d2: f64,
-    /// K in the platform, as for the slider legs.
+    /// The point K in the platform, as for the slider legs.
     pub platform: [f64; 2],
-    /// `+`: E stands on the side of larger u, seen from D.
+    /// Branch of the lower section; `+`: E is on the side of larger u, seen from D.
     pub lower: Branch,
-    /// `+`: `sin fold2 > 0`.
+    /// Branch of the upper section; `+`: `sin fold2 > 0`.
     pub fold: Branch,
-    /// Limits of its joints.
+    /// Limits of the arm's joints.
     pub limits: ArmLimits,
 }
 
-/// Geometric parameters of the manipulator.
+/// The geometric parameters of the manipulator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanarPlanar {
-    /// Name of the mechanism.
+    /// The mechanism's name.
     pub name: String,
-    /// Where it is assembled.
+    /// The pose in which the mechanism is assembled.
     pub home: Home,
-    /// The slider legs, [`SLIDER_LEGS`] of them.
+    /// The slider legs; there must be [`SLIDER_LEGS`].
     pub slider_legs: Vec<SliderLeg>,
-    /// The arm.
+    /// The arm: leg 4.
     pub arm_leg: ArmLeg,
 }
 
 impl PlanarPlanar {
-    /// The mechanism, assembled at home.
+    /// Assembles the mechanism at home.
     ///
     /// # Errors
-    /// Every parameter out of its range, every leg that does not reach home, every joint that is
-    /// outside its limits there.
+    /// [`AssemblyError`] lists every parameter out of its range, every leg that does not reach
+    /// home, and every joint that is outside its limits there.
     pub fn assemble(&self) -> Result<Mechanism, AssemblyError> {
         let Home { x, y, w, phi } = self.home;
         let mut wrong = Problems::default();
@@ -187,7 +188,7 @@ impl PlanarPlanar {
         })
     }
 
-    /// The working mode of home, `++ ++ ++ ++` for instance.
+    /// The working mode of home, such as `++ ++ ++ ++`.
     pub fn mode(&self) -> String {
         let sign = |branch| if branch == Branch::Plus { '+' } else { '-' };
         let mut mode = String::new();
@@ -204,12 +205,13 @@ impl Home {
         [self.x, self.y, self.w, self.phi].iter().all(|v| v.is_finite())
     }
 
-    /// O.
+    /// The point O.
     fn origin(&self) -> Complex<f64> {
         Complex::new(self.x, self.y)
     }
 
-    /// What brings the platform here in the vertical plane from where it is level and has K at `k`.
+    /// The displacement, in the vertical plane, of the platform at home from a layout where it is
+    /// level and has its point K at `k`.
     fn platform_from(&self, k: Complex<f64>, [p, q]: [f64; 2]) -> PlanarDisplacement {
         onto(k - Complex::new(p, q), Complex::new(0.0, self.w), unit(self.phi))
     }
@@ -221,7 +223,8 @@ impl SliderLeg {
         if !home.is_finite() {
             return Err(Problems::default());
         }
-        // Upper section, in the vertical plane: the imaginary slider and the rod, laid out level.
+        // Upper section, in the vertical plane: the imaginary slider and the rod, with the rod laid
+        // out along u.
         let (foot, k) = (Complex::new(0.0, self.g), Complex::new(self.l, self.g));
         let [sigma, rod, hinge] = PlanarChain::new([along(1.0.into()), pivot(foot), pivot(k)])?
             .inverse(&home.platform_from(k, self.platform), self.upper)
@@ -229,12 +232,12 @@ impl SliderLeg {
 
         // Lower section, laid out with e(θ) along the slider.
         let chain = SliderChain::new(self.alpha, self.h, self.a1);
-        let place = home.origin() + Complex::new(self.c, sigma.value());
-        let lower = chain.reach(place, 1.0.into(), self.slider)?;
+        let c = home.origin() + Complex::new(self.c, sigma.value());
+        let lower = chain.reach(c, 1.0.into(), self.slider)?;
 
         let name = |symbol: &str| format!("{symbol}{number}");
         let limits = &self.limits;
-        // e(θ) and n(θ) as laid out.
+        // The directions e(θ) and n(θ) in the layout.
         let (level, upright) = (direction(chain.along), chain.along * unit(FRAC_PI_2));
         let above = [
             (revolute(name("rod"), level, at(chain.c, self.g), limits.rod), rod),
@@ -271,15 +274,15 @@ impl ArmLeg {
         if !home.is_finite() {
             return Err(Problems::default());
         }
-        // Lower section: laid out along x, with E in the vertical plane's u = 0; the imaginary
-        // slider then moves O from there, by -σ.
+        // Lower section: laid out along x, with E at u = 0 in the vertical plane. The imaginary
+        // slider then moves O from there by -σ.
         let d = Complex::new(self.base[0], self.base[1]);
         let e = d + self.b1;
         let [phi1, phi2, slide] = PlanarChain::new([pivot(d), pivot(e), along(Complex::i())])?
             .inverse(&onto(e - self.c, home.origin(), 1.0.into()), self.lower)
             .map_err(out_of_reach("links"))?;
 
-        // Upper section, in the vertical plane: the support, stretched level from E.
+        // Upper section, in the vertical plane: the support, laid out along u from E.
         let foot = Complex::new(self.f - slide.value(), self.g);
         let (knee, k) = (foot + self.d1, foot + self.d1 + self.d2);
         let [fold1, fold2, hinge] = PlanarChain::new([foot, knee, k].map(pivot))?

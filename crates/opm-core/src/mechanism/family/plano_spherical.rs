@@ -1,9 +1,8 @@
 //! The 5-DoF plano-spherical manipulator, 3-PRR(RR) + RRS (section 3.1 of the paper).
 //!
-//! The platform's point P moves in the base's xy plane and the platform turns about P in every
-//! way: `P = (x, y, 0)`, `R = Rz(ζ) Ry(ξ) Rz(ψ)`. Three slider legs hold it on spherical arcs, one
-//! arm carries P. With `e(t) = (cos t, sin t)` and `n(t) = e(t + π/2)`, slider leg i is
-//!
+//! The platform's point P moves in the base's xy plane, and the platform rotates freely about P: `P
+//! = (x, y, 0)`, `R = Rz(ζ) Ry(ξ) Rz(ψ)`. Three slider legs hold the platform with spherical arcs,
+//! and one arm carries P. With `e(t) = (cos t, sin t)` and `n(t) = e(t + π/2)`, slider leg i is
 //! ```text
 //! A = h e(α) + S n(α)      S{i}      prismatic along n(α), actuated
 //! C = A + a1 e(α+π/2+φ1)   phi1{i}   revolute at A, along +z
@@ -12,10 +11,10 @@
 //! w = R Rz(η) Ry(β) z      theta3{i} revolute through P, fixed in the platform
 //! ```
 //!
-//! with `R Rz(η) Ry(β) = Rz(θ1) Rx(α1) Rz(θ2) Rx(α2) Rz(θ3)` (Eqs. 2-3, 13-16), and the arm,
-//! leg 4, is `P = D + b1 e(φ14) + b2 e(φ14 + φ24)` (Eqs. 10-12): `phi14` and `phi24`, both
-//! actuated, and the spherical `s4` at P, whose rotation vector is zero at home. The imaginary joint
-//! of slider leg i is `theta1{i}`, a revolute about +z through P.
+//! with `R Rz(η) Ry(β) = Rz(θ1) Rx(α1) Rz(θ2) Rx(α2) Rz(θ3)` (Eqs. 2-3, 13-16). The arm, leg 4, is
+//! `P = D + b1 e(φ14) + b2 e(φ14 + φ24)` (Eqs. 10-12). Its joints `phi14` and `phi24` are both
+//! actuated; the spherical joint `s4` at P has a rotation vector that is zero at home. The
+//! imaginary joint of slider leg i is `theta1{i}`, a revolute about +z through P.
 
 mod file;
 
@@ -33,80 +32,81 @@ use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::{Complex, Point3, Rotation3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// How many slider legs there are.
+/// The number of slider legs.
 pub const SLIDER_LEGS: usize = 3;
 
 /// The pose in which the mechanism is assembled: metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Home {
-    /// P along the base's x.
+    /// P along the base's x, metres.
     pub x: f64,
-    /// P along the base's y.
+    /// P along the base's y, metres.
     pub y: f64,
-    /// ζ, about z.
+    /// Euler angle ζ, about z, radians.
     pub zeta: f64,
-    /// ξ, about y as turned by ζ.
+    /// Euler angle ξ, about y as rotated by ζ, radians.
     pub xi: f64,
-    /// ψ, about z as turned by both.
+    /// Euler angle ψ, about z as rotated by ζ and ξ, radians.
     pub psi: f64,
 }
 
-/// Limits of a slider leg's joints, lowest and highest value; metres and radians.
+/// Limits of a slider leg's joints: lowest and highest value, metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliderLimits {
-    /// S.
+    /// Limits of the slider S, metres.
     pub s: Option<[f64; 2]>,
-    /// φ1.
+    /// Limits of φ1, radians.
     pub phi1: Option<[f64; 2]>,
-    /// φ2.
+    /// Limits of φ2, radians.
     pub phi2: Option<[f64; 2]>,
-    /// θ2.
+    /// Limits of θ2, radians.
     pub theta2: Option<[f64; 2]>,
-    /// θ3.
+    /// Limits of θ3, radians.
     pub theta3: Option<[f64; 2]>,
 }
 
-/// A PRR(RR) leg: metres and radians.
+/// The parameters of a PRR(RR) leg, metres and radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SliderLeg {
-    /// Name, unique in the mechanism.
+    /// The leg's name, unique in the mechanism.
     pub name: String,
-    /// α: the slider runs along `n(α)`.
+    /// Angle α: the slider moves along `n(α)`.
     pub alpha: f64,
-    /// h: distance of the slider's line from the base's origin.
+    /// Distance h of the slider's line from the base's origin.
     pub h: f64,
-    /// Planar link that the slider carries.
+    /// Length of the planar link that the slider carries.
     pub a1: f64,
-    /// Planar link at P.
+    /// Length of the planar link at P.
     pub a2: f64,
-    /// α1: arc from z to v.
+    /// Arc α1 from z to v.
     pub alpha1: f64,
-    /// α2: arc from v to w.
+    /// Arc α2 from v to w.
     pub alpha2: f64,
-    /// η: where w points in the platform, about its z.
+    /// Angle η of w about the platform's z.
     pub eta: f64,
-    /// β: angle between w and the platform's z.
+    /// Angle β between w and the platform's z.
     pub beta: f64,
-    /// `+`: `θ1 = atan2(wy, wx) + asin(k)`; `-`: the other solution of Eq. 3.
+    /// Branch of the upper section; `+`: `θ1 = atan2(wy, wx) + asin(k)`; `-`: the other solution of
+    /// Eq. 3.
     pub upper: Branch,
-    /// `+`: S with plus the square root of Eq. 16.
+    /// Branch of the lower section; `+`: S has the plus sign of the square root in Eq. 16.
     pub slider: Branch,
-    /// Limits of its joints.
+    /// Limits of the leg's joints.
     pub limits: SliderLimits,
 }
 
-/// The RRS leg: metres and radians.
+/// The parameters of the RRS leg, metres and radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmLeg {
-    /// Name, unique in the mechanism.
+    /// The leg's name, unique in the mechanism.
     pub name: String,
-    /// D, where it stands in the plane.
+    /// The point D where the arm is mounted, in the base's xy plane.
     pub base: [f64; 2],
-    /// Link from D.
+    /// Length of the link from D to the elbow.
     pub b1: f64,
-    /// Link to P.
+    /// Length of the link from the elbow to P.
     pub b2: f64,
-    /// `+`: `sin φ24 > 0`.
+    /// Branch of the arm; `+`: `sin φ24 > 0`.
     pub elbow: Branch,
     /// Limits of φ14.
     pub phi1: Option<[f64; 2]>,
@@ -114,25 +114,25 @@ pub struct ArmLeg {
     pub phi2: Option<[f64; 2]>,
 }
 
-/// Geometric parameters of the manipulator.
+/// The geometric parameters of the manipulator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanoSpherical {
-    /// Name of the mechanism.
+    /// The mechanism's name.
     pub name: String,
-    /// Where it is assembled.
+    /// The pose in which the mechanism is assembled.
     pub home: Home,
-    /// The slider legs, [`SLIDER_LEGS`] of them.
+    /// The slider legs; there must be [`SLIDER_LEGS`].
     pub slider_legs: Vec<SliderLeg>,
-    /// The arm.
+    /// The arm: leg 4.
     pub arm_leg: ArmLeg,
 }
 
 impl PlanoSpherical {
-    /// The mechanism, assembled at home.
+    /// Assembles the mechanism at home.
     ///
     /// # Errors
-    /// Every parameter out of its range, every leg that does not reach home, every joint that is
-    /// outside its limits there.
+    /// [`AssemblyError`] lists every parameter out of its range, every leg that does not reach
+    /// home, and every joint that is outside its limits there.
     pub fn assemble(&self) -> Result<Mechanism, AssemblyError> {
         let Home { x, y, zeta, xi, psi } = self.home;
         let mut wrong = Problems::default();
@@ -156,7 +156,7 @@ impl PlanoSpherical {
         })
     }
 
-    /// The working mode of home, `++ ++ ++ +` for instance.
+    /// The working mode of home, such as `++ ++ ++ +`.
     pub fn mode(&self) -> String {
         let sign = |branch| if branch == Branch::Plus { '+' } else { '-' };
         let mut mode = String::new();
@@ -190,24 +190,25 @@ impl SliderLeg {
         }
         let z = Vector3::z_axis();
 
-        // Laid out with every joint at zero: the links a1 and a2 lie along the slider, θ1 points
-        // there too, and the arcs α1 and α2 add up.
+        // The layout has every joint at zero: the links a1 and a2 and the direction θ1 are along
+        // the slider, and the arcs α1 and α2 add up.
         let chain = SliderChain::new(self.alpha, self.h, self.a1);
         let p = chain.c - chain.along * self.a2;
         let theta1_zero = rz(self.alpha + FRAC_PI_2);
         let v = rx(self.alpha1) * z;
         let w = rx(self.alpha1 + self.alpha2) * z;
 
-        // Upper section: θ1 θ2 θ3 turn the platform's frame Rx(α1+α2) to home's.
+        // Upper section: θ1 θ2 θ3 rotate the platform's frame from Rx(α1+α2) to home's.
         let target =
             home.rotation() * rz(self.eta) * ry(self.beta) * rx(-self.alpha1 - self.alpha2);
         let [theta1, theta2, theta3] = SphericalChain::new([z, v, w])?
             .inverse(target.matrix(), self.upper)
             .map_err(out_of_reach("arcs"))?;
 
-        // Lower section: the slider and both revolutes bring P and the direction θ1 there.
-        let place = Complex::new(home.x, home.y) + theta1.unit_direction() * self.a2;
-        let lower = chain.reach(place, theta1.unit_direction(), self.slider)?;
+        // Lower section: the slider and both revolutes bring P and the direction θ1 to their home
+        // values.
+        let c = Complex::new(home.x, home.y) + theta1.unit_direction() * self.a2;
+        let lower = chain.reach(c, theta1.unit_direction(), self.slider)?;
 
         let name = |symbol: &str| format!("{symbol}{number}");
         let limits = &self.limits;
@@ -222,7 +223,7 @@ impl SliderLeg {
         let joints = carried(below.into_iter().zip(lower).chain(above))?;
         let imaginary = ImaginaryLabel {
             name: name("theta1"),
-            home: positive_turn(theta1),
+            home: positive_angle(theta1),
             positive: Vector3::z(),
         };
         Ok(Leg { name: self.name.clone(), joints, imaginary: Some(imaginary) })
@@ -247,7 +248,7 @@ impl ArmLeg {
         if !home.is_finite() {
             return Err(Problems::default());
         }
-        // Laid out with every joint at zero: the arm stretched along x.
+        // The layout has every joint at zero: the arm is stretched along x.
         let d = Complex::new(self.base[0], self.base[1]);
         let elbow = d + self.b1;
         let p = elbow + self.b2;
@@ -269,10 +270,10 @@ impl ArmLeg {
     }
 }
 
-/// An angle in `[0, 2π)`.
-fn positive_turn(angle: JointDisplacement) -> f64 {
+/// The angle in `[0, 2π)`.
+fn positive_angle(angle: JointDisplacement) -> f64 {
     let angle = angle.value().rem_euclid(TAU);
-    // A tiny negative angle is rounded up to a whole turn.
+    // Rounding maps a tiny negative angle to 2π itself.
     if angle < TAU { angle } else { 0.0 }
 }
 

@@ -1,4 +1,4 @@
-//! The PRR part of a slider leg, which families of several kinds stand on:
+//! The PRR part of a slider leg, which several families share:
 //!
 //! ```text
 //! A = h e(α) + S n(α)      S{i}    prismatic along n(α), actuated
@@ -6,7 +6,7 @@
 //!                          phi2{i} revolute at C, along +z
 //! ```
 //!
-//! laid out where `S = φ1 = φ2 = 0`: the link a1, and what it carries, lie along the slider.
+//! The layout has `S = φ1 = φ2 = 0`: the link a1, and everything it carries, lie along the slider.
 
 use super::assembly::{Problems, out_of_reach};
 use crate::chain::Branch;
@@ -17,13 +17,13 @@ use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// The chain as it is laid out.
+/// The chain in its layout, in the base's xy plane as complex numbers, metres.
 pub(super) struct SliderChain {
-    /// `n(α)`.
+    /// Direction `n(α)` of the slider, unit length.
     pub along: Complex<f64>,
-    /// A.
+    /// The point A.
     pub a: Complex<f64>,
-    /// C.
+    /// The point C.
     pub c: Complex<f64>,
 }
 
@@ -34,20 +34,21 @@ impl SliderChain {
         Self { along, a, c: a + along * a1 }
     }
 
-    /// S, φ1 and φ2 that bring C to a place, and to a direction what lies along the slider beyond it.
+    /// The values of S, φ1 and φ2 that bring C to `target` and turn what lies along the slider
+    /// beyond C into `direction`.
     pub fn reach(
         &self,
-        place: Complex<f64>,
+        target: Complex<f64>,
         direction: Complex<f64>,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], Problems> {
         let joints = [PlanarJoint::Prismatic { along: self.along }, pivot(self.a), pivot(self.c)];
         PlanarChain::new(joints)?
-            .inverse(&onto(self.c, place, direction * self.along.conj()), branch)
+            .inverse(&onto(self.c, target, direction * self.along.conj()), branch)
             .map_err(out_of_reach("links"))
     }
 
-    /// The three joints of leg `number` with their limits, as laid out.
+    /// The three joints of leg `number`, in the layout, with their limits.
     pub fn joints(&self, number: usize, limits: [Option<[f64; 2]>; 3]) -> [Joint; 3] {
         let at = |z: Complex<f64>| Point3::new(z.re, z.im, 0.0);
         let axis = Unit::new_unchecked(at(self.along).coords);
@@ -64,7 +65,7 @@ impl SliderChain {
     }
 }
 
-/// The displacement that turns by `rotation` and takes one point to the other.
+/// The displacement that rotates by `rotation` and carries the point `from` to `to`.
 pub(super) fn onto(
     from: Complex<f64>,
     to: Complex<f64>,
@@ -73,7 +74,7 @@ pub(super) fn onto(
     PlanarDisplacement { rotation, translation: to - rotation * from }
 }
 
-/// A revolute along +z.
+/// A revolute joint about +z.
 pub(super) fn pivot(at: Complex<f64>) -> PlanarJoint {
     PlanarJoint::Revolute { at, reversed: false }
 }

@@ -1,9 +1,9 @@
 //! The 3-DoF manipulator with a helical leg, 2-PPR + PPH (section 3.2 of the paper).
 //!
-//! The platform's point P moves in the base's xy plane and the platform turns by φ about one fixed
-//! direction of that plane: `P = (x, y, 0)`. Every leg ends in a joint on the line through P along
-//! the common direction `k̂ = e(α + β)`, two of them revolute, one helical. With
-//! `e(t) = (cos t, sin t)` and `n(t) = e(t + π/2)`, leg i is
+//! The platform's point P moves in the base's xy plane, and the platform rotates by φ about one
+//! fixed direction in that plane: `P = (x, y, 0)`. Every leg ends in a joint on the line through P
+//! along the common direction `k̂ = e(α + β)`; two of these joints are revolute, one is helical.
+//! With `e(t) = (cos t, sin t)` and `n(t) = e(t + π/2)`, leg i is
 //!
 //! ```text
 //! C = S n(α) + r e(α)   S{i}    prismatic along n(α), actuated
@@ -12,9 +12,9 @@
 //! P = C - (k + S) k̂     phi{i}  on the helical leg: helical about -k̂, S = p φ (Eqs. 24-25)
 //! ```
 //!
-//! φ is counted about `-k̂`, the direction from the legs to P: turning forward a right-handed screw
-//! (`p > 0`) drives P away from its leg. The helical leg's imaginary joint is `S`, a slider along
-//! `k̂`.
+//! φ is positive about `-k̂`, the direction from the legs to P: rotation in the positive direction
+//! drives P away from the leg if the screw is right-handed (`p > 0`). The helical leg's imaginary
+//! joint is `S`, a slider along `k̂`.
 
 mod file;
 
@@ -31,69 +31,69 @@ use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// How many legs there are, one of them helical.
+/// The number of legs, one of which is helical.
 pub const LEGS: usize = 3;
 
-/// How far, in radians, a leg's direction `α + β` may be from the first leg's: angles written with
-/// six digits are meant to be the same. All legs take the first one's.
+/// Largest difference in radians between a leg's direction `α + β` and the first leg's. Angles
+/// written with six digits are meant to be equal within it. All legs get the first leg's direction.
 const SAME_DIRECTION: f64 = 1e-6;
 
 /// The pose in which the mechanism is assembled: metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Home {
-    /// P along the base's x.
+    /// P along the base's x, metres.
     pub x: f64,
-    /// P along the base's y.
+    /// P along the base's y, metres.
     pub y: f64,
-    /// φ, about `-k̂`; whole turns count.
+    /// The platform's angle φ about `-k̂`, radians. Full revolutions count.
     pub phi: f64,
 }
 
-/// Limits of a leg's joints, lowest and highest value; metres and radians.
+/// Limits of a leg's joints: lowest and highest value, metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LegLimits {
-    /// S.
+    /// Limits of the slider S, metres.
     pub s: Option<[f64; 2]>,
-    /// r.
+    /// Limits of the passive slider r, metres.
     pub r: Option<[f64; 2]>,
-    /// φ.
+    /// Limits of φ, radians.
     pub phi: Option<[f64; 2]>,
 }
 
-/// A PPR leg, or the PPH leg where it has a pitch: metres and radians.
+/// The parameters of a PPR leg, or of the PPH leg if it has a pitch; metres and radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TranslationalLeg {
-    /// Name, unique in the mechanism.
+    /// The leg's name, unique in the mechanism.
     pub name: String,
-    /// α: the slider runs along `n(α)`.
+    /// Angle α: the slider moves along `n(α)`.
     pub alpha: f64,
-    /// β: angle from `e(α)` to the common direction.
+    /// Angle β from `e(α)` to the common direction.
     pub beta: f64,
-    /// k: from P to the leg's last joint, along the common direction.
+    /// Distance k from P to the leg's last joint, along the common direction.
     pub k: f64,
-    /// p, metres per radian, of the one helical leg.
+    /// Pitch p of the helical leg, metres per radian; `None` for the other legs.
     pub pitch: Option<f64>,
-    /// Limits of its joints.
+    /// Limits of the leg's joints.
     pub limits: LegLimits,
 }
 
-/// Geometric parameters of the manipulator.
+/// The geometric parameters of the manipulator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TranslationalHelical {
-    /// Name of the mechanism.
+    /// The mechanism's name.
     pub name: String,
-    /// Where it is assembled.
+    /// The pose in which the mechanism is assembled.
     pub home: Home,
-    /// The legs, [`LEGS`] of them, exactly one with a pitch.
+    /// The legs; there must be [`LEGS`], exactly one with a pitch.
     pub legs: Vec<TranslationalLeg>,
 }
 
 impl TranslationalHelical {
-    /// The mechanism, assembled at home.
+    /// Assembles the mechanism at home.
     ///
     /// # Errors
-    /// Every parameter out of its range, legs whose directions `α + β` differ, every joint that is
-    /// outside its limits at home.
+    /// [`AssemblyError`] lists every parameter out of its range, every leg whose direction `α + β`
+    /// differs from the first leg's, and every joint that is outside its limits at home.
     pub fn assemble(&self) -> Result<Mechanism, AssemblyError> {
         let Home { x, y, phi } = self.home;
         let mut wrong = Problems::default();
@@ -139,21 +139,22 @@ impl TranslationalLeg {
         let k_hat = unit(direction);
         let slides = [unit(self.alpha + FRAC_PI_2), unit(self.alpha)];
 
-        // Upper section, about and along -k̂: the imaginary slider along k̂ takes back what the
-        // last joint advances.
+        // Upper section, about and along -k̂: the imaginary slider along k̂ compensates the advance
+        // of the last joint.
         let pitch = self.pitch.unwrap_or(0.0);
         let [imaginary, phi] = CylindricalChain::new([
             CoaxialJoint { turn: 0.0, advance: -1.0 },
             CoaxialJoint { turn: 1.0, advance: pitch },
         ])?
         .inverse(&CylindricalDisplacement { angle: home.phi, advance: 0.0 });
-        // A revolute joint is at home's φ too, whole turns included, unless its limits say where.
+        // A revolute joint has home's φ too, including full revolutions, unless its limits choose
+        // others.
         let phi = match (self.pitch, self.limits.phi) {
             (None, None) => JointDisplacement::Value(home.phi),
             _ => phi,
         };
 
-        // Lower section: the sliders bring C from the origin to its place.
+        // Lower section: the sliders bring C from the origin to its position at home.
         let c = Complex::new(home.x, home.y) + k_hat * (self.k + imaginary.value());
         let [s, r] = TranslationalChain::new(slides)?.inverse(c);
 
@@ -189,7 +190,7 @@ impl TranslationalLeg {
             }
         }
         let apart = self.direction() - direction;
-        // NaN is not far: it has been reported as what it is.
+        // A direction that is NaN does not count as different: it has been reported already.
         if (apart - TAU * (apart / TAU).round()).abs() > SAME_DIRECTION {
             let [angle, expected] = [self.direction(), direction].map(|a| a.rem_euclid(TAU));
             wrong.add(Some("beta"), AssemblyReason::Direction { angle, expected });

@@ -1,25 +1,25 @@
-//! What a number of a mechanism has to keep to, whether it comes from a file or not. What is wrong is
-//! told without the name, in the units of whoever gave it.
+//! Checks of numbers, whether they come from a file or from a call. A message does not contain the
+//! name of the value; it is in the units of the caller.
 
 use super::reader::LARGEST;
 use super::units::FileUnits;
 use crate::numeric::Quantity;
 
-/// A number, neither NaN nor infinite.
+/// Checks that a number is neither NaN nor infinite.
 pub(crate) fn finite(value: f64) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("is {value}, expected a finite number")) }
 }
 
-/// A length or an angle, SI, of no more than any machine has.
+/// Checks that a length or an angle, SI, is not larger than [`LARGEST`].
 pub(crate) fn size(value: f64, quantity: Quantity, units: FileUnits) -> Result<f64, String> {
     if value.abs() <= LARGEST {
         return Ok(value);
     }
     let [found, largest] = [value, LARGEST].map(|value| units.show(value, quantity).to_string());
-    Err(format!("is {found}, expected a size of at most {largest}"))
+    Err(format!("is {found}, expected an absolute value of at most {largest}"))
 }
 
-/// Limits, SI, the lower one first.
+/// Checks that limits, SI, are in order: the lower one first.
 pub(crate) fn ordered(
     [low, high]: [f64; 2],
     quantity: Quantity,

@@ -1,10 +1,10 @@
-//! What stands for a word that is not known: the words that are, and the one that was meant.
+//! Hints for an unknown word: the known words, and the one that was probably meant.
 
-/// `expected A` or `did you mean A? Expected one of A, B, C`.
+/// The text `expected A, B, C`, or `did you mean A? expected one of A, B, C` if one is similar.
 pub(super) fn expected_one_of(found: &str, words: &[&str]) -> String {
     let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let expected = if words.len() == 1 { "expected" } else { "expected one of" };
-    // Two letters exchanged are two edits: a slip in a word of four letters; more is another word.
+    // Exchanging two letters takes two edits: still a slip in a word of four letters.
     let allowed = found.chars().count().div_ceil(3).max(1);
     let nearest =
         words.iter().map(|word| (edits(found, word), word)).min_by_key(|&(distance, _)| distance);
@@ -16,8 +16,8 @@ pub(super) fn expected_one_of(found: &str, words: &[&str]) -> String {
     }
 }
 
-/// Letters to insert, delete or replace to make one word of the other (Levenshtein); upper and
-/// lower case are alike.
+/// The Levenshtein distance of two words: how many letters must be inserted, deleted or replaced.
+/// Upper and lower case are equal.
 fn edits(a: &str, b: &str) -> usize {
     let (a, b) = (a.to_lowercase(), b.to_lowercase());
     let mut row: Vec<usize> = (0..=b.chars().count()).collect();

@@ -1,7 +1,7 @@
-//! The form of a mechanism file that lists the joints at the assembled home pose.
+//! Reading the form of mechanism file that lists the joints at the assembled home pose.
 
 use super::leg_name;
-use super::problem::Places;
+use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section};
@@ -20,8 +20,8 @@ const TYPES: [(&str, Type); 6] = [
     ("spherical", Type::Spherical),
 ];
 
-/// What tables and recordings have beside joints: the task coordinates of all pairs of subspaces, and
-/// columns. Imaginary joints are `tau.` and the leg's name.
+/// Names that tables and recordings use for other columns than joints: the task coordinates of all
+/// pairs of subspaces, and status columns. Imaginary joints are `tau.` and the leg's name.
 const RESERVED: [&str; 15] = [
     "x",
     "y",
@@ -40,10 +40,11 @@ const RESERVED: [&str; 15] = [
     "branch",
 ];
 
-/// Sine of the angle below which the axes of a universal joint are one: its two freedoms would be.
+/// Sine of the angle below which the two axes of a universal joint count as parallel, so that its
+/// two freedoms would be the same.
 const PARALLEL: f64 = 1e-6;
 
-/// A joint's `type`.
+/// The `type` of a joint.
 #[derive(Clone, Copy, PartialEq)]
 enum Type {
     Revolute,
@@ -68,9 +69,9 @@ impl Type {
     }
 }
 
-/// The mechanism. What cannot be read is reported, and stands for something harmless, so that the
-/// rest is checked too.
-pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Places<usize>) {
+/// Reads the mechanism. What cannot be read is reported and replaced by a harmless value, so that
+/// the rest is checked too.
+pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>) {
     root.allow(KEYS);
     let point = "the platform's reference point [x, y, z] at home";
     let platform = root
@@ -78,11 +79,11 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Places<usize>) {
         .and_then(|value| value.table(&["point"]))
         .and_then(|table| table.require("point", point)?.point())
         .map_or_else(Point3::origin, Point3::from);
-    let mut places = Places::default();
+    let mut locations = Locations::default();
     let task = root
         .get("task")
         .and_then(|value| value.table(&["axis", "lower", "upper"]))
-        .map_or_else(TaskHints::default, |task| read_task(&task, &mut places));
+        .map_or_else(TaskHints::default, |task| read_task(&task, &mut locations));
 
     let tables = root.tables("leg", LEG_KEYS);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
@@ -97,34 +98,35 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Places<usize>) {
     let mut complete = !tables.is_empty();
     for (index, table) in tables.iter().enumerate() {
         let name = leg_name(table, index);
-        leg_names.add(&name, root.reader, table.place_of("name"));
-        places.legs.push(table.at);
+        leg_names.add(&name, root.reader, table.location_of("name"));
+        locations.legs.push(table.at);
         let joints = read_joints(table, platform, &mut joint_names);
         complete &= joints.is_some();
         legs.push(Leg::new(name, joints.unwrap_or_default()));
     }
-    let at = root.place_of("leg");
+    let at = root.location_of("leg");
     if legs.len() < 2 && !root.reader.has_problem(at) {
-        let count = legs.len();
-        root.reader.report(at, format!("{count} of [[leg]], expected at least two legs"));
+        let (count, tables) = (legs.len(), if legs.len() == 1 { "table" } else { "tables" });
+        let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
+        root.reader.report(at, problem);
     }
     if complete && !legs.iter().flat_map(|leg| &leg.joints).any(|joint| joint.actuated) {
         root.reader.report(at, "no joint is actuated, expected `actuated = true` in at least one");
     }
-    (Mechanism { name: name.to_owned(), legs, platform, task }, places)
+    (Mechanism { name: name.to_owned(), legs, platform, task }, locations)
 }
 
-/// `[task]`: how the pose is to be measured. Whether it fits the geometry turns out later.
-fn read_task(task: &Table<'_>, places: &mut Places<usize>) -> TaskHints {
+/// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.
+fn read_task(task: &Table<'_>, locations: &mut Locations<usize>) -> TaskHints {
     TaskHints {
-        axis: task_direction(task, TaskKey::Axis, places),
-        lower: read_frame(task, Section::Lower, places),
-        upper: read_frame(task, Section::Upper, places),
+        axis: task_direction(task, TaskKey::Axis, locations),
+        lower: read_frame(task, Section::Lower, locations),
+        upper: read_frame(task, Section::Upper, locations),
         home: Vec::new(),
     }
 }
 
-fn read_frame(task: &Table<'_>, section: Section, places: &mut Places<usize>) -> FrameHints {
+fn read_frame(task: &Table<'_>, section: Section, locations: &mut Locations<usize>) -> FrameHints {
     let value = match section {
         Section::Lower => task.get("lower"),
         Section::Upper => task.get("upper"),
@@ -132,11 +134,11 @@ fn read_frame(task: &Table<'_>, section: Section, places: &mut Places<usize>) ->
     let Some(frame) = value.and_then(|value| value.table(&["x", "w", "normal", "origin"])) else {
         return FrameHints::default();
     };
-    let origin = task_value(&frame, TaskKey::Origin(section), places);
+    let origin = task_value(&frame, TaskKey::Origin(section), locations);
     FrameHints {
-        x: task_direction(&frame, TaskKey::X(section), places),
-        w: task_direction(&frame, TaskKey::W(section), places),
-        normal: task_direction(&frame, TaskKey::Normal(section), places),
+        x: task_direction(&frame, TaskKey::X(section), locations),
+        w: task_direction(&frame, TaskKey::W(section), locations),
+        normal: task_direction(&frame, TaskKey::Normal(section), locations),
         origin: origin.and_then(|value| value.point()).map(Point3::from),
     }
 }
@@ -144,23 +146,23 @@ fn read_frame(task: &Table<'_>, section: Section, places: &mut Places<usize>) ->
 fn task_direction(
     table: &Table<'_>,
     key: TaskKey,
-    places: &mut Places<usize>,
+    locations: &mut Locations<usize>,
 ) -> Option<Vector3<f64>> {
-    task_value(table, key, places)?.direction().map(Unit::into_inner)
+    task_value(table, key, locations)?.direction().map(Unit::into_inner)
 }
 
-/// A value of `[task]`, its place noted.
+/// Reads a value of `[task]` and notes its location.
 fn task_value<'a>(
     table: &Table<'a>,
     key: TaskKey,
-    places: &mut Places<usize>,
+    locations: &mut Locations<usize>,
 ) -> Option<Value<'a>> {
     let value = table.get(key.name())?;
-    places.task.push((key, value.at));
+    locations.task.push((key, value.at));
     Some(value)
 }
 
-/// The joints of a leg; `None` where one of them has no known type.
+/// Reads the joints of a leg; `None` if one of them has no known type.
 fn read_joints(
     leg: &Table<'_>,
     platform: Point3<f64>,
@@ -175,7 +177,7 @@ fn read_joints(
     all(items.iter().map(|item| read_joint(item, platform, names)))
 }
 
-/// A joint; `None` without a type, which decides what else there is to check.
+/// Reads a joint; `None` if it has no type, because the type decides what else there is to check.
 fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames) -> Option<Joint> {
     let table = value.open_table()?;
     let name = table.require("name", "the joint's name").and_then(|value| value.name());
@@ -198,9 +200,9 @@ fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames)
         Joint::new(name.unwrap_or_default(), joint_kind, axis.unwrap_or(Vector3::z_axis()), point);
     joint.actuated = table.get("actuated").is_some_and(|value| value.boolean().unwrap_or(true));
     if name.is_some() {
-        let at = table.place_of("name");
+        let at = table.location_of("name");
         names.add(&joint.name, table.reader, at);
-        // `s.x` of a spherical joint `s` may be another joint's whole name.
+        // The coordinate `s.x` of a spherical joint `s` may equal the name of another joint.
         for coordinate in joint.coordinates.iter().filter(|c| c.name != joint.name) {
             names.add(&coordinate.name, table.reader, at);
         }
@@ -232,7 +234,7 @@ fn joint_kind(table: &Table<'_>, kind: Type, axis: Option<Unit<Vector3<f64>>>) -
             if let (Some(first), Some(second)) = (axis, second)
                 && first.cross(&second).norm() < PARALLEL
             {
-                let at = table.place_of("axis2");
+                let at = table.location_of("axis2");
                 table
                     .reader
                     .report(at, "`axis2` is parallel to `axis`, expected another direction");
@@ -242,7 +244,7 @@ fn joint_kind(table: &Table<'_>, kind: Type, axis: Option<Unit<Vector3<f64>>>) -
     }
 }
 
-/// `home` and `limits`: one value and one pair a coordinate.
+/// Reads `home` and `limits`: one value and one pair per coordinate.
 fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
     let quantities: Vec<Quantity> = joint.coordinates.iter().map(|c| c.quantity).collect();
     let home = match table.get("home") {
@@ -260,7 +262,7 @@ fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
         {
             let show = |number| table.reader.units().show(number, coordinate.quantity);
             value.report(format!(
-                "leave out home: {} is {} there, expected it between {} and {}",
+                "exclude home: {} is {} there, expected it between {} and {}",
                 coordinate.name,
                 show(home[i]),
                 show(low),

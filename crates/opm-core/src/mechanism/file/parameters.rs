@@ -1,22 +1,22 @@
-//! The parameters of families in files.
+//! Reading the parameters of families.
 
 use super::Table;
-use crate::mechanism::family::{Parameter, Slot};
+use crate::mechanism::family::{Parameter, ParameterRef};
 
-/// Reads a family's `home`: zero where a coordinate is not given, NaN where it is not understood.
+/// Reads a family's `home`. A coordinate is zero if it is not given and NaN if it cannot be read.
 pub(in crate::mechanism) fn read_home(root: &Table<'_>, parameters: Vec<Parameter<'_>>) {
     let keys: Vec<_> = parameters.iter().map(|parameter| parameter.key).collect();
     let table = root.get("home").and_then(|value| value.table(&keys));
     for parameter in parameters {
-        if let Slot::Number(quantity, slot) = parameter.slot
+        if let ParameterRef::Number(quantity, target) = parameter.target
             && let Some(value) = table.and_then(|table| table.get(parameter.key))
         {
-            *slot = value.quantity(quantity).unwrap_or(f64::NAN);
+            *target = value.quantity(quantity).unwrap_or(f64::NAN);
         }
     }
 }
 
-/// The tables of an array of legs with these parameters.
+/// Opens the tables of an array of legs with these parameters.
 pub(in crate::mechanism) fn tables_of<'a>(
     root: &Table<'a>,
     key: &str,
@@ -25,7 +25,7 @@ pub(in crate::mechanism) fn tables_of<'a>(
     root.tables(key, &keys(parameters))
 }
 
-/// The table of a leg with these parameters, which must be there; `expected` says what it stands for.
+/// Opens the table of a leg with these parameters. The table is required; `expected` describes it.
 pub(in crate::mechanism) fn table_of<'a>(
     root: &Table<'a>,
     key: &str,
@@ -35,39 +35,41 @@ pub(in crate::mechanism) fn table_of<'a>(
     root.require(key, expected)?.table(&keys(parameters))
 }
 
-/// Reads the parameters of a leg. What must be there and is not has been reported then, and is NaN for
-/// the others to be checked nevertheless; so is all of it where there is no table at all.
+/// Reads the parameters of a leg. A required parameter that is missing is reported and becomes NaN,
+/// so that the others are checked too. Without a table, all of them are NaN.
 pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Parameter<'_>>) {
     let limits = leg
         .and_then(|leg| leg.get("limits"))
         .and_then(|value| value.table(&limit_keys(&parameters)));
-    for Parameter { key, expected, slot } in parameters {
+    for Parameter { key, expected, target } in parameters {
         let required = || leg.and_then(|leg| leg.require(key, expected));
-        match slot {
-            Slot::Number(quantity, slot) => {
-                *slot = required().and_then(|value| value.quantity(quantity)).unwrap_or(f64::NAN);
+        match target {
+            ParameterRef::Number(quantity, target) => {
+                *target = required().and_then(|value| value.quantity(quantity)).unwrap_or(f64::NAN);
             }
-            Slot::Optional(quantity, slot) => {
+            ParameterRef::Optional(quantity, target) => {
                 let given = leg.and_then(|leg| leg.get(key));
-                *slot = given.map(|value| value.quantity(quantity).unwrap_or(f64::NAN));
+                *target = given.map(|value| value.quantity(quantity).unwrap_or(f64::NAN));
             }
-            Slot::Point(slot) => {
-                *slot = required().and_then(|value| value.point()).unwrap_or([f64::NAN; 2]);
+            ParameterRef::Point(target) => {
+                *target = required().and_then(|value| value.point()).unwrap_or([f64::NAN; 2]);
             }
-            Slot::Limits(quantity, slot) => {
-                *slot = limits.and_then(|limits| limits.get(key)?.limits(quantity));
+            ParameterRef::Limits(quantity, target) => {
+                *target = limits.and_then(|limits| limits.get(key)?.limits(quantity));
             }
         }
     }
 }
 
-/// What the table of a leg may have.
+/// The keys that the table of a leg may have.
 fn keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
-    let own = parameters.iter().filter(|parameter| !matches!(parameter.slot, Slot::Limits(..)));
+    let own =
+        parameters.iter().filter(|parameter| !matches!(parameter.target, ParameterRef::Limits(..)));
     ["name"].into_iter().chain(own.map(|parameter| parameter.key)).chain(["limits"]).collect()
 }
 
 fn limit_keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
-    let limits = parameters.iter().filter(|parameter| matches!(parameter.slot, Slot::Limits(..)));
+    let limits =
+        parameters.iter().filter(|parameter| matches!(parameter.target, ParameterRef::Limits(..)));
     limits.map(|parameter| parameter.key).collect()
 }

@@ -1,12 +1,12 @@
-//! What is wrong with a file, and where.
+//! The problems of a file, with their locations.
 
 use crate::mechanism::TaskKey;
 use std::fmt;
 
-/// One problem of a file.
+/// One problem of a file, with its location.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Problem {
-    /// Line, from 1.
+    /// Line number, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
@@ -20,18 +20,19 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Every problem of a file, in the order of their places; at least one.
+/// A list of all problems of a file, in the order of their locations; at least one.
 ///
-/// Displayed one a line, `LINE:COLUMN: message`; [`FileErrors::in_file`] puts the file's name first.
+/// The text has one line per problem, `LINE:COLUMN: message`; [`FileErrors::in_file`] adds the
+/// file's name in front.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", lines(.problems, ""))]
 pub struct FileErrors {
-    /// The problems, sorted by place.
+    /// The problems, sorted by location.
     pub problems: Vec<Problem>,
 }
 
 impl FileErrors {
-    /// One line a problem, `FILE:LINE:COLUMN: message`.
+    /// The text with one line per problem, `FILE:LINE:COLUMN: message`.
     pub fn in_file(&self, file: impl fmt::Display) -> String {
         lines(&self.problems, &format!("{file}:"))
     }
@@ -42,42 +43,43 @@ fn lines(problems: &[Problem], prefix: &str) -> String {
 }
 
 /// A line and a column in characters, both from 1.
-pub type Place = (usize, usize);
+pub type Location = (usize, usize);
 
-/// Where a file that lists joints says what may turn out not to fit together; as [`Place`]s, or as
-/// byte offsets while it is read. Families have their own checks: of them nothing is noted.
+/// Locations, in a file that lists joints, of what may later turn out to be inconsistent: as
+/// [`Location`]s, or as byte offsets during reading. Nothing is noted for families, which have
+/// their own checks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places<T = Place> {
-    /// Each leg, in order.
+pub struct Locations<T = Location> {
+    /// The location of each leg, in order.
     pub legs: Vec<T>,
-    /// What `[task]` gives.
+    /// The location of each value given in `[task]`.
     pub task: Vec<(TaskKey, T)>,
 }
 
-impl<T> Default for Places<T> {
+impl<T> Default for Locations<T> {
     fn default() -> Self {
         Self { legs: Vec::new(), task: Vec::new() }
     }
 }
 
-impl<T: Copy> Places<T> {
-    /// The place of a value in `[task]`, if the file gives it.
+impl<T: Copy> Locations<T> {
+    /// The location of a value in `[task]`, if the file gives it.
     pub fn of_task(&self, key: TaskKey) -> Option<T> {
-        self.task.iter().find(|(known, _)| *known == key).map(|&(_, place)| place)
+        self.task.iter().find(|(known, _)| *known == key).map(|&(_, location)| location)
     }
 }
 
-impl Places<usize> {
-    pub(super) fn in_text(&self, text: &str) -> Places {
+impl Locations<usize> {
+    pub(super) fn in_text(&self, text: &str) -> Locations {
         let lines = Lines::new(text);
-        Places {
-            legs: self.legs.iter().map(|&at| lines.place(at)).collect(),
-            task: self.task.iter().map(|&(key, at)| (key, lines.place(at))).collect(),
+        Locations {
+            legs: self.legs.iter().map(|&at| lines.location(at)).collect(),
+            task: self.task.iter().map(|&(key, at)| (key, lines.location(at))).collect(),
         }
     }
 }
 
-/// Where the lines of a text start, to name the place of a byte offset.
+/// The line starts of a text, to convert byte offsets to locations.
 pub(super) struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,
@@ -89,8 +91,8 @@ impl<'t> Lines<'t> {
         Self { text, starts: std::iter::once(0).chain(after_newlines).collect() }
     }
 
-    /// Line and column, both from 1, of a byte offset.
-    pub(super) fn place(&self, offset: usize) -> Place {
+    /// Converts a byte offset to a line and a column, both from 1.
+    pub(super) fn location(&self, offset: usize) -> Location {
         let mut end = offset.min(self.text.len());
         while !self.text.is_char_boundary(end) {
             end -= 1;
@@ -105,16 +107,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_count_lines_and_characters_from_one() {
+    fn locations_count_lines_and_characters_from_one() {
         let text = "ab\nñé = 1\n";
         let lines = Lines::new(text);
-        assert_eq!(lines.place(0), (1, 1));
-        assert_eq!(lines.place(3), (2, 1));
-        assert_eq!(lines.place(text.find('=').unwrap()), (2, 4));
-        assert_eq!(lines.place(text.len()), (3, 1));
-        assert_eq!(lines.place(text.len() + 7), (3, 1), "past the end is the end");
-        assert_eq!(lines.place(4), (2, 1), "inside a character is that character");
-        assert_eq!(Lines::new("").place(0), (1, 1));
+        assert_eq!(lines.location(0), (1, 1));
+        assert_eq!(lines.location(3), (2, 1));
+        assert_eq!(lines.location(text.find('=').unwrap()), (2, 4));
+        assert_eq!(lines.location(text.len()), (3, 1));
+        assert_eq!(lines.location(text.len() + 7), (3, 1), "past the end is the end");
+        assert_eq!(lines.location(4), (2, 1), "inside a character is that character");
+        assert_eq!(Lines::new("").location(0), (1, 1));
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! Reading of TOML values that notes every problem, with its place, and goes on.
+//! Reading of TOML values: every problem is noted with its location, and reading continues.
 //!
-//! A method that returns `None` has already reported why: its caller only has to do without.
+//! A method that returns `None` has already reported the problem. Its caller only continues without
+//! the value.
 
 use super::checks;
 use super::hint::expected_one_of;
@@ -12,11 +13,11 @@ use std::collections::{HashMap, HashSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Larger than any machine, in metres or radians; beyond it squares and products lose their digits
-/// to overflow, and what is computed from them would no longer be a number.
+/// Largest accepted length or angle in metres or radians: larger than any machine. Squares and
+/// products of larger numbers could overflow.
 pub(crate) const LARGEST: f64 = 1e9;
 
-/// The problems found so far, and the units in force.
+/// The problems found so far, and the units of the file.
 pub(crate) struct Reader {
     problems: RefCell<Vec<(usize, String)>>,
     units: Cell<FileUnits>,
@@ -39,12 +40,12 @@ impl Reader {
         self.units.set(units);
     }
 
-    /// Whether a problem was reported at this place.
+    /// Whether a problem was reported at this location.
     pub(crate) fn has_problem(&self, at: usize) -> bool {
         self.problems.borrow().iter().any(|&(other, _)| other == at)
     }
 
-    /// The problems in the order of their places, if there are any.
+    /// The problems in the order of their locations; `None` if there are none.
     pub(crate) fn into_errors(self, text: &str) -> Option<FileErrors> {
         let lines = Lines::new(text);
         let mut problems: Vec<_> = self
@@ -52,7 +53,7 @@ impl Reader {
             .into_inner()
             .into_iter()
             .map(|(at, message)| {
-                let (line, column) = lines.place(at);
+                let (line, column) = lines.location(at);
                 Problem { line, column, message }
             })
             .collect();
@@ -62,12 +63,12 @@ impl Reader {
     }
 }
 
-/// One value, and the key that people know it by.
+/// A value, with its key for messages.
 #[derive(Clone, Copy)]
 pub(crate) struct Value<'a> {
     value: &'a DeValue<'a>,
     key: &'a str,
-    /// Byte offset.
+    /// Byte offset of the value.
     pub(crate) at: usize,
     reader: &'a Reader,
 }
@@ -77,7 +78,7 @@ impl<'a> Value<'a> {
         Self { value: value.get_ref(), key, at: value.span().start, reader }
     }
 
-    /// Reports `KEY PROBLEM` here.
+    /// Reports the problem `KEY PROBLEM` at the value.
     pub(crate) fn report(&self, problem: impl AsRef<str>) {
         self.reader.report(self.at, format!("`{}` {}", self.key, problem.as_ref()));
     }
@@ -107,21 +108,21 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A name: not empty, and without what commas, equals signs, quotes and line ends would break
-    /// where names stand on command lines and in headers of tables.
+    /// Reads a name: not empty, and without characters that would break it on command lines or in
+    /// headers of tables (commas, equals signs, quotes, line ends).
     pub(crate) fn name(&self) -> Option<&'a str> {
         let name = self.string()?;
         let breaks = |c: char| c.is_control() || matches!(c, ',' | '=' | '"');
         if name.trim().is_empty() || name.trim() != name || name.contains(breaks) {
             self.report(format!(
-                "is {name:?}, expected a name: not empty, no spaces around it, none of , = \" in it"
+                "is {name:?}, expected a name: not empty, without spaces around it, and without , = \""
             ));
             return None;
         }
         Some(name)
     }
 
-    /// One of the given words.
+    /// Reads one of the given words, and returns its meaning.
     pub(crate) fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let text = self.string()?;
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
@@ -145,11 +146,11 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A finite number without a unit; integers are welcome.
+    /// Reads a finite number without a unit. Integers are accepted.
     pub(crate) fn number(&self) -> Option<f64> {
         let value = match self.value {
             DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
-            // Through i128, so that hexadecimal and the like are read too; then rounded to double.
+            // Parsed as i128 first, which also reads hexadecimal, octal and binary integers.
             DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
                 .map_or(f64::INFINITY, |n| n as f64),
             _ => return self.wrong_type("a number"),
@@ -166,7 +167,7 @@ impl<'a> Value<'a> {
         Some(value)
     }
 
-    /// An angle or a length, in the file's unit; SI is returned.
+    /// Reads an angle or a length in the file's unit; returns it in SI.
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
         let units = self.reader.units();
         let value = units.si(self.number()?, quantity);
@@ -177,7 +178,7 @@ impl<'a> Value<'a> {
         self.quantity(Quantity::Length)
     }
 
-    /// The values of an array; `expected` says what it should be.
+    /// The values of an array; `expected` describes the array.
     pub(crate) fn items(&self, expected: &str) -> Option<Vec<Value<'a>>> {
         match self.value {
             DeValue::Array(items) => {
@@ -187,7 +188,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// The values of an array of this many.
+    /// The values of an array with exactly `count` items.
     fn exactly(&self, count: usize, expected: &str) -> Option<Vec<Value<'a>>> {
         let items = self.items(expected)?;
         if items.len() != count {
@@ -206,13 +207,13 @@ impl<'a> Value<'a> {
         all(self.exactly(N, expected)?.iter().map(read))?.try_into().ok()
     }
 
-    /// A point of the plane or of space.
+    /// Reads a point in the plane or in space; returns it in metres.
     pub(crate) fn point<const N: usize>(&self) -> Option<[f64; N]> {
         let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
         self.each(expected, Self::length)
     }
 
-    /// A direction: three numbers without a unit, of any size but zero; returned with size 1.
+    /// Reads a direction: three numbers without a unit, not all zero. Returns the unit vector.
     pub(crate) fn direction(&self) -> Option<nalgebra::Unit<nalgebra::Vector3<f64>>> {
         let [x, y, z] = self.each("a direction [x, y, z]", Value::number)?;
         let vector = nalgebra::Vector3::new(x, y, z);
@@ -221,11 +222,11 @@ impl<'a> Value<'a> {
             self.report("is zero, expected a direction");
             return None;
         }
-        // Scaled first: the squares of the largest and smallest doubles are out of range.
+        // Scaled first: the squares of very large and very small doubles are out of range.
         Some(nalgebra::Unit::new_normalize(vector / largest))
     }
 
-    /// `N` values, one a coordinate; a single one stands alone, without brackets.
+    /// Reads one value per coordinate. A single value has no brackets around it.
     pub(crate) fn per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<f64>> {
         if let [quantity] = quantities {
             return Some(vec![self.quantity(*quantity)?]);
@@ -235,7 +236,7 @@ impl<'a> Value<'a> {
         all(items.iter().zip(quantities).map(|(item, &quantity)| item.quantity(quantity)))
     }
 
-    /// Lowest and highest value: one pair a coordinate; a single one stands alone.
+    /// Reads the lowest and highest value of each coordinate. A single pair has no outer brackets.
     pub(crate) fn limits_per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<[f64; 2]>> {
         if let [quantity] = quantities {
             return Some(vec![self.limits(*quantity)?]);
@@ -246,31 +247,31 @@ impl<'a> Value<'a> {
         all(items.iter().zip(quantities).map(|(item, &quantity)| item.limits(quantity)))
     }
 
-    /// Lowest and highest value, both included.
+    /// Reads the lowest and highest value, both included.
     pub(crate) fn limits(&self, quantity: Quantity) -> Option<[f64; 2]> {
         let limits = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
         let ordered = checks::ordered(limits, quantity, self.reader.units());
         ordered.map_err(|problem| self.report(problem)).ok()
     }
 
-    /// Whether it is a table.
+    /// Whether the value is a table.
     pub(crate) fn is_table(&self) -> bool {
         matches!(self.value, DeValue::Table(_))
     }
 
-    /// Whether it is an array.
+    /// Whether the value is an array.
     pub(crate) fn is_array(&self) -> bool {
         matches!(self.value, DeValue::Array(_))
     }
 
-    /// A table; every key that is not one of these is reported.
+    /// Reads a table, and reports every key that is not in `keys`.
     pub(crate) fn table(&self, keys: &[&str]) -> Option<Table<'a>> {
         let table = self.open_table()?;
         table.allow(keys);
         Some(table)
     }
 
-    /// A table whose keys are still to be checked.
+    /// Reads a table whose keys are still to be checked.
     pub(crate) fn open_table(&self) -> Option<Table<'a>> {
         match self.value {
             DeValue::Table(entries) => Some(Table::new(entries, self.at, self.reader)),
@@ -279,11 +280,11 @@ impl<'a> Value<'a> {
     }
 }
 
-/// A table.
+/// A table of the file.
 #[derive(Clone, Copy)]
 pub(crate) struct Table<'a> {
     entries: &'a DeTable<'a>,
-    /// Byte offset of its header, or of its opening brace.
+    /// Byte offset of the table's header, or of its opening brace.
     pub(crate) at: usize,
     pub(crate) reader: &'a Reader,
 }
@@ -293,7 +294,7 @@ impl<'a> Table<'a> {
         Self { entries, at, reader }
     }
 
-    /// Reports every key that is not one of these.
+    /// Reports every key that is not in `keys`.
     pub(crate) fn allow(&self, keys: &[&str]) {
         for key in self.entries.keys() {
             let name: &str = key.get_ref();
@@ -304,13 +305,13 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of a key that may be left out.
+    /// The value of an optional key.
     pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         let (key, value) = self.entries.get_key_value(key)?;
         Some(Value::new(key.get_ref(), value, self.reader))
     }
 
-    /// The value of a key that must be there; `expected` says what it stands for.
+    /// The value of a required key; `expected` describes the value.
     pub(crate) fn require(&self, key: &str, expected: &str) -> Option<Value<'a>> {
         let value = self.get(key);
         if value.is_none() {
@@ -319,12 +320,13 @@ impl<'a> Table<'a> {
         value
     }
 
-    /// Where a problem with a key belongs: at its value, or at the table where it is missing.
-    pub(crate) fn place_of(&self, key: &str) -> usize {
+    /// The location for a problem with a key: that of its value, or that of the table if the key is
+    /// missing.
+    pub(crate) fn location_of(&self, key: &str) -> usize {
         self.get(key).map_or(self.at, |value| value.at)
     }
 
-    /// The tables of an array of tables; empty where the key is missing.
+    /// The tables of an array of tables; none if the key is missing.
     pub(crate) fn tables(&self, key: &str, keys: &[&str]) -> Vec<Table<'a>> {
         let Some(value) = self.get(key) else { return Vec::new() };
         let Some(items) = value.items(&format!("an array of tables [[{key}]]")) else {
@@ -334,11 +336,11 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Names of one kind of thing, each to be used once.
+/// Checks that names of one kind are different.
 pub(crate) struct UniqueNames {
     what: &'static str,
     seen: HashSet<String>,
-    /// Names that other things have, and what these are.
+    /// Names that are reserved, and what each of them names.
     reserved: HashMap<String, &'static str>,
 }
 
@@ -347,12 +349,12 @@ impl UniqueNames {
         Self { what, seen: HashSet::new(), reserved: HashMap::new() }
     }
 
-    /// Keeps a name for something else.
+    /// Reserves a name for something else.
     pub(super) fn reserve(&mut self, name: &str, other: &'static str) {
         self.reserved.insert(name.to_owned(), other);
     }
 
-    /// Reports a name that was there before, or that is reserved.
+    /// Reports a name that was used before, or that is reserved.
     pub(crate) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
         let what = self.what;
         if let Some(other) = self.reserved.get(name) {
@@ -364,8 +366,8 @@ impl UniqueNames {
     }
 }
 
-/// The values, if there are all. Every one is read before the first failure ends it: each has its
-/// own problem to report.
+/// The values, if all of them could be read. All are read before the result is decided, so that
+/// every problem is reported.
 pub(crate) fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     read.collect::<Vec<_>>().into_iter().collect()
 }

@@ -4,7 +4,7 @@ mod fuzz;
 mod problems;
 mod round_trip;
 
-/// Two joints a leg, everything that a joint may have.
+/// A file with two joints in each leg and every optional entry of a joint.
 const JOINTS: &str = r#"format = 1
 name = "pair"
 units = { length = "mm", angle = "deg" }

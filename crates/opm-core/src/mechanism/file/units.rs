@@ -1,4 +1,4 @@
-//! The units that a mechanism file names for its own numbers; everything after reading is SI.
+//! The units that a mechanism file names for its numbers; every value after reading is SI.
 
 use crate::numeric::Quantity;
 use crate::numeric::number::readable;
@@ -7,14 +7,14 @@ use std::fmt;
 /// A unit of length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthUnit {
-    /// `m`
+    /// Metre, `m`.
     #[default]
     Metre,
-    /// `cm`
+    /// Centimetre, `cm`.
     Centimetre,
-    /// `mm`
+    /// Millimetre, `mm`.
     Millimetre,
-    /// `in`, 25.4 mm
+    /// Inch, `in`: 25.4 mm.
     Inch,
 }
 
@@ -22,7 +22,7 @@ impl LengthUnit {
     /// Every unit that a file may name.
     pub const ALL: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
 
-    /// How files write it.
+    /// The symbol of the unit in files.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Metre => "m",
@@ -32,13 +32,13 @@ impl LengthUnit {
         }
     }
 
-    /// Metres in one unit.
+    /// The number of metres in one unit.
     pub fn factor(self) -> f64 {
         self.metres(1.0)
     }
 
-    /// A number of this unit in metres. Divided, not multiplied: 9 mm are 0.009, which 9 times 0.001
-    /// in double precision is not.
+    /// Converts a number in this unit to metres. Millimetres are divided by 1000: `9.0 / 1000.0` is
+    /// exactly the double 0.009, while `9.0 * 0.001` is not.
     pub fn metres(self, value: f64) -> f64 {
         match self {
             Self::Metre => value,
@@ -57,10 +57,10 @@ impl LengthUnit {
 /// A unit of angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AngleUnit {
-    /// `rad`
+    /// Radian, `rad`.
     #[default]
     Radian,
-    /// `deg`
+    /// Degree, `deg`.
     Degree,
 }
 
@@ -68,7 +68,7 @@ impl AngleUnit {
     /// Every unit that a file may name.
     pub const ALL: [Self; 2] = [Self::Radian, Self::Degree];
 
-    /// How files write it.
+    /// The symbol of the unit in files.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Radian => "rad",
@@ -76,7 +76,7 @@ impl AngleUnit {
         }
     }
 
-    /// Radians in one unit.
+    /// The number of radians in one unit.
     pub fn factor(self) -> f64 {
         match self {
             Self::Radian => 1.0,
@@ -93,17 +93,17 @@ impl AngleUnit {
 /// The units of one file; the default is SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FileUnits {
-    /// Of every length, and of a pitch's length per radian.
+    /// The unit of every length, also in pitches (length per radian).
     pub length: LengthUnit,
-    /// Of every angle.
+    /// The unit of every angle.
     pub angle: AngleUnit,
 }
 
 impl FileUnits {
-    /// Metres and radians.
+    /// SI units: metres and radians.
     pub const SI: Self = Self { length: LengthUnit::Metre, angle: AngleUnit::Radian };
 
-    /// A number of the file in SI.
+    /// Converts a number of the file to SI.
     pub fn si(self, value: f64, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Angle => value * self.angle.factor(),
@@ -111,7 +111,7 @@ impl FileUnits {
         }
     }
 
-    /// SI units in one unit of the file.
+    /// The number of SI units in one unit of the file.
     pub fn factor(self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Angle => self.angle.factor(),
@@ -119,7 +119,7 @@ impl FileUnits {
         }
     }
 
-    /// The symbol of the file's unit.
+    /// The symbol of the file's unit for a quantity.
     pub fn symbol(self, quantity: Quantity) -> &'static str {
         match quantity {
             Quantity::Angle => self.angle.symbol(),
@@ -127,16 +127,16 @@ impl FileUnits {
         }
     }
 
-    /// An SI value as people read it: in the file's unit, to six significant digits.
+    /// Formats an SI value in the file's unit, to six significant digits.
     pub fn show(self, value: f64, quantity: Quantity) -> impl fmt::Display {
         format!("{} {}", six_digits(value / self.factor(quantity)), self.symbol(quantity))
     }
 }
 
-/// A number to six significant digits, without trailing zeros.
+/// Formats a number to six significant digits, without trailing zeros.
 fn six_digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    // `-0` reads like a mistake.
+    // `-0` would look like a mistake.
     if rounded == 0.0 { "0".to_owned() } else { readable(rounded) }
 }
 

@@ -1,4 +1,4 @@
-//! A mechanism as the text of a file that lists its joints.
+//! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
@@ -7,24 +7,24 @@ use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
 
-/// With which digits the numbers of a file are written.
+/// How many digits the numbers of a written file have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digits {
-    /// As many as it takes to read the same numbers again.
+    /// As many digits as are needed to read exactly the same numbers again.
     All,
-    /// None that the rounding of what computed them may have left, for people.
+    /// Only digits that rounding errors cannot have changed: for people.
     Sure,
 }
 
-/// Decimals of a length or an angle that are sure: coarser than the rounding of what computed it, so
-/// that 119.99999999999999 mm is written 120.
+/// The number of decimals of a length or an angle with [`Digits::Sure`]. It is coarser than
+/// rounding errors, so that 119.99999999999999 mm is written as 120.
 const DECIMALS: usize = 12;
 
-/// Decimals of the components of a unit vector, likewise.
+/// The same for components of unit vectors.
 const UNIT_DECIMALS: usize = 14;
 
-/// The text of a file that says the same as the mechanism. A family's names of imaginary joints and
-/// home values of task coordinates have no place in it.
+/// Writes a mechanism as a file that lists its joints. The names of imaginary joints and the home
+/// values of task coordinates, which a family can set, have no place in such a file and are lost.
 pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String {
     let writer = Writer { units, digits };
     let mut text = format!(
@@ -52,7 +52,7 @@ struct Writer {
 }
 
 impl Writer {
-    /// `[task]`, if it says anything.
+    /// The table `[task]`, or nothing if there are no hints.
     fn task(self, hints: &TaskHints) -> String {
         let mut lines = Vec::new();
         if let Some(axis) = hints.axis {
@@ -74,7 +74,7 @@ impl Writer {
         if lines.is_empty() { String::new() } else { format!("\n[task]\n{}\n", lines.join("\n")) }
     }
 
-    /// What there is to say of a joint, a key each.
+    /// The entries of a joint, one per key.
     fn entries(self, joint: &Joint) -> Vec<String> {
         let (kind, second, pitch) = match joint.kind {
             JointKind::Revolute => ("revolute", None, None),

@@ -45,7 +45,7 @@ fn a_change_by_name_is_the_change_in_the_file() {
             &[("xi = 0", "xi = 5"), ("x = 0, y", "x = 9, y")],
             &[("xi", degree(5.0)), ("home.x", Number(0.009))],
         ),
-        // One leg apart from the others, in whatever order it is told.
+        // One leg apart from the others, whichever name comes first.
         (
             paper,
             &[
@@ -106,10 +106,10 @@ fn every_problem_is_told_with_its_parameter() {
         .unwrap_err()
         .problems;
     let expected = [
-        "`leg1.hh` is no parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
+        "`leg1.hh` is not a parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
          a1, a2, alpha1, alpha2, eta, beta, limits.S, limits.phi1, limits.phi2, limits.theta2, \
          limits.theta3; leg4 has base, b1, b2, limits.phi1, limits.phi2",
-        "`a1` is 10000000000 m, expected a size of at most 1000000000 m",
+        "`a1` is 10000000000 m, expected an absolute value of at most 1000000000 m",
         "`base` is a number, expected a point [x, y]",
         "`h` is nothing, expected a number",
         "`limits.S` are reversed: 0.3 m is above -0.3 m, expected [lowest, highest]",
@@ -123,7 +123,7 @@ fn every_problem_is_told_with_its_parameter() {
     assert!(helical.with([("leg1.pitch", Number(0.1))]).is_ok());
     let error = helical.with([("leg2.pitch", Number(0.1))]).unwrap_err().to_string();
     assert!(
-        error.starts_with("`leg2.pitch` is no parameter; home has x, y, phi; leg1 has"),
+        error.starts_with("`leg2.pitch` is not a parameter; home has x, y, phi; leg1 has"),
         "{error}"
     );
 }
@@ -132,10 +132,10 @@ fn every_problem_is_told_with_its_parameter() {
 fn what_does_not_assemble_is_told_by_leg() {
     let paper = family("plano-spherical-5dof").with([("a1", Number(-1.0)), ("b1", Number(9.0))]);
     let paper = paper.unwrap();
-    let told = paper.explain(&paper.assemble().unwrap_err()).problems;
-    assert_eq!(told.len(), 4);
-    assert_eq!(told[1], "leg2: `a1` is -1 m, expected a length above 0");
-    assert!(told[3].starts_with("leg4: home is out of this leg's reach by "), "{}", told[3]);
+    let found = paper.explain(&paper.assemble().unwrap_err()).problems;
+    assert_eq!(found.len(), 4);
+    assert_eq!(found[1], "leg2: `a1` is -1 m, expected a length above 0");
+    assert!(found[3].starts_with("leg4: home is out of this leg's reach by "), "{}", found[3]);
 }
 
 #[test]

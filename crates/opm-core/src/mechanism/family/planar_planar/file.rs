@@ -10,11 +10,11 @@ use crate::mechanism::file::{
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
-/// Signs of each leg's choices in the working mode.
+/// The number of signs of each leg in the working mode.
 const CHOICES: &[usize] = &[2, 2, 2, 2];
 
-/// The parameters and what they assemble to. What cannot be read is reported, and is NaN for the
-/// others to be checked nevertheless.
+/// Reads the parameters and assembles the mechanism. A value that cannot be read is reported and
+/// becomes NaN, so that the others are checked too.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
     let mut family = PlanarPlanar { name: name.to_owned(), ..PlanarPlanar::default() };
@@ -42,7 +42,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
 }
 
 impl PlanarPlanar {
-    /// Every parameter, home's first, then leg by leg.
+    /// Every parameter: first those of home, then those of the legs in order.
     pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
         let home = Group::home(self.home.parameters());
         let sliders = self.slider_legs.iter_mut().map(SliderLeg::group);
@@ -56,7 +56,7 @@ impl Home {
             Parameter::length("x", &mut self.x, "O along x"),
             Parameter::length("y", &mut self.y, "O along y"),
             Parameter::length("w", &mut self.w, "the platform's height"),
-            Parameter::angle("phi", &mut self.phi, "the platform's turn"),
+            Parameter::angle("phi", &mut self.phi, "the platform's angle"),
         ]
     }
 }
@@ -81,11 +81,11 @@ impl SliderLeg {
                 &mut self.platform,
                 "a point [u, z]: where the rod ends in the platform",
             ),
-            Parameter::travel("S", &mut limits.s),
-            Parameter::turn("phi1", &mut limits.phi1),
-            Parameter::turn("phi2", &mut limits.phi2),
-            Parameter::turn("rod", &mut limits.rod),
-            Parameter::turn("hinge", &mut limits.hinge),
+            Parameter::length_limits("S", &mut limits.s),
+            Parameter::angle_limits("phi1", &mut limits.phi1),
+            Parameter::angle_limits("phi2", &mut limits.phi2),
+            Parameter::angle_limits("rod", &mut limits.rod),
+            Parameter::angle_limits("hinge", &mut limits.hinge),
         ]
     }
 }
@@ -115,11 +115,11 @@ impl ArmLeg {
                 &mut self.platform,
                 "a point [u, z]: where the support ends in the platform",
             ),
-            Parameter::turn("phi1", &mut limits.phi1),
-            Parameter::turn("phi2", &mut limits.phi2),
-            Parameter::turn("fold1", &mut limits.fold1),
-            Parameter::turn("fold2", &mut limits.fold2),
-            Parameter::turn("hinge", &mut limits.hinge),
+            Parameter::angle_limits("phi1", &mut limits.phi1),
+            Parameter::angle_limits("phi2", &mut limits.phi2),
+            Parameter::angle_limits("fold1", &mut limits.fold1),
+            Parameter::angle_limits("fold2", &mut limits.fold2),
+            Parameter::angle_limits("hinge", &mut limits.hinge),
         ]
     }
 }

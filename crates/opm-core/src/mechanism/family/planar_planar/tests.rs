@@ -6,7 +6,8 @@ use crate::mechanism::joint::JointCoordinate;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
-/// Rounding of a few dozen operations on lengths below a metre and angles of a few radians.
+/// Tolerance: the rounding of a few dozen operations on lengths below a metre and angles of a few
+/// radians.
 const ROUNDING: f64 = 1e-12;
 
 fn shipped() -> PlanarPlanar {
@@ -17,23 +18,23 @@ fn shipped() -> PlanarPlanar {
     }
 }
 
-/// `e(t)` in the base's plane.
+/// The direction `e(t)` in the base's plane.
 fn e(t: f64) -> Vector3<f64> {
     Vector3::new(t.cos(), t.sin(), 0.0)
 }
 
-/// A vector of the vertical plane at home: along y and up.
+/// The direction at angle t in the vertical plane at home, where u is along y.
 fn upright(t: f64) -> Vector3<f64> {
     Vector3::new(0.0, t.cos(), t.sin())
 }
 
-/// Where the platform has a point of its own.
+/// The position `(u, z)`, at home, of a point given in the platform.
 fn in_platform(home: &Home, [p, q]: [f64; 2]) -> Vector2<f64> {
-    let turned = nalgebra::Rotation2::new(home.phi) * Vector2::new(p, q);
-    Vector2::new(home.y + turned.x, home.w + turned.y)
+    let rotated = nalgebra::Rotation2::new(home.phi) * Vector2::new(p, q);
+    Vector2::new(home.y + rotated.x, home.w + rotated.y)
 }
 
-/// What the parameters mean, measured on the placed joints.
+/// Checks the meaning of every parameter on the placed joints.
 fn assert_geometry(family: &PlanarPlanar, mechanism: &Mechanism) -> Result<(), TestCaseError> {
     let home = &family.home;
     let near = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() < ROUNDING;
@@ -137,13 +138,13 @@ proptest! {
             arm_leg,
         };
         let assembled = family.assemble();
-        // One draw in forty is in reach of all four legs.
+        // One draw in forty is within reach of all four legs.
         prop_assume!(assembled.is_ok());
         assert_geometry(&family, &assembled.unwrap())?;
     }
 }
 
-/// Each leg's problem is its own, and told in the file's words.
+/// Each problem is reported for its own leg, in the words of the file.
 #[test]
 fn every_problem_is_told() {
     let mut family = shipped();
@@ -152,10 +153,10 @@ fn every_problem_is_told() {
     family.slider_legs[2].limits.s = Some([0.0, 0.1]);
     family.arm_leg.b1 = 0.05;
     let problems = family.assemble().unwrap_err().problems;
-    let told: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();
+    let found: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();
     let expected =
         [(Some(0), None), (Some(1), Some("a1")), (Some(2), Some("limits")), (Some(3), None)];
-    assert_eq!(told, expected, "{problems:?}");
+    assert_eq!(found, expected, "{problems:?}");
     assert!(problems[0].to_string().contains("rods"), "{}", problems[0]);
     assert!(problems[3].to_string().contains("links"), "{}", problems[3]);
 }
@@ -166,6 +167,6 @@ fn home_and_the_number_of_legs_are_checked() {
     family.home.w = f64::NAN;
     family.slider_legs.pop();
     let problems = family.assemble().unwrap_err().problems;
-    let told: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();
-    assert_eq!(told, [(None, Some("w")), (None, Some("slider_leg"))], "{problems:?}");
+    let found: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();
+    assert_eq!(found, [(None, Some("w")), (None, Some("slider_leg"))], "{problems:?}");
 }

@@ -9,11 +9,11 @@ use crate::mechanism::file::{
 
 const KEYS: &[&str] =
     &["format", "name", "units", "family", "home", "mode", "slider_leg", "arm_leg"];
-/// Signs of each leg's choices in the working mode.
+/// The number of signs of each leg in the working mode.
 const CHOICES: &[usize] = &[2, 2, 2, 1];
 
-/// The parameters and what they assemble to. What cannot be read is reported, and is NaN for the
-/// others to be checked nevertheless.
+/// Reads the parameters and assembles the mechanism. A value that cannot be read is reported and
+/// becomes NaN, so that the others are checked too.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
     let mut family = PlanoSpherical { name: name.to_owned(), ..PlanoSpherical::default() };
@@ -39,7 +39,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
 }
 
 impl PlanoSpherical {
-    /// Every parameter, home's first, then leg by leg.
+    /// Every parameter: first those of home, then those of the legs in order.
     pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
         let home = Group::home(self.home.parameters());
         let sliders = self.slider_legs.iter_mut().map(SliderLeg::group);
@@ -84,11 +84,11 @@ impl SliderLeg {
                 &mut self.beta,
                 "the platform axis's angle from the platform's z",
             ),
-            Parameter::travel("S", &mut limits.s),
-            Parameter::turn("phi1", &mut limits.phi1),
-            Parameter::turn("phi2", &mut limits.phi2),
-            Parameter::turn("theta2", &mut limits.theta2),
-            Parameter::turn("theta3", &mut limits.theta3),
+            Parameter::length_limits("S", &mut limits.s),
+            Parameter::angle_limits("phi1", &mut limits.phi1),
+            Parameter::angle_limits("phi2", &mut limits.phi2),
+            Parameter::angle_limits("theta2", &mut limits.theta2),
+            Parameter::angle_limits("theta3", &mut limits.theta3),
         ]
     }
 }
@@ -104,8 +104,8 @@ impl ArmLeg {
             Parameter::point("base", &mut self.base, "a point [x, y]: where the arm stands"),
             Parameter::length("b1", &mut self.b1, "the length of the arm's first link"),
             Parameter::length("b2", &mut self.b2, "the length of the arm's second link"),
-            Parameter::turn("phi1", &mut self.phi1),
-            Parameter::turn("phi2", &mut self.phi2),
+            Parameter::angle_limits("phi1", &mut self.phi1),
+            Parameter::angle_limits("phi2", &mut self.phi2),
         ]
     }
 }

@@ -5,10 +5,11 @@ use crate::mechanism::file;
 use nalgebra::Isometry3;
 use proptest::prelude::*;
 
-/// Rounding of a few dozen operations on lengths below a metre and angles of a few radians.
+/// Tolerance: the rounding of a few dozen operations on lengths below a metre and angles of a few
+/// radians.
 const ROUNDING: f64 = 1e-12;
 
-/// Half a unit of the sixth decimal, to which the reference values are printed.
+/// Tolerance for reference values: half a unit of their sixth decimal.
 const PRINTED: f64 = 0.5e-6;
 
 fn paper() -> PlanoSpherical {
@@ -32,8 +33,8 @@ fn theta1(mechanism: &Mechanism) -> [f64; 3] {
     [0, 1, 2].map(|i| mechanism.legs[i].imaginary.as_ref().unwrap().home)
 }
 
-/// Angles that are the same but for whole turns.
-fn same_turn(a: f64, b: f64, tolerance: f64) -> bool {
+/// Whether two angles are equal up to full revolutions.
+fn same_angle(a: f64, b: f64, tolerance: f64) -> bool {
     let apart = (a - b) / TAU;
     ((apart - apart.round()) * TAU).abs() < tolerance
 }
@@ -42,7 +43,7 @@ fn same_turn(a: f64, b: f64, tolerance: f64) -> bool {
 fn imaginary_joints_have_the_published_values() {
     let plus = Branch::Plus;
     let minus = Branch::Minus;
-    // An independent implementation's values for the paper's parameters.
+    // Values of an independent implementation for the paper's parameters.
     for (pose, upper, expected) in [
         ([0.0, 0.0, 0.0], plus, [0.155_324, 2.249_719, 4.344_115]),
         ([0.0, 0.0, 0.0], minus, [2.986_268, 5.080_663, 0.891_873]),
@@ -58,7 +59,7 @@ fn imaginary_joints_have_the_published_values() {
     }
 }
 
-/// What the parameters mean, measured on the placed joints.
+/// Checks the meaning of every parameter on the placed joints.
 fn assert_geometry(family: &PlanoSpherical, mechanism: &Mechanism) -> Result<(), TestCaseError> {
     let Home { x, y, .. } = family.home;
     let platform = Point3::new(x, y, 0.0);
@@ -90,22 +91,22 @@ fn assert_geometry(family: &PlanoSpherical, mechanism: &Mechanism) -> Result<(),
         prop_assert!((v.z - given.alpha1.cos()).abs() < ROUNDING);
         prop_assert!((v.dot(&w) - given.alpha2.cos()).abs() < ROUNDING);
 
-        // The links' directions, from the values that are reported.
+        // The directions of the links, from the reported values.
         let theta1 = leg.imaginary.as_ref().unwrap().home;
         prop_assert!((0.0..TAU).contains(&theta1));
         let direction = |from: Point3<f64>, to: Point3<f64>| (to.y - from.y).atan2(to.x - from.x);
-        prop_assert!(same_turn(direction(platform, c), theta1, 1e-9), "{i}: a2 along theta1");
+        prop_assert!(same_angle(direction(platform, c), theta1, 1e-9), "{i}: a2 along theta1");
         let a1_angle = given.alpha + FRAC_PI_2 + home(phi1);
-        prop_assert!(same_turn(direction(a, c), a1_angle, 1e-9), "{i}: a1 along phi1");
-        prop_assert!(same_turn(a1_angle + home(phi2), theta1, 1e-9), "{i}: phi2");
+        prop_assert!(same_angle(direction(a, c), a1_angle, 1e-9), "{i}: a1 along phi1");
+        prop_assert!(same_angle(a1_angle + home(phi2), theta1, 1e-9), "{i}: phi2");
         prop_assert!((v - rz(theta1) * rx(given.alpha1) * Vector3::z()).norm() < ROUNDING);
-        // All of the upper section at once.
+        // The whole upper section at once.
         let chain =
             rz(theta1) * rx(given.alpha1) * rz(home(theta2)) * rx(given.alpha2) * rz(home(theta3));
         let platform_axis = Rotation3::from_matrix_unchecked(r) * rz(given.eta) * ry(given.beta);
         prop_assert!((chain.matrix() - platform_axis.matrix()).norm() < ROUNDING);
 
-        // The branches: sides of z, v, w and of the slider.
+        // The branches: on which sides z, v, w and the slider are.
         let side = Vector3::z().dot(&v.cross(&w));
         prop_assert!(side * given.upper.sign() >= -1e-9);
         prop_assert!((c - a).dot(&n) * given.slider.sign() <= 1e-9);
@@ -165,7 +166,7 @@ prop_compose! {
     }
 }
 
-/// By which angle the leg's arcs fall short of home; negative where they reach it.
+/// The angle by which the leg's arcs miss home; negative if they reach it.
 fn arcs_short_by(home: &Home, leg: &SliderLeg) -> f64 {
     let w = home.rotation() * rz(leg.eta) * ry(leg.beta) * Vector3::z();
     let to_z = w.z.clamp(-1.0, 1.0).acos();
@@ -173,7 +174,7 @@ fn arcs_short_by(home: &Home, leg: &SliderLeg) -> f64 {
     (nearest - to_z).max(to_z - sum.min(TAU - sum))
 }
 
-/// By which length the arm's links fall short of home.
+/// The length by which the arm's links miss home.
 fn arm_short_by(home: &Home, arm: &ArmLeg) -> f64 {
     let distance = (home.x - arm.base[0]).hypot(home.y - arm.base[1]);
     (distance - arm.b1 - arm.b2).max((arm.b1 - arm.b2).abs() - distance)
@@ -195,7 +196,8 @@ proptest! {
                     let short_by = match (problem.leg.unwrap(), *links) {
                         (SLIDER_LEGS, _) => arm_short_by(&family.home, &family.arm_leg),
                         (i, "arcs") => arcs_short_by(&family.home, &family.slider_legs[i]),
-                        // The links of a slider leg are asked after its arcs were found to reach.
+                        // The links of a slider leg are checked only after its arcs have been found
+                        // to reach.
                         (i, _) => {
                             let leg = &family.slider_legs[i];
                             prop_assert!(arcs_short_by(&family.home, leg) < 1e-7);
@@ -267,7 +269,7 @@ fn an_angle_at_home_is_taken_within_its_limits() {
     let limited = family.assemble().unwrap();
     let joint = &limited.legs[0].joints[1];
     assert!((joint.coordinates[0].home - phi1 - TAU).abs() < ROUNDING);
-    // It is the same place.
+    // It is the same position.
     let moved = joint.displacement(&[joint.coordinates[0].home]);
     assert!((moved.to_matrix() - Isometry3::identity().to_matrix()).norm() < ROUNDING);
 }

@@ -9,8 +9,8 @@ use crate::mechanism::file::{
 
 const KEYS: &[&str] = &["format", "name", "units", "family", "home", "mode", "leg"];
 
-/// The parameters and what they assemble to. What cannot be read is reported, and is NaN for the
-/// others to be checked nevertheless.
+/// Reads the parameters and assembles the mechanism. A value that cannot be read is reported and
+/// becomes NaN, so that the others are checked too.
 pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
     root.allow(KEYS);
     let mut family =
@@ -28,7 +28,7 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
 }
 
 impl TranslationalHelical {
-    /// Every parameter, home's first, then leg by leg.
+    /// Every parameter: first those of home, then those of the legs in order.
     pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
         let home = Group::home(self.home.parameters());
         [home].into_iter().chain(self.legs.iter_mut().map(TranslationalLeg::group)).collect()
@@ -40,7 +40,7 @@ impl Home {
         vec![
             Parameter::length("x", &mut self.x, "P along x"),
             Parameter::length("y", &mut self.y, "P along y"),
-            Parameter::angle("phi", &mut self.phi, "the platform's turn"),
+            Parameter::angle("phi", &mut self.phi, "the platform's angle"),
         ]
     }
 }
@@ -58,9 +58,9 @@ impl TranslationalLeg {
             Parameter::angle("beta", &mut self.beta, "the angle from it to the common axis"),
             Parameter::length("k", &mut self.k, "the distance along the common axis"),
             Parameter::pitch("pitch", &mut self.pitch, "the advance per radian"),
-            Parameter::travel("S", &mut limits.s),
-            Parameter::travel("r", &mut limits.r),
-            Parameter::turn("phi", &mut limits.phi),
+            Parameter::length_limits("S", &mut limits.s),
+            Parameter::length_limits("r", &mut limits.r),
+            Parameter::angle_limits("phi", &mut limits.phi),
         ]
     }
 }

@@ -4,7 +4,7 @@ use crate::mechanism::family::Family;
 use crate::mechanism::file;
 use proptest::prelude::*;
 
-/// Rounding of a few dozen operations on lengths below a metre.
+/// Tolerance: the rounding of a few dozen operations on lengths below a metre.
 const ROUNDING: f64 = 1e-12;
 
 fn paper() -> TranslationalHelical {
@@ -15,7 +15,7 @@ fn paper() -> TranslationalHelical {
     }
 }
 
-/// What the parameters mean, measured on the placed joints.
+/// Checks the meaning of every parameter on the placed joints.
 fn assert_geometry(
     family: &TranslationalHelical,
     mechanism: &Mechanism,
@@ -58,9 +58,10 @@ fn assert_geometry(
             (None, None) => prop_assert_eq!(last.kind, JointKind::Revolute),
             other => prop_assert!(false, "{:?}", other),
         }
-        // Turning the last joint alone, with the sliders held, moves P by -p dφ k̂: so S grows by p dφ.
-        let turned = leg.displacement(&[home(s), home(r), phi + 0.3]);
-        let moved = turned * platform - platform;
+        // Rotating the last joint alone, with the sliders held, moves P by -p dφ k̂; so S grows by
+        // p dφ.
+        let rotated = leg.displacement(&[home(s), home(r), phi + 0.3]);
+        let moved = rotated * platform - platform;
         let expected = -k_hat * (0.3 * given.pitch.unwrap_or(0.0));
         prop_assert!((moved - expected).norm() < ROUNDING);
     }
@@ -140,7 +141,7 @@ fn legs_of_different_directions_are_refused_with_both_angles() {
 fn exactly_one_leg_has_a_pitch() {
     let mut none = paper();
     none.legs[0].pitch = None;
-    assert!(none.assemble().unwrap_err().to_string().contains("never has a `pitch`"));
+    assert!(none.assemble().unwrap_err().to_string().contains("has no `pitch`"));
 
     let mut two = paper();
     two.legs[2].pitch = Some(0.02);

@@ -1,12 +1,12 @@
-//! Whatever the text: an answer with places inside the text, never a panic, never a number that is
-//! none.
+//! Whatever the text is, reading it gives an answer with locations inside the text, never a panic
+//! and never an invalid number.
 
 use super::JOINTS;
 use crate::mechanism::examples::EXAMPLES;
 use crate::mechanism::file::read;
 use proptest::prelude::*;
 
-/// What files are made of, and what they should not be made of.
+/// Pieces of valid and of invalid files.
 const PIECES: &[&str] = &[
     "nan",
     "inf",
@@ -87,7 +87,7 @@ fn assert_answered(text: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// A valid file with some of its bytes, words or lines replaced, doubled or lost.
+/// A valid file with some of its bytes, words or lines replaced, doubled or removed.
 fn mutated() -> impl Strategy<Value = String> {
     let texts: Vec<&str> = EXAMPLES.iter().map(|e| e.text).chain([JOINTS]).collect();
     let cut = (any::<prop::sample::Index>(), 0..12_usize);
@@ -111,7 +111,7 @@ fn mutated() -> impl Strategy<Value = String> {
     })
 }
 
-/// A valid file in which one number or string is another.
+/// A valid file with one number or string replaced.
 fn other_value() -> impl Strategy<Value = String> {
     let texts: Vec<&str> = EXAMPLES.iter().map(|e| e.text).chain([JOINTS]).collect();
     let piece = prop::sample::select(PIECES);

@@ -1,4 +1,4 @@
-//! Every kind of mistake, with the place where it is reported and what is said of it.
+//! Every kind of mistake, with its location and its message.
 
 use super::JOINTS;
 use crate::mechanism::file::{FileErrors, read};
@@ -13,19 +13,19 @@ fn problems(text: &str) -> FileErrors {
     }
 }
 
-/// Line and column of the only occurrence of `mark`, counted by hand.
-fn place_of(text: &str, mark: &str) -> (usize, usize) {
+/// Line and column of the only occurrence of `mark`.
+fn location_of(text: &str, mark: &str) -> (usize, usize) {
     assert_eq!(text.matches(mark).count(), 1, "{mark:?} in\n{text}");
     let (i, line) = text.lines().enumerate().find(|(_, line)| line.contains(mark)).unwrap();
     (i + 1, line.split(mark).next().unwrap().chars().count() + 1)
 }
 
-/// Replaces `from`, which occurs once, by `to`, where `^` marks the place of the problem (and is
-/// taken out); expects this one problem there.
+/// Replaces `from`, which occurs once, by `to` and expects exactly one problem, at the mark `^` in
+/// `to`. The mark itself is removed.
 fn assert_problem(base: &str, from: &str, to: &str, message: &str) {
     assert_eq!(base.matches(from).count(), 1, "{from:?}");
     let marked = base.replace(from, to);
-    let place = place_of(&marked, "^");
+    let place = location_of(&marked, "^");
     let text = marked.replace('^', "");
     let errors = problems(&text);
     let [problem] = &errors.problems[..] else { panic!("{from} -> {to}: {errors}") };
@@ -135,7 +135,7 @@ fn joints() {
         (
             "point = [10, 20, 30]",
             "point = [10, ^1e13, 30]",
-            "expected a size of at most 1000000000000 mm",
+            "expected an absolute value of at most 1000000000000 mm",
         ),
         (
             "point = [10, 20, 30]",
@@ -166,7 +166,7 @@ fn joints() {
         (
             "limits = [-300, 300]",
             "limits = ^[-300, 10]",
-            "`limits` leave out home: S1 is 12.5 mm there, expected it between -300 mm and 10 mm",
+            "`limits` exclude home: S1 is 12.5 mm there, expected it between -300 mm and 10 mm",
         ),
         (
             "limits = [-300, 300]",
@@ -197,7 +197,7 @@ fn joints() {
         ("home = [30, 7]", "home = ^3", "`home` is an integer, expected 2 values"),
         ("[[0, 90], [-30, 30]]", "^[[0, 90]]", "expected 2 pairs [lowest, highest], one for each"),
         ("[[0, 90], [-30, 30]]", "[[0, 90], ^[30, -30]]", "are reversed: 30 deg is above -30 deg"),
-        ("[[0, 90], [-30, 30]]", "^[[0, 90], [-10, 30]]", "leave out home: u1.2 is -20 deg there"),
+        ("[[0, 90], [-30, 30]]", "^[[0, 90], [-10, 30]]", "exclude home: u1.2 is -20 deg there"),
         (r#""spherical", "#, r#""spherical", ^axis = [0, 0, 1], "#, "unknown key `axis`"),
         ("name = \"left\"", "name = ^true", "`name` is a boolean, expected a string"),
         ("name = \"left\"", "^nome = \"left\"", "did you mean `name`?"),
@@ -242,9 +242,12 @@ fn joints() {
 fn numbers_of_legs_and_joints() {
     let one_leg = &JOINTS[..JOINTS.rfind("[[leg]]").unwrap()];
     let errors = problems(one_leg);
-    assert_eq!(errors.to_string(), "11:1: 1 of [[leg]], expected at least two legs");
+    assert_eq!(errors.to_string(), "11:1: found 1 table [[leg]], expected at least 2 legs");
     let no_legs = &JOINTS[..JOINTS.find("[[leg]]").unwrap()];
-    assert_eq!(problems(no_legs).to_string(), "1:1: 0 of [[leg]], expected at least two legs");
+    assert_eq!(
+        problems(no_legs).to_string(),
+        "1:1: found 0 tables [[leg]], expected at least 2 legs"
+    );
     let a_table = no_legs.to_owned() + "[leg]\nname = \"a\"\n";
     let expected = "11:1: `leg` is a table, expected an array of tables [[leg]]";
     assert_eq!(problems(&a_table).to_string(), expected);
@@ -258,7 +261,7 @@ fn numbers_of_legs_and_joints() {
 
 #[test]
 fn plano_spherical() {
-    // Leg 2's lines are those of the other legs: all are told apart by eta.
+    // Leg 2 has the same lines as the other legs; only eta differs.
     let leg2 = |from: &str, to: &str, message: &str| {
         let start = PLANO.find("name = \"leg2\"").unwrap();
         let end = PLANO.find("name = \"leg3\"").unwrap();
@@ -279,7 +282,7 @@ fn plano_spherical() {
     leg2("beta = 60", "beta = ^\"60\"", "`beta` is a string, expected a number");
     leg2("beta = 60", "^bet = 60\nbeta = 60", "unknown key `bet`, did you mean `beta`?");
     leg2("[-300, 300]", "^[300, -300]", "are reversed: 300 mm is above -300 mm");
-    leg2("{ S = [-300, 300] }", "^{ S = [-300, 100] }", "leave out home: S2 is 167.875 mm there");
+    leg2("{ S = [-300, 300] }", "^{ S = [-300, 100] }", "exclude home: S2 is 167.875 mm there");
     leg2("{ S = [-300, 300] }", "{ ^s = [-300, 300] }", "unknown key `s`, did you mean `S`?");
     leg2("name = \"leg2\"", "name = ^\"leg1\"", "`name` is \"leg1\" for two legs");
     for (from, to, message) in [
@@ -289,10 +292,10 @@ fn plano_spherical() {
         (
             "\"++ ++ ++ +\"",
             "^\"++ ++ ++\"",
-            "expected as many signs, in such groups, as \"++ ++ ++ +\"",
+            "expected one sign for every choice, in a group for each leg, as in \"++ ++ ++ +\"",
         ),
-        ("\"++ ++ ++ +\"", "^\"++ ++ +++ \"", "expected as many signs"),
-        ("\"++ ++ ++ +\"", "^\"++ ++ +x +\"", "has 'x' in it, expected signs + and -"),
+        ("\"++ ++ ++ +\"", "^\"++ ++ +++ \"", "expected one sign for every choice"),
+        ("\"++ ++ ++ +\"", "^\"++ ++ +x +\"", "contains 'x', expected signs + and -"),
         ("\"++ ++ ++ +\"", "^[1, 1]", "`mode` is an array, expected a string"),
         ("xi = 0", "xi = ^nan", "`xi` is nan, expected a finite number"),
         ("xi = 0, ", "^phi = 0, ", "unknown key `phi`, did you mean `psi`? expected one of"),
@@ -307,7 +310,7 @@ fn plano_spherical_as_a_whole() {
     let leg3 = PLANO.rfind("[[slider_leg]]").unwrap();
     let arm = PLANO.find("[arm_leg]").unwrap();
     let errors = problems(&format!("{}{}", &PLANO[..leg3], &PLANO[arm..]));
-    assert_eq!(errors.to_string(), "15:1: `slider_leg` is there 2 times, expected 3 legs");
+    assert_eq!(errors.to_string(), "15:1: `slider_leg` gives 2 legs, expected 3");
     let errors = problems(&PLANO[..arm]);
     assert_eq!(
         errors.to_string(),
@@ -316,14 +319,16 @@ fn plano_spherical_as_a_whole() {
 
     let far = PLANO.replace("x = 0, y = 0", "x = 0, y = -500");
     let errors = problems(&far);
-    // P is 575 from D, the arm reaches 200: 375 too far. Its [arm_leg] is on line 51.
+    // P is 575 mm from D and the arm reaches 200 mm: 375 mm too far. The table [arm_leg] is on line
+    // 51.
     let arm = errors.problems.last().unwrap();
     assert_eq!((arm.line, arm.column), (51, 1));
     assert!(arm.message.contains("out of this leg's reach by 375 mm"), "{errors}");
 
     let tilted = PLANO.replace("xi = 0", "xi = 100");
     let errors = problems(&tilted);
-    // Leg 1's axis, 60 from the platform's z, is now 160 from z, and the arcs reach 150.
+    // Leg 1's axis is 60 degrees from the platform's z, so now 160 degrees from z; the arcs reach
+    // 150.
     assert_eq!(
         errors.problems[0].to_string(),
         "15:1: home is out of this leg's reach by 10 deg, expected arcs that reach it"
@@ -356,17 +361,17 @@ fn translational_helical() {
         ("pitch = 20", "pitch = ^0", "`pitch` is 0, expected an advance per radian"),
         ("alpha = 90", "^alfa = 90\nalpha = 90", "unknown key `alfa`, did you mean `alpha`?"),
         ("phi = 0", "^zeta = 0", "unknown key `zeta`, expected one of `x`, `y`, `phi`"),
-        ("home =", "mode = ^\"+\"\nhome =", "`mode` is \"+\", expected as many signs"),
+        ("home =", "mode = ^\"+\"\nhome =", "`mode` is \"+\", expected an empty text"),
     ] {
         assert_problem(HELICAL, from, to, message);
     }
     let no_pitch: Vec<_> = HELICAL.lines().filter(|line| !line.starts_with("pitch")).collect();
     assert_eq!(
         problems(&no_pitch.join("\n")).to_string(),
-        "13:1: `leg` never has a `pitch`, expected one in exactly one leg, the helical one"
+        "13:1: `leg` has no `pitch`, expected it for exactly one leg, the helical one"
     );
     let two_legs = &HELICAL[..HELICAL.rfind("[[leg]]").unwrap()];
-    assert_eq!(problems(two_legs).to_string(), "13:1: `leg` is there 2 times, expected 3 legs");
+    assert_eq!(problems(two_legs).to_string(), "13:1: `leg` gives 2 legs, expected 3");
     let without = HELICAL.replace("k = 15\n", "");
     assert_eq!(
         problems(&without).to_string(),

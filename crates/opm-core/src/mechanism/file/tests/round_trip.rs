@@ -1,4 +1,4 @@
-//! A random mechanism, written and read again, is the same.
+//! A random mechanism that is written and read again is the same.
 
 use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
 use crate::mechanism::joint::{Joint, JointKind};
@@ -7,7 +7,7 @@ use crate::mechanism::{FrameHints, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
 
-/// Files have 12 decimals, of metres at worst.
+/// Files have 12 decimals, in metres at worst.
 const WRITTEN: f64 = 1e-12;
 
 fn direction() -> impl Strategy<Value = Unit<Vector3<f64>>> {
@@ -33,7 +33,7 @@ fn kind() -> impl Strategy<Value = JointKind> {
 }
 
 prop_compose! {
-    /// A joint whose name is yet to be given.
+    /// A joint that has no name yet.
     fn joint()(
         kind in kind(), axis in direction(), point in point(), actuated in any::<bool>(),
         home in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
@@ -42,7 +42,7 @@ prop_compose! {
         let axis = match kind {
             JointKind::Spherical => Vector3::z_axis(),
             JointKind::Universal { second } if axis.cross(&second).norm() < 0.01 => {
-                // Any direction that is not the second's.
+                // Any direction that is not parallel to the second axis.
                 Unit::new_normalize(Vector3::new(second.y, second.z, second.x) + Vector3::x() * 2.0)
             }
             _ => axis,
@@ -83,7 +83,7 @@ fn vectors(task: &TaskHints) -> Vec<Option<Vector3<f64>>> {
 
 fn mechanism() -> impl Strategy<Value = Mechanism> {
     let legs = prop::collection::vec(prop::collection::vec(joint(), 1..6), 2..6);
-    // Names from all letters that a name may have.
+    // Names consist of all letters that a name may have.
     let names = proptest::string::string_regex(r#"[^\pC\s,="](.{0,8}[^\pC\s,="])?"#);
     let names = names.unwrap().prop_filter("a name", |name| {
         !name.contains(|c: char| c.is_control() || ",=\"".contains(c))
@@ -117,7 +117,7 @@ fn units() -> impl Strategy<Value = FileUnits> {
         .prop_map(|(length, angle)| FileUnits { length, angle })
 }
 
-/// Every number of a joint, and everything else.
+/// Every number of a joint, and everything else of it.
 fn numbers(joint: &Joint) -> (Vec<f64>, impl PartialEq + std::fmt::Debug) {
     let mut numbers: Vec<f64> = joint.axis.iter().chain(joint.point.iter()).copied().collect();
     let kind = match joint.kind {
@@ -169,7 +169,7 @@ proptest! {
         }
     }
 
-    /// But for unit vectors, which reading makes unit vectors once more.
+    /// Unit vectors may differ in the last digit, because reading normalises them again.
     #[test]
     fn all_digits_are_read_again(mechanism in mechanism()) {
         let text = write(&mechanism, FileUnits::SI, Digits::All);
