@@ -7,6 +7,7 @@ pub mod differences;
 pub mod newton;
 pub mod paper;
 pub mod random;
+pub mod structured;
 
 /// The README's Rust is compiled with the tests.
 #[cfg(doctest)]

@@ -54,6 +54,7 @@ pub mod mechanism;
 pub mod mobility;
 pub mod motion;
 pub mod number;
+pub mod rotation;
 pub mod screw;
 pub mod skeleton;
 pub mod subspace;

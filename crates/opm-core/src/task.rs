@@ -42,6 +42,7 @@
 //! values follow. A plane's normal is not free where `I` turns about it: `axis` decides it.
 
 mod displacement;
+mod factors;
 mod pose;
 mod subspace;
 
