@@ -7,7 +7,7 @@
 //! Against extended precision, on 10⁷ random arguments of all signs and sizes and near the quarters of a
 //! turn, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
 
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_4};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, TAU};
 
 /// Angles up to this size are reduced by quarter turns exactly; larger ones, more than a hundred
 /// thousand turns, are left to the standard library.
@@ -128,6 +128,13 @@ fn polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
         sums[power % 2] = sums[power % 2] * square + coefficients[power];
     }
     sums[0] + z * sums[1]
+}
+
+/// How many whole turns an angle is from the one within half a turn. Exactly half a turn is as near as its opposite:
+/// it stays what it is.
+pub(crate) fn whole_turns(angle: f64) -> f64 {
+    let turns = angle / TAU;
+    if turns.abs() <= 0.5 { 0.0 } else { turns.round() }
 }
 
 #[cfg(test)]

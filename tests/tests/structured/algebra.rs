@@ -1,5 +1,6 @@
 //! Screws, rotation vectors and subspaces.
 
+use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix4, Point3, Unit, Vector3};
 use opm_core::chain::spherical::Ball;
 use opm_core::joint::{Joint, JointKind};
@@ -138,4 +139,29 @@ fn subspaces_are_recognised() {
         }
     }
     assert_eq!(classes, 13 * 4 * 4 * 7);
+}
+
+/// The middle of a set of axes is where the squares of the distances are least: their gradient is zero there.
+#[test]
+fn the_middle_of_axes_is_nearest_to_them() {
+    let (axes, points) = (axes(), points());
+    let mut rng = Rng::with_seed(60);
+    for _ in 0..20_000 {
+        let lines: Vec<(Screw, Point3<f64>)> = (0..2 + rng.usize(..4))
+            .map(|_| {
+                let axis = axes[rng.usize(..axes.len())] * [1.0, -1.0][rng.usize(..2)];
+                let point = points[rng.usize(..points.len())];
+                (Screw::rotation(Unit::new_normalize(axis), point), point)
+            })
+            .collect();
+        let frame = Frame::of(&lines);
+        let gradient: Vector3<f64> = (lines.iter())
+            .map(|(screw, point)| {
+                let off = frame.origin - point;
+                off - screw.angular * screw.angular.dot(&off)
+            })
+            .sum();
+        assert!(gradient.norm() < 1e-11, "{lines:?}: {frame:?}");
+        assert!(frame.length.is_finite() && frame.length > 0.0, "{lines:?}: {frame:?}");
+    }
 }

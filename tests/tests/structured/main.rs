@@ -7,4 +7,5 @@ mod differential;
 mod forward;
 mod inverse;
 mod locate;
+mod motions;
 mod places;

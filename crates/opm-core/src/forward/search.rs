@@ -6,6 +6,7 @@ use super::plan::{self, Anchor, Plan};
 use super::three::{self, Solutions};
 use super::track::Track;
 use super::{Assemblies, Unmet, VERGE};
+use crate::angle::whole_turns;
 use crate::chain::planar::{PlanarDisplacement, PlanarJoint};
 use crate::chain::{Amount, Branch, Chain, Gap, planar, unit};
 use crate::manipulator::{Manipulator, Section, Solution};
@@ -311,7 +312,7 @@ impl<'a> Search<'a> {
         let joints = chain.joints();
         let turns = |&slot: &usize| match joints[slot] {
             PlanarJoint::Revolute { reversed, .. } => {
-                let turns = (self.amount(leg, Section::Lower, slot).value() / TAU).round();
+                let turns = whole_turns(self.amount(leg, Section::Lower, slot).value());
                 if reversed { -turns } else { turns }
             }
             PlanarJoint::Prismatic { .. } => 0.0,

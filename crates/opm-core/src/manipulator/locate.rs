@@ -5,6 +5,7 @@
 //! reference point's position.
 
 use super::Manipulator;
+use crate::angle::whole_turns;
 use crate::joint::Quantity;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
@@ -133,7 +134,7 @@ impl Manipulator {
     fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
         for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
             if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
-                *q -= TAU * ((*q - c.home) / TAU).round();
+                *q -= TAU * whole_turns(*q - c.home);
             }
         }
         pose

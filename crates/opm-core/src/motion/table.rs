@@ -11,6 +11,7 @@
 //! turns matter, because a helical joint follows it, is taken as it stands.
 
 use super::{Motion, Path, Spline};
+use crate::angle::whole_turns;
 use crate::joint::Quantity;
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
@@ -204,6 +205,6 @@ fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problem
 /// Brings every angle within half a turn of the one before.
 fn unwrap(angles: &mut [f64]) {
     for i in 1..angles.len() {
-        angles[i] -= TAU * ((angles[i] - angles[i - 1]) / TAU).round();
+        angles[i] -= TAU * whole_turns(angles[i] - angles[i - 1]);
     }
 }

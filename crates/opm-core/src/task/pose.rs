@@ -1,7 +1,7 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
 use super::{Cut, Displacement, SubspaceKind, Task};
-use crate::angle::sin_cos;
+use crate::angle::{sin_cos, whole_turns};
 use crate::chain::Amount;
 use crate::chain::planar::PlanarDisplacement;
 use crate::joint::Quantity;
@@ -128,7 +128,7 @@ pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
 
 /// The same angle within half a turn of another.
 fn near(angle: f64, home: f64) -> f64 {
-    angle - TAU * ((angle - home) / TAU).round()
+    angle - TAU * whole_turns(angle - home)
 }
 
 /// `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`, of all triples the one nearest to `home`.
