@@ -326,7 +326,7 @@ def test_a_dask_cluster_whose_workers_are_killed_at_random_moments(alone):
             distributed.Client(cluster) as client,
         ):
             while killed < left:
-                pids = list(client.run(os.getpid).values())
+                pids = [nanny.pid for nanny in cluster.workers.values() if nanny.pid]
                 timer = threading.Timer(rng.uniform(0.0, 0.3), os.kill, (rng.choice(pids), signal.SIGKILL))
                 timer.start()
                 assert run(client.get_executor(pure=False), Steady(alone), "_count", parts) == expected
