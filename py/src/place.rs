@@ -4,14 +4,12 @@ use crate::arguments;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use opm_core::manipulator::OutsideMotion;
+use opm_core::numeric::rotation;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
-
-/// How far a rotation matrix may be from one, entry by entry: what printing six digits leaves.
-const RIGID: f64 = 1e-5;
 
 /// The poses of a manipulator's motion that are nearest to displacements of the platform, and what these are off by.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
@@ -172,29 +170,25 @@ impl Manipulator {
         let transforms = Rows::new(&transforms)?;
         let none = || ();
         Tables::fill(py, transforms.count, widths, threads, none, |(), row, out| {
-            let place = isometry(transforms.row(row)).ok_or_else(|| {
-                format!(
-                    "transforms[{row}] is no displacement: expected a rotation, a position in \
-                     metres, and a last row of 0, 0, 0, 1"
-                )
-            })?;
+            let place = isometry(transforms.row(row))
+                .map_err(|why| format!("transforms[{row}] is no displacement: {why}"))?;
             fill(self.inner.locate_platform(&place), out);
             Ok([true; 2])
         })
     }
 }
 
-/// The displacement that a matrix is, row by row.
-fn isometry(matrix: &[f64]) -> Option<Isometry3<f64>> {
-    let rotation = Matrix3::from_fn(|i, j| matrix[4 * i + j]);
-    let position = Vector3::from_fn(|i, _| matrix[4 * i + 3]);
-    let off = (rotation * rotation.transpose() - Matrix3::identity()).amax();
-    let rigid = off <= RIGID && rotation.determinant() > 0.0;
-    let finite = position.iter().all(|value| value.is_finite());
-    if !(rigid && finite && matrix[12..] == [0.0, 0.0, 0.0, 1.0]) {
-        return None;
+/// The displacement that a matrix is, row by row; or what is wrong with it.
+fn isometry(matrix: &[f64]) -> Result<Isometry3<f64>, String> {
+    let last = &matrix[12..];
+    if last != [0.0, 0.0, 0.0, 1.0] {
+        return Err(format!("its last row is {last:?}, expected 0, 0, 0, 1"));
     }
-    // The nearest rotation to what rounding has left of one.
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
-    Some(Isometry3::from_parts(Translation3::from(position), turn))
+    let position = Vector3::from_fn(|i, _| matrix[4 * i + 3]);
+    if let Some((row, value)) = position.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        return Err(format!("row {row}, column 3 is {value:?}, expected a number"));
+    }
+    let rotation = rotation::nearest(&Matrix3::from_fn(|i, j| matrix[4 * i + j]))
+        .map_err(|error| error.to_string())?;
+    Ok(Isometry3::from_parts(Translation3::from(position), rotation))
 }

@@ -7,6 +7,7 @@ pub mod differences;
 pub mod newton;
 pub mod paper;
 pub mod random;
+pub mod structured;
 
 /// Compiles the Rust code in the README with the tests.
 #[cfg(doctest)]

@@ -4,6 +4,7 @@
 pub(crate) mod angle;
 pub mod number;
 mod quantity;
+pub mod rotation;
 pub(crate) mod svd;
 
 pub use quantity::Quantity;

@@ -43,6 +43,7 @@
 
 mod coordinate;
 mod displacement;
+mod factors;
 mod frame;
 mod pose;
 

@@ -1,7 +1,13 @@
-"""Parts of some work on any executor: submitted as pickled specifications, run again where a worker is lost."""
+"""Parts of some work on any executor: submitted as pickled specifications, run again where a worker is lost.
 
+What the work itself gives or raises comes back in an :class:`_Answer`. So whatever else a future gives or raises was made by the
+executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
+"""
+
+import pickle
+from asyncio import CancelledError
 from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, as_completed
+from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
 from types import TracebackType
 from typing import Any
 
@@ -16,9 +22,8 @@ SHARDS = 64
 #: How often a part is run again before it is given up.
 RETRIES = 3
 
-#: What says that a worker is lost, not that the work has failed; and what Dask says, which need not be installed.
-LOST = (BrokenExecutor, CancelledError, OSError)
-LOST_BY_NAME = {"KilledWorker"}
+#: What a future raises for a lost part. The rest of BaseException, as KeyboardInterrupt, ends the whole work.
+LOST = (Exception, CancelledError)
 
 
 class Workers:
@@ -148,7 +153,10 @@ class _Results:
 def _round(
     pool: Executor, plan: object, task: str, missing: dict[int, tuple[Any, ...]], results: _Results
 ) -> BaseException | None:
-    """Runs the parts that are missing once, takes those away that have a result, and gives the last sign of a lost worker."""
+    """Runs the parts that are missing once, takes those away that have a result, and gives a sign of a lost worker.
+
+    A broken executor is the sign that it gives first: such a one takes no more work.
+    """
     futures: dict[Future[Any], int] = {}
     lost: BaseException | None = None
     try:
@@ -162,12 +170,16 @@ def _round(
             # A future keeps its result: with the last reference to it both go.
             number = futures.pop(future)
             try:
-                results.add(number, future.result())
-                del missing[number]
-            except BaseException as error:
-                if not isinstance(error, LOST) and type(error).__name__ not in LOST_BY_NAME:
-                    raise
-                lost = error
+                answer = future.result()
+                if not isinstance(answer, _Answer):
+                    raise TypeError(f"the executor gave {type(answer).__name__} for the answer of a part")
+            except LOST as error:
+                lost = lost if isinstance(lost, BrokenExecutor) else error
+                continue
+            if answer.error is not None:
+                raise answer.error
+            results.add(number, answer.result)
+            del missing[number]
     finally:
         for future in futures:
             future.cancel()
@@ -186,5 +198,29 @@ def _number_of_workers(executor: Executor) -> int | None:
     return number if isinstance(number, int) and number > 0 else None
 
 
-def _work(plan: object, task: str, part: tuple[Any, ...]) -> Any:
-    return getattr(plan, task)(*part)
+class _Answer:
+    """What a part gave, or what its work raised: nothing but :func:`_work` makes one."""
+
+    __slots__ = ("error", "result")
+
+    def __init__(self, result: Any, error: Exception | None = None) -> None:
+        self.result, self.error = result, error
+
+    def __reduce__(self) -> tuple[type["_Answer"], tuple[Any, Exception | None]]:
+        return _Answer, (self.result, self.error)
+
+
+def _work(plan: object, task: str, part: tuple[Any, ...]) -> _Answer:
+    try:
+        return _Answer(getattr(plan, task)(*part))
+    except Exception as error:
+        return _Answer(None, _portable(error))
+
+
+def _portable(error: Exception) -> Exception:
+    """The error, or one that says the same, where it cannot be pickled: it would look like a lost part."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error

@@ -11,6 +11,7 @@ use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, Subspace
 use crate::manipulator::plan::{Anchor, Plan};
 use crate::manipulator::{Manipulator, Section, Solution};
 use crate::numeric::angle::unit;
+use crate::numeric::angle::whole_turns;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -315,7 +316,7 @@ impl<'a> Search<'a> {
         let joints = chain.joints();
         let turns = |&slot: &usize| match joints[slot] {
             PlanarJoint::Revolute { reversed, .. } => {
-                let turns = (self.amount(leg, Section::Lower, slot).value() / TAU).round();
+                let turns = whole_turns(self.amount(leg, Section::Lower, slot).value());
                 if reversed { -turns } else { turns }
             }
             PlanarJoint::Prismatic { .. } => 0.0,

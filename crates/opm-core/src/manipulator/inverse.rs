@@ -560,9 +560,13 @@ impl AllModes {
 
 /// The rotation vector of the same rotation, whole turns added, that is nearest to `reference`.
 fn nearest_rotation(vector: Vector3<f64>, reference: &Vector3<f64>) -> Vector3<f64> {
+    /// A rotation by less is none but for rounding, and its axis is anything.
+    const NONE: f64 = 1e-14;
     let angle = vector.norm();
-    if angle == 0.0 {
-        return vector;
+    if angle < NONE {
+        // Whole turns about any axis are no rotation: the nearest axis is the reference's.
+        let turns = (reference.norm() / TAU).round();
+        return if turns == 0.0 { vector } else { reference.normalize() * (TAU * turns) };
     }
     let axis = vector / angle;
     let turns = (reference.dot(&axis) - angle) / TAU;
@@ -584,5 +588,19 @@ mod tests {
         }
         let beyond = nearest_rotation(Vector3::z() * (0.1 - PI), &(Vector3::z() * PI));
         assert!((beyond - Vector3::z() * (0.1 + PI)).norm() < 1e-12);
+    }
+
+    /// A ball that goes on turning passes through a whole turn, where its rotation is none.
+    #[test]
+    fn a_whole_turn_does_not_jump_to_none() {
+        let round = Vector3::new(0.6, 0.0, -0.8) * TAU;
+        for rounding in [Vector3::zeros(), Vector3::x() * 1e-16, Vector3::new(0.0, -3e-16, 1e-16)] {
+            for before in [round * 0.999, round, round * 1.001, round * -2.0] {
+                let turns = (before.dot(&round) / TAU / TAU).round();
+                let found = nearest_rotation(rounding, &before);
+                assert!((found - round * turns).norm() < 1e-14, "{rounding} {before}: {found}");
+            }
+            assert_eq!(nearest_rotation(rounding, &(round * 0.4)), rounding);
+        }
     }
 }

@@ -1,13 +1,12 @@
 //! From a displacement of the platform to task coordinates, for every pair of subspaces.
 //!
-//! The other way round, `Task::displacement` is a product of two exponentials; back, it is solved by
-//! least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
-//! reference point's position. One way for all pairs, and where the displacement is outside the
-//! motion it ends at the nearest pose, which is what one wants to be told.
+//! A displacement of the motion is taken apart in closed form (`Task::factors`). For any other one the nearest
+//! pose is found by least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
+//! reference point's position.
 
 use super::{Manipulator, PoseError};
-use crate::decomposition::mobility::frame;
 use crate::numeric::Quantity;
+use crate::numeric::angle::whole_turns;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -110,7 +109,12 @@ impl Manipulator {
     /// # Errors
     /// A displacement outside the motion `A · B`: how far, in which direction, and the nearest pose.
     pub fn locate(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
-        let length = frame(&self.mechanism).length;
+        let length = self.characteristic_length();
+        let [v, b] = self.task.factors(displacement);
+        let pose = self.task.pose(&v, &b);
+        if self.miss(displacement, &pose, 1.0 / length).norm() < ON {
+            return Ok(self.within_half_a_turn(pose));
+        }
         let mut best: Option<(f64, Vec<f64>)> = None;
         for start in 0..STARTS {
             let mut pose = self.start(start);
@@ -125,12 +129,8 @@ impl Manipulator {
                 break;
             }
         }
-        let (off, mut pose) = best.unwrap_or_else(|| (f64::INFINITY, self.task.home()));
-        for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
-            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
-                *q -= TAU * ((*q - c.home) / TAU).round();
-            }
-        }
+        let (off, pose) = best.unwrap_or_else(|| (f64::INFINITY, self.task.home()));
+        let pose = self.within_half_a_turn(pose);
         if off < ON {
             return Ok(pose);
         }
@@ -140,6 +140,16 @@ impl Manipulator {
             rotation: miss.fixed_rows::<3>(0).into(),
             translation: miss.fixed_rows::<3>(3).into(),
         })
+    }
+
+    /// The same pose with angles within half a turn of home, but those whose whole turns matter.
+    fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
+        for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
+            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
+                *q -= TAU * whole_turns(*q - c.home);
+            }
+        }
+        pose
     }
 
     /// Home, then angles by an additive recurrence, which spreads over the torus.

@@ -8,7 +8,7 @@
 //! turn, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
 
 use nalgebra::Complex;
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_4};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, TAU};
 
 /// Angles up to this size are reduced by quarter turns exactly; larger ones, more than a hundred
 /// thousand turns, are left to the standard library.
@@ -142,6 +142,13 @@ pub(crate) fn unit(angle: f64) -> Complex<f64> {
 #[inline]
 pub(crate) fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { sin_cos(x).0 / x }
+}
+
+/// How many whole turns an angle is from the one within half a turn. Exactly half a turn is as near as its opposite:
+/// it stays what it is.
+pub(crate) fn whole_turns(angle: f64) -> f64 {
+    let turns = angle / TAU;
+    if turns.abs() <= 0.5 { 0.0 } else { turns.round() }
 }
 
 #[cfg(test)]

@@ -234,6 +234,35 @@ mod tests {
         }
     }
 
+    /// Small whole numbers, many zeros, columns that are equal or opposite, by both ways.
+    #[test]
+    fn structured_matrices_are_decomposed() {
+        let mut seed = 7_u64;
+        let mut draw = |below: usize| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 33) as usize % below
+        };
+        for _ in 0..20_000 {
+            let (m, n) = (1 + draw(6), 1 + draw(9));
+            let entries = [0.0, 0.0, 0.0, 1.0, -1.0, 0.5_f64.sqrt(), 1e-9];
+            let mut a = DMatrix::from_fn(m, n, |_, _| entries[draw(7)]);
+            let (from, to) = (draw(n), draw(n));
+            let copy = a.column(from) * [1.0, -1.0, 0.0][draw(3)];
+            a.set_column(to, &copy);
+            let svd = Svd::new(a.clone());
+            assert!((svd.right.tr_mul(&svd.right) - DMatrix::identity(n, n)).amax() < ROUNDING);
+            assert!((&svd.image * svd.right.transpose() - &a).amax() < ROUNDING, "{a}");
+            let gram = svd.image.tr_mul(&svd.image);
+            let off = |i: usize, j: usize| if i == j { svd.values[i].powi(2) } else { 0.0 };
+            assert!((gram - DMatrix::from_fn(n, n, off)).amax() < ROUNDING, "{a}");
+            let mut alone = singular_values(a.clone());
+            alone.sort_by(|x, y| y.total_cmp(x));
+            alone.resize(n, 0.0);
+            let worst = alone.iter().zip(&svd.values).map(|(x, y)| (x - y).abs());
+            assert!(worst.fold(0.0, f64::max) < ROUNDING, "{a}{alone:?} {:?}", svd.values);
+        }
+    }
+
     #[test]
     fn an_empty_matrix_has_rank_zero() {
         assert_eq!(rank(DMatrix::zeros(6, 0), 1e-9), 0);

@@ -93,11 +93,11 @@ fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
 }
 
 #[inline]
-fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
+pub(super) fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
     Displacement::Planar(PlanarDisplacement { rotation, translation: Complex::new(x, y) })
 }
 
 #[inline]
-fn cylindrical(angle: f64, advance: f64) -> Displacement {
+pub(super) fn cylindrical(angle: f64, advance: f64) -> Displacement {
     Displacement::Cylindrical(CylindricalDisplacement { angle, advance })
 }

@@ -6,8 +6,8 @@ use crate::group::{
     SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::numeric::Quantity;
-use crate::numeric::angle::sin_cos;
-use nalgebra::{Complex, Matrix3};
+use crate::numeric::angle::{sin_cos, whole_turns};
+use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
 
 /// The sine of an angle between two axes that counts as none: the rounding of a rotation.
@@ -40,7 +40,7 @@ impl Task {
                 }
             }
             Displacement::Spherical(r) => {
-                let [mu, nu] = tilt_angles(&r);
+                let [mu, nu] = tilt_angles(&r.column(2).into_owned());
                 pose.extend([home(0) + mu, home(1) + nu]);
             }
             Displacement::Cylindrical(g) if rotation => pose.push(home(0) + g.advance),
@@ -107,7 +107,7 @@ impl Task {
             Displacement::Planar(g) => JointDisplacement::Direction(g.rotation),
             Displacement::Spherical(r) => {
                 // Rx(mu) Ry(nu) without the rest: R = tilt · Rz.
-                let [mu, nu] = tilt_angles(r);
+                let [mu, nu] = tilt_angles(&r.column(2).into_owned());
                 let rest = super::displacement::tilt([mu, nu].map(sin_cos)).tr_mul(r);
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
@@ -134,15 +134,14 @@ impl Task {
     }
 }
 
-/// `mu nu` of the direction that a rotation brings the third one to.
-fn tilt_angles(r: &Matrix3<f64>) -> [f64; 2] {
-    let axis = r.column(2);
+/// `mu nu` of a rotation that brings the third direction to this one.
+pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
     [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
 }
 
 /// The same angle within half a turn of another.
 fn near(angle: f64, home: f64) -> f64 {
-    angle - TAU * ((angle - home) / TAU).round()
+    angle - TAU * whole_turns(angle - home)
 }
 
 /// `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`, of all triples the one nearest to `home`.
@@ -155,7 +154,12 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let extra = 0.5 * (sum - home[0] - up * home[2]);
         return [home[0] + extra, xi, home[2] + up * extra];
     }
-    let plain = [r[(1, 2)].atan2(r[(0, 2)]), sine.atan2(r[(2, 2)]), r[(2, 1)].atan2(-r[(2, 0)])];
+    let zeta = r[(1, 2)].atan2(r[(0, 2)]);
+    // Near the pole zeta is as vague as rounding over the sine, but zeta ± psi is not: psi is what this zeta
+    // leaves of the rotation.
+    let (sin, cos) = sin_cos(zeta);
+    let psi = (cos * r[(1, 0)] - sin * r[(0, 0)]).atan2(cos * r[(1, 1)] - sin * r[(0, 1)]);
+    let plain = [zeta, sine.atan2(r[(2, 2)]), psi];
     let half = std::f64::consts::PI;
     let other = [plain[0] + half, -plain[1], plain[2] + half];
     let placed =

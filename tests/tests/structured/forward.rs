@@ -1,0 +1,110 @@
+//! Forward kinematics of the joints of structured poses.
+
+use fastrand::Rng;
+use nalgebra::{Isometry3, Translation3};
+use opm_core::forward::RESIDUAL;
+use opm_core::joint::JointKind;
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_tests::structured::{apart, gap, manipulators, pose, quarter_turns};
+use std::f64::consts::TAU;
+
+/// Near a singularity half of the digits go, and some more with lengths beside the mechanism's size.
+const SAME: f64 = 1e-6;
+
+/// Every assembly closes; the one that the joints came from is among them, unless the answer says that the
+/// joints leave it loose.
+fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
+    let name = &m.mechanism().name;
+    let mut at = m.solution();
+    if !m.inverse(pose, mode, &mut at).unwrap() {
+        return [0, 0];
+    }
+    let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints[i]).collect();
+    let target = m.task().displacement(pose);
+    let Ok(found) = m.forward(&actuated) else { return [0, 0] };
+    for a in &found.list {
+        let off = gap(m, &a.joints, &m.task().displacement(&a.pose));
+        assert!(off < 10.0 * RESIDUAL, "{name} {pose:?}: {a:?} is {off:e} off");
+    }
+    if !found.loose.is_empty() {
+        return [0, 1];
+    }
+    let targets = advanced(m, &target);
+    let back = found.list.iter().any(|a| {
+        let here = m.task().displacement(&a.pose);
+        targets.iter().any(|target| apart(m, &here, target) < SAME)
+    });
+    assert!(
+        back,
+        "{name} {pose:?} {} {actuated:?}: none of {:?}",
+        m.format_mode(mode),
+        found.list.iter().map(|a| (&a.pose, m.format_mode(a.mode))).collect::<Vec<_>>()
+    );
+    [1, 0]
+}
+
+/// A place, and those that whole turns of a screw advance it to: inverse kinematics do not tell the turns of a
+/// revolute that hands them on to a screw.
+fn advanced(m: &Manipulator, target: &Isometry3<f64>) -> Vec<Isometry3<f64>> {
+    let mut all = vec![*target];
+    for joint in m.mechanism().joints() {
+        if let JointKind::Helical { pitch } = joint.kind {
+            let advance = joint.axis.into_inner() * (pitch * TAU);
+            let by = |turns: i32| Translation3::from(advance * f64::from(turns)) * target;
+            all.extend((-8..=8).map(by));
+        }
+    }
+    all
+}
+
+#[test]
+fn joints_of_structured_poses_lead_back() {
+    let mut rng = Rng::with_seed(40);
+    for m in manipulators() {
+        let modes: Vec<Mode> = m.modes().collect();
+        let [mut found, mut loose] = [0, 0];
+        for round in 0..300 {
+            let pose =
+                if round % 3 == 0 { quarter_turns(&mut rng, &m) } else { pose(&mut rng, &m) };
+            let mode = if rng.bool() { m.home_mode() } else { modes[rng.usize(..modes.len())] };
+            let [one, other] = check(&m, &pose, mode);
+            (found, loose) = (found + one, loose + other);
+        }
+        println!("{}: {found} found, {loose} loose", m.mechanism().name);
+        assert!(found > 50 || m.forward_closed_form().is_err(), "{}: {found}", m.mechanism().name);
+    }
+}
+
+/// Newton's method from a structured pose to one nearby: it ends at an assembly, or says why not.
+#[test]
+fn steps_from_structured_poses_arrive() {
+    let mut rng = Rng::with_seed(41);
+    for m in manipulators() {
+        let name = &m.mechanism().name;
+        let (mut arrived, mut tried) = (0, 0);
+        for _ in 0..100 {
+            let start = pose(&mut rng, &m);
+            let aim: Vec<f64> = start.iter().map(|q| q + 0.004 * (rng.f64() - 0.5)).collect();
+            let (mut at, mode) = (m.solution(), m.home_mode());
+            if !m.inverse(&start, mode, &mut at).unwrap()
+                || !m.inverse(&aim, mode, &mut at).unwrap()
+            {
+                continue;
+            }
+            tried += 1;
+            let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints[i]).collect();
+            if let Ok(found) = m.forward_near(&actuated, &start, mode) {
+                arrived += 1;
+                let off = gap(&m, &found.joints, &m.task().displacement(&found.pose));
+                assert!(off < 10.0 * RESIDUAL, "{name} {start:?}: {off:e}");
+                for (&i, given) in m.actuated().iter().zip(&actuated) {
+                    let off = found.joints[i] - given;
+                    let turns = (off / TAU).round() * TAU;
+                    assert!((off - turns).abs() < 1e-9, "{name} {start:?}");
+                }
+            }
+        }
+        println!("{name}: {arrived} of {tried}");
+        assert!(2 * arrived > tried && tried > 20, "{name}: {arrived} of {tried}");
+    }
+}
