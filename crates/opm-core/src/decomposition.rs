@@ -22,7 +22,7 @@ use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
-use search::Cut;
+use search::SplitCandidate;
 use std::cmp::Reverse;
 use thiserror::Error;
 
@@ -205,9 +205,10 @@ pub const MAX_DECOMPOSITIONS: usize = 1024;
 /// All decompositions, and how many partial splits were looked at.
 fn search(mechanism: &Mechanism, lambda: usize, mobility: usize) -> (Vec<Decomposition>, usize) {
     let frame = frame(mechanism);
-    let cuts: Vec<Vec<Cut>> = mechanism.legs.iter().map(|leg| search::cuts(leg, &frame)).collect();
+    let candidates: Vec<Vec<SplitCandidate>> =
+        mechanism.legs.iter().map(|leg| search::candidates(leg, &frame)).collect();
     let mut found = vec![];
-    let visited = search::splits(&cuts, lambda, &mut |split| {
+    let visited = search::splits(&candidates, lambda, &mut |split| {
         let sections = Sections::new(split, lambda);
         found.extend(sections.map(|s| s.decomposition(mechanism, &frame, lambda, mobility)));
         found.len() < MAX_DECOMPOSITIONS
@@ -217,21 +218,22 @@ fn search(mechanism: &Mechanism, lambda: usize, mobility: usize) -> (Vec<Decompo
 
 /// A split of every leg whose two sections are groups that meet in one dimension.
 struct Sections<'a> {
-    legs: &'a [&'a Cut],
+    legs: &'a [&'a SplitCandidate],
     lower: Fit,
     upper: Fit,
     intersection: Fit,
 }
 
 impl<'a> Sections<'a> {
-    fn new(legs: &'a [&'a Cut], lambda: usize) -> Option<Self> {
-        let partial = |screws: fn(&Cut) -> &[Vector6<f64>]| {
-            let all: Vec<_> = legs.iter().flat_map(|cut| screws(cut)).copied().collect();
+    fn new(legs: &'a [&'a SplitCandidate], lambda: usize) -> Option<Self> {
+        let partial = |screws: fn(&SplitCandidate) -> &[Vector6<f64>]| {
+            let all: Vec<_> =
+                legs.iter().flat_map(|candidate| screws(candidate)).copied().collect();
             let dimension = |fit: &Fit| fit.class.dimension();
             fit(&all).filter(|fit| (1..lambda).contains(&dimension(fit)))
         };
-        let lower = partial(Cut::lower_screws)?;
-        let upper = partial(Cut::upper_screws)?;
+        let lower = partial(SplitCandidate::lower_screws)?;
+        let upper = partial(SplitCandidate::upper_screws)?;
         let intersection = lower.basis.intersection(&upper.basis);
         if intersection.dimension() != 1 {
             return None;
@@ -247,19 +249,25 @@ impl<'a> Sections<'a> {
         lambda: usize,
         mobility: usize,
     ) -> Decomposition {
-        let parts: Vec<_> = self.legs.iter().map(|cut| cut.upper_screws()).collect();
+        let parts: Vec<_> = self.legs.iter().map(|candidate| candidate.upper_screws()).collect();
         let section = imaginary::UpperSection {
             basis: &self.upper.basis,
             legs: &parts,
             intersection: self.intersection.basis.vectors()[0],
         };
-        let plain = |leg: &Leg, cut: &Cut| (cut.upper.len(), cut.lower.len(), leg.name.clone());
-        let order: Vec<_> =
-            mechanism.legs.iter().zip(self.legs).map(|(leg, cut)| plain(leg, cut)).collect();
+        let plain = |leg: &Leg, candidate: &SplitCandidate| {
+            (candidate.upper.len(), candidate.lower.len(), leg.name.clone())
+        };
+        let order: Vec<_> = mechanism
+            .legs
+            .iter()
+            .zip(self.legs)
+            .map(|(leg, candidate)| plain(leg, candidate))
+            .collect();
         let choice = section.imaginary_joints(mobility, self.lower.class.dimension(), &order);
-        let split = |(i, cut): (usize, &&Cut)| LegSplit {
-            lower: cut.lower.clone(),
-            upper: cut.upper.clone(),
+        let split = |(i, candidate): (usize, &&SplitCandidate)| LegSplit {
+            lower: candidate.lower.clone(),
+            upper: candidate.upper.clone(),
             imaginary: choice.legs.contains(&i),
         };
         let imaginary_joints = choice.mobility.min(mobility);

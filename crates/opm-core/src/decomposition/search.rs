@@ -1,4 +1,4 @@
-//! Every way to cut every leg, depth first over the legs, without those that cannot become two
+//! Every way to split every leg, depth first over the legs, without those that cannot become two
 //! proper subgroups.
 
 use super::Freedom;
@@ -13,15 +13,15 @@ use nalgebra::Vector6;
 /// the end is fitted with the proper tolerance.
 const CLEARLY_NEW: f64 = 0.05;
 
-/// The freedoms of one leg in two parts, with their unit normalised screws.
-pub(super) struct Cut {
+/// One way to split a leg: its freedoms in two parts, with their unit normalised screws.
+pub(super) struct SplitCandidate {
     pub lower: Vec<Freedom>,
     pub upper: Vec<Freedom>,
     /// Screws of the lower part, then of the upper.
     screws: Vec<Vector6<f64>>,
 }
 
-impl Cut {
+impl SplitCandidate {
     pub fn lower_screws(&self) -> &[Vector6<f64>] {
         &self.screws[..self.lower.len()]
     }
@@ -31,10 +31,10 @@ impl Cut {
     }
 }
 
-/// The cuts of a leg, longest lower part first: between joints, within a universal joint, and
+/// The ways to split a leg, longest lower part first: between joints, within a universal joint, and
 /// within a cylindrical joint either way round, since its two freedoms commute. A spherical joint
 /// stays whole.
-pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
+pub(super) fn candidates(leg: &Leg, frame: &Frame) -> Vec<SplitCandidate> {
     let freedoms: Vec<(Freedom, Vector6<f64>)> = leg
         .joints
         .iter()
@@ -45,13 +45,13 @@ pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
             j.screws().into_iter().enumerate().map(unit).collect::<Vec<_>>()
         })
         .collect();
-    let cut = |freedoms: &[(Freedom, Vector6<f64>)], at: usize| {
+    let split = |freedoms: &[(Freedom, Vector6<f64>)], at: usize| {
         let (lower, upper) = freedoms.split_at(at);
         let names = |part: &[(Freedom, _)]| part.iter().map(|(freedom, _)| *freedom).collect();
         let screws = freedoms.iter().map(|(_, screw)| *screw).collect();
-        Cut { lower: names(lower), upper: names(upper), screws }
+        SplitCandidate { lower: names(lower), upper: names(upper), screws }
     };
-    let mut cuts = vec![];
+    let mut found = vec![];
     for at in (0..=freedoms.len()).rev() {
         let above = freedoms.get(at).map(|(freedom, _)| *freedom).filter(|above| above.index > 0);
         match above.map(|above| leg.joints[above.joint].kind) {
@@ -59,52 +59,59 @@ pub(super) fn cuts(leg: &Leg, frame: &Frame) -> Vec<Cut> {
             Some(JointKind::Cylindrical) => {
                 let mut swapped = freedoms.clone();
                 swapped.swap(at - 1, at);
-                cuts.push(cut(&freedoms, at));
-                cuts.push(cut(&swapped, at));
+                found.push(split(&freedoms, at));
+                found.push(split(&swapped, at));
             }
-            _ => cuts.push(cut(&freedoms, at)),
+            Some(
+                JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Helical { .. }
+                | JointKind::Universal { .. },
+            )
+            | None => found.push(split(&freedoms, at)),
         }
     }
-    cuts
+    found
 }
 
-/// Calls `accept` with every split, one cut a leg, that may consist of two subgroups; stops when
+/// Calls `accept` with every split, one candidate a leg, that may consist of two subgroups; stops when
 /// that returns false. Returns the number of partial splits looked at.
 pub(super) fn splits(
-    cuts: &[Vec<Cut>],
+    candidates: &[Vec<SplitCandidate>],
     lambda: usize,
-    accept: &mut dyn FnMut(&[&Cut]) -> bool,
+    accept: &mut dyn FnMut(&[&SplitCandidate]) -> bool,
 ) -> usize {
-    let mut search = Search { cuts, lambda, accept, chosen: vec![], visited: 0, stopped: false };
+    let mut search =
+        Search { candidates, lambda, accept, chosen: vec![], visited: 0, stopped: false };
     search.descend(Basis::EMPTY, Basis::EMPTY);
     search.visited
 }
 
 struct Search<'a, 'f> {
-    cuts: &'a [Vec<Cut>],
+    candidates: &'a [Vec<SplitCandidate>],
     lambda: usize,
-    accept: &'f mut dyn FnMut(&[&Cut]) -> bool,
-    chosen: Vec<&'a Cut>,
+    accept: &'f mut dyn FnMut(&[&SplitCandidate]) -> bool,
+    chosen: Vec<&'a SplitCandidate>,
     visited: usize,
     stopped: bool,
 }
 
 impl<'a> Search<'a, '_> {
-    /// Cuts the next leg; `lower` and `upper` are closures of the screws gathered so far.
+    /// Splits the next leg; `lower` and `upper` are closures of the screws gathered so far.
     fn descend(&mut self, lower: Basis, upper: Basis) {
-        let Some(cuts) = self.cuts.get(self.chosen.len()) else {
+        let Some(candidates) = self.candidates.get(self.chosen.len()) else {
             self.stopped = !(self.accept)(&self.chosen);
             return;
         };
-        for cut in cuts {
+        for candidate in candidates {
             if self.stopped {
                 return;
             }
             self.visited += 1;
-            let lower = enlarged(lower, cut.lower_screws());
-            let upper = enlarged(upper, cut.upper_screws());
+            let lower = enlarged(lower, candidate.lower_screws());
+            let upper = enlarged(upper, candidate.upper_screws());
             if self.possible(&lower, &upper) {
-                self.chosen.push(cut);
+                self.chosen.push(candidate);
                 self.descend(lower, upper);
                 self.chosen.pop();
             }
