@@ -252,6 +252,14 @@ impl Chain {
         }
     }
 
+    /// Whether targets whole turns apart differ.
+    pub(crate) fn counts_turns(&self) -> bool {
+        match self {
+            Self::Cylindrical(chain) => chain.counts_turns(),
+            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => false,
+        }
+    }
+
     /// Number of freedoms, which is the number of amounts that mean anything.
     pub fn freedoms(&self) -> usize {
         match self {

@@ -58,3 +58,6 @@ pub(crate) use translational_plane::TranslationalPlane;
 pub(crate) fn mismatch(expected: SubspaceKind, found: SubspaceKind) -> ! {
     panic!("something of a {found} subspace stands where a {expected} one is needed")
 }
+
+#[cfg(test)]
+mod tests;

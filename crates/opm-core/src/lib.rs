@@ -38,10 +38,11 @@
 //! * Products of exponentials run from base to platform: `g = L · U = v · b`, `v` in the lower
 //!   subspace `A`, `b` in the upper one, `B`.
 //! * Task coordinates are named in [`task`], working modes in [`manipulator::Mode`].
-//! * Out of reach is an answer, not an error; an error means that it cannot be computed. On the rim
-//!   of reach, and on a limit, counts as inside.
+//! * Out of reach is an answer, not an error; an error means that it cannot be computed. A pose on the
+//!   boundary of reach, or on a limit, counts as inside.
 
-// The layers, each of which uses only those above it (tests/layers.rs).
+// Layers: numeric, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
+// trajectory, enclosure, linkage, skeleton. Each uses only those before it (tests/layers.rs).
 pub mod chain;
 pub mod decomposition;
 pub mod enclosure;

@@ -32,7 +32,6 @@ pub use plan::NoClosedForm;
 pub use reach::Follow;
 pub use read::ReadError;
 
-use crate::chain::Chain;
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
@@ -174,12 +173,7 @@ impl Manipulator {
             )
             | None => return false,
         };
-        self.legs.iter().any(|leg| match &leg.section(section).chain {
-            Chain::Cylindrical(chain) => chain.counts_turns(),
-            Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
-                false
-            }
-        })
+        self.legs.iter().any(|leg| leg.section(section).chain.counts_turns())
     }
 
     /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].

@@ -6,7 +6,9 @@
 
 use crate::chain::Chain;
 use crate::chain::planar::PlanarJoint;
-use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, rotation_about};
+use crate::group::{
+    Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind, mismatch, rotation_about,
+};
 use nalgebra::{Complex, Vector3};
 
 /// Conditions that miss each other by less than this, as a share of the size, meet: rounding at the
@@ -93,6 +95,36 @@ impl Condition {
                 Some(Self::Flat { normal, value: (normal[0] * a + normal[1] * b) * amount.value() })
             }
         }
+    }
+
+    /// The subspace whose displacements it is on; of a flat one, one of those that commute.
+    fn kind(&self) -> SubspaceKind {
+        match self {
+            Self::Circle { .. }
+            | Self::Line { .. }
+            | Self::CarriedLine { .. }
+            | Self::Heading { .. } => SubspaceKind::Planar,
+            Self::Cone { .. } => SubspaceKind::Spherical,
+            Self::Flat { .. } => SubspaceKind::Cylindrical,
+        }
+    }
+
+    /// The fixed and the carried direction and the cosine of the angle between them, of a condition on
+    /// rotations about a centre.
+    pub fn cone(&self) -> (Vector3<f64>, Vector3<f64>, f64) {
+        match *self {
+            Self::Cone { fixed, carried, cosine } => (fixed, carried, cosine),
+            Self::Circle { .. }
+            | Self::Line { .. }
+            | Self::CarriedLine { .. }
+            | Self::Heading { .. }
+            | Self::Flat { .. } => mismatch(SubspaceKind::Spherical, self.kind()),
+        }
+    }
+
+    /// Stops the program: the condition is not on displacements of a plane.
+    pub fn not_planar(&self) -> ! {
+        mismatch(SubspaceKind::Planar, self.kind())
     }
 
     /// The same condition, lengths times a factor.

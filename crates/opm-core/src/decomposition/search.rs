@@ -62,7 +62,13 @@ pub(super) fn candidates(leg: &Leg, frame: &Frame) -> Vec<SplitCandidate> {
                 candidates.push(split(&freedoms, at));
                 candidates.push(split(&swapped, at));
             }
-            _ => candidates.push(split(&freedoms, at)),
+            Some(
+                JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Helical { .. }
+                | JointKind::Universal { .. },
+            )
+            | None => candidates.push(split(&freedoms, at)),
         }
     }
     candidates

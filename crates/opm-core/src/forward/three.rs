@@ -10,9 +10,9 @@
 
 use super::trigonometric::{Roots, Trigonometric};
 use crate::chain::condition::{Condition, QUARTER, dot, length};
-use crate::group::PlanarDisplacement;
+use crate::group::{PlanarDisplacement, Spherical, Subgroup};
 use crate::numeric::angle::unit;
-use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// What three conditions leave.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ impl Group for PlanarDisplacement {
                 (rotation.conj() * self.rotation).im,
                 Vector3::new(dot(rotation, self.rotation), 0.0, 0.0),
             ),
-            Condition::Cone { .. } | Condition::Flat { .. } => unreachable!("not of the plane"),
+            Condition::Cone { .. } | Condition::Flat { .. } => condition.not_planar(),
         }
     }
 
@@ -97,17 +97,13 @@ impl Group for PlanarDisplacement {
 
 impl Group for Matrix3<f64> {
     fn miss(&self, condition: &Condition) -> (f64, Vector3<f64>) {
-        match condition {
-            Condition::Cone { fixed, carried, cosine } => {
-                let w = self * carried;
-                (fixed.dot(&w) - cosine, w.cross(fixed))
-            }
-            _ => unreachable!("not of the sphere"),
-        }
+        let (fixed, carried, cosine) = condition.cone();
+        let w = self * carried;
+        (fixed.dot(&w) - cosine, w.cross(&fixed))
     }
 
     fn moved(&self, step: &Vector3<f64>) -> Self {
-        Rotation3::new(*step).into_inner() * self
+        Spherical::product(&Spherical::exponential(step), self)
     }
 
     fn apart(&self, other: &Self) -> f64 {
@@ -117,10 +113,7 @@ impl Group for Matrix3<f64> {
 
 /// The rotations that satisfy three cones.
 pub fn spherical(conditions: &[Condition; 3]) -> Solutions<Matrix3<f64>> {
-    let cone = |i: usize| match conditions[i] {
-        Condition::Cone { fixed, carried, cosine } => (fixed, carried, cosine),
-        _ => unreachable!("not of the sphere"),
-    };
+    let cone = |i: usize| conditions[i].cone();
     // The widest cone is parametrised best.
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| cone(a).2.abs().total_cmp(&cone(b).2.abs()));
@@ -175,7 +168,11 @@ fn triad(axis: &Vector3<f64>) -> Matrix3<f64> {
 pub fn planar(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     let radius = |i: usize| match conditions[i] {
         Condition::Circle { radius, .. } => radius,
-        _ => f64::NEG_INFINITY,
+        Condition::Line { .. }
+        | Condition::CarriedLine { .. }
+        | Condition::Heading { .. }
+        | Condition::Cone { .. }
+        | Condition::Flat { .. } => f64::NEG_INFINITY,
     };
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| radius(b).total_cmp(&radius(a)));
@@ -262,7 +259,7 @@ fn on_circle(
             bilinear[(0, 2)] = rotation.re;
             1.0
         }
-        Condition::Cone { .. } | Condition::Flat { .. } => unreachable!("not of the plane"),
+        Condition::Cone { .. } | Condition::Flat { .. } => condition.not_planar(),
     };
     Bilinear { coefficients: bilinear, size }
 }

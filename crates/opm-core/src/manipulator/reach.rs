@@ -12,9 +12,8 @@
 //! ([`Manipulator::sections_decide`]); if they do, too, the whole reaches less than its two sections
 //! have in common.
 
-use super::leg::{LegBranches, Section};
+use super::leg::{CompiledLeg, LegBranches, Section};
 use super::{ImaginaryJoint, Manipulator, Mode};
-use crate::chain::Chain;
 use crate::chain::region::Region;
 use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Complex;
@@ -110,8 +109,9 @@ impl Manipulator {
 
     /// Whether whole turns of the cuts matter: a helical joint follows them.
     pub fn cuts_count_turns(&self) -> bool {
-        let counts = |chain: &Chain| matches!(chain, Chain::Cylindrical(c) if c.counts_turns());
-        self.legs.iter().any(|leg| counts(&leg.lower.chain) || counts(&leg.upper.chain))
+        let counts =
+            |leg: &CompiledLeg| leg.lower.chain.counts_turns() || leg.upper.chain.counts_turns();
+        self.legs.iter().any(counts)
     }
 
     /// The ways in which a leg's lower section alone can follow where its cut is at the displacement

@@ -1,6 +1,6 @@
 //! From two displacements `g = v · b` back to the coordinates of the pose.
 
-use super::{CoordinateKind, Task};
+use super::Task;
 use crate::group::{
     CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, PlanarMotion,
     SphericalMotion, SubspaceKind, TranslationalMotion,
@@ -70,21 +70,16 @@ impl Task {
             Displacement::Cylindrical(g) => pose.push(home(0) + g.angle),
             Displacement::Translational(t) => pose.push(home(0) + t.im),
         }
-        for (q, c) in pose.iter_mut().zip(&self.coordinates) {
-            let counted = match c.kind() {
-                CoordinateKind::Theta => self.lower.kind == SubspaceKind::Cylindrical,
-                CoordinateKind::Phi => self.upper.kind == SubspaceKind::Cylindrical,
-                CoordinateKind::X
-                | CoordinateKind::Y
-                | CoordinateKind::Z
-                | CoordinateKind::W
-                | CoordinateKind::Zeta
-                | CoordinateKind::Xi
-                | CoordinateKind::Psi
-                | CoordinateKind::Mu
-                | CoordinateKind::Nu => false,
-            };
-            if c.quantity == Quantity::Angle && !counted {
+        // The angle of a cylinder counts whole turns.
+        let counted = |kind: SubspaceKind| match kind {
+            SubspaceKind::Cylindrical => true,
+            SubspaceKind::Planar | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => {
+                false
+            }
+        };
+        for (i, (q, c)) in pose.iter_mut().zip(&self.coordinates).enumerate() {
+            let section = if i < self.lower_count { &self.lower } else { &self.upper };
+            if c.quantity == Quantity::Angle && !counted(section.kind) {
                 *q = near(*q, c.home);
             }
         }

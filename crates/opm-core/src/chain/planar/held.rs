@@ -47,7 +47,10 @@ impl PlanarChain {
             [Prismatic { along: d1 }, Revolute { reversed, .. }, Prismatic { along: d3 }] => {
                 laid(d3, d1, reversed)
             }
-            _ => Vec::new(),
+            [Revolute { .. }, Prismatic { .. }, Prismatic { .. }]
+            | [Prismatic { .. }, Prismatic { .. }, Revolute { .. } | Prismatic { .. }] => {
+                Vec::new()
+            }
         }
     }
 
