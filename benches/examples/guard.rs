@@ -3,9 +3,9 @@
 //! `guard.txt`.
 //!
 //! ```text
-//! guard            compares; 1 where something takes more, 2 where that cannot be told
-//! guard --store    writes what is counted to guard.txt
-//! guard WORK       does a piece of work, for valgrind to count
+//! guard            compares; exit code 1 if something takes more, 2 if that cannot be decided
+//! guard --store    writes the counts to guard.txt
+//! guard WORK       does a piece of work that valgrind counts
 //! ```
 
 use opm_benches::{example, reached, square_roots, sweep_grid, with_limits_on_passive_angles};

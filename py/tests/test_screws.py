@@ -137,7 +137,7 @@ def test_the_screws_of_a_mechanism_make_it_again():
         ({"legs": [ROWS[0], "no", ROWS[2]]}, r"leg2: expected an \(n, 6\) array"),
         ({"legs": {"a": ROWS[0], "b": [ROWS[1][0], [0] * 6, ROWS[1][2]], "c": ROWS[2]}}, "b, joint 2: all six components are zero"),
         ({"legs": [ROWS[0], ROWS[1], [*ROWS[2][:2], [0, 0, np.nan, 0, 0, 1]]]}, "leg3, joint 3: NaN is among its components"),
-        ({"legs": ROWS[:1], "actuated": FLAGS[:1]}, "1 of .*leg.*, expected at least two legs"),
+        ({"legs": ROWS[:1], "actuated": FLAGS[:1]}, "found 1 .*leg.*, expected at least 2 legs"),
         ({"actuated": FLAGS[:2]}, "actuated: 2 sequences, expected 3, one a leg"),
         ({"actuated": [[True], *FLAGS[1:]]}, "actuated: 1 of leg1, expected 3, one a joint"),
         ({"actuated": [[0.5, 0, 0], *FLAGS[1:]]}, "actuated: .* of leg1, expected 3 bools"),

@@ -283,9 +283,9 @@ def test_what_cannot_be_followed_is_marked(opm, record, tmp_path):
 
     listed = [value for name, value in recorded.metadata.items() if name.startswith("violation.")]
     assert len(listed) == answer["violation_count"]
-    for told, written in zip(answer["violations"], listed):
-        assert {key: str(value) for key, value in told.items()}.keys() == written.keys()
-        assert float(written["start"]) == told["start"]
+    for violation, written in zip(answer["violations"], listed):
+        assert {key: str(value) for key, value in violation.items()}.keys() == written.keys()
+        assert float(written["start"]) == violation["start"]
     lines = [(time, log.message) for time, log in recorded.topics["/violations"]]
     begins = [time for time, line in lines if line.startswith("leg4: out of reach")]
     assert [round((time - START) / 1e9, 6) for time in begins] == [round(start, 6)]

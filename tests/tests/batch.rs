@@ -123,7 +123,7 @@ fn shipped_mechanisms_are_solved_as_one_is() {
 
 /// The first invalid pose is reported by its index.
 #[test]
-fn a_wrong_pose_is_told() {
+fn an_invalid_pose_is_reported() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;
     let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
     let mut poses = vec![manipulator.task().home(); 100];

@@ -153,9 +153,9 @@ fn it_ends_at_a_workspace_of_one_pose() {
 /// Without limits many workspaces are unbounded. The grid is then as large as the mechanism, and
 /// angles cover one revolution unless a helical joint counts revolutions.
 #[test]
-fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
+fn an_unbounded_workspace_is_reported_and_limited_to_the_mechanisms_size() {
     let mut rng = Rng::with_seed(31);
-    let mut told = 0;
+    let mut unbounded = 0;
     for pair in PAIRS {
         let options = Options { limited: 0.0, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
@@ -181,9 +181,9 @@ fn what_has_no_end_is_told_and_kept_to_the_mechanisms_size() {
                 // An angle that counts revolutions stays within one, rounded outward.
                 let most = if angle { 1.1 * TAU } else { far };
                 assert!(width < most, "{pair:?} {axis:?} {far}");
-                told += 1;
+                unbounded += 1;
             }
         }
     }
-    assert!(told > 10, "{told} coordinates without an end");
+    assert!(unbounded > 10, "{unbounded} coordinates without an end");
 }

@@ -174,7 +174,7 @@ fn angles_stay_on_their_branch_along_a_path() {
             }
         }
     }
-    assert!(turned > 100, "no path went further than half a turn from home");
+    assert!(turned > 100, "no path went further than pi from home");
 }
 
 /// `inverse_all` and `inverse` agree on every mode, including the legs out of reach and their reach

@@ -111,7 +111,7 @@ fn the_whole_is_what_both_sections_reach() {
 /// The lower section alone as a grid with its imaginary joints as axes, compared with each leg
 /// alone.
 #[test]
-fn a_grid_of_the_lower_section_has_its_cuts_for_axes() {
+fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
     let mut rng = Rng::with_seed(51);
     let (mut poses, mut partly) = (0, 0);
     for round in 0..30 {

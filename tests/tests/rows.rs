@@ -220,7 +220,7 @@ fn holes_overlap() {
 
 /// Legs that are independent of the slice, in one of two ways.
 #[test]
-fn ways_of_legs_that_follow_alike_are_joined() {
+fn legs_independent_of_the_slice_are_joined() {
     let mut rng = Rng::with_seed(25);
     let (mut judged, mut reachable) = (0, 0);
     while judged < 60 {
@@ -312,12 +312,12 @@ fn fine_grids_are_no_exception() {
 /// Rows that touch the boundary of a ring in a pose, to the last digits: the root that gives the
 /// row's ends is then only rounding, so the chains decide.
 #[test]
-fn rows_that_touch_a_rim_are_no_exception() {
+fn rows_that_touch_a_boundary_are_no_exception() {
     const STEP: f64 = 1e-4;
     /// Rows on both sides of the boundary.
     const ROWS: f64 = 40.0;
     let mut rng = Rng::with_seed(24);
-    let (mut judged, mut parted, mut alike) = (0, 0, 0);
+    let (mut judged, mut parted, mut independent) = (0, 0, 0);
     for round in 0..3000 {
         let pair = [PAIRS[0], PAIRS[3]][round % 2];
         let options = Options { limited: 0.0, balls: true };
@@ -364,11 +364,13 @@ fn rows_that_touch_a_rim_are_no_exception() {
             judged += 1;
             let part = 0 < expected && expected < grid.poses();
             parted += u32::from(part);
-            alike += u32::from(part && way.is_alike());
+            independent += u32::from(part && way.is_alike());
         }
     }
-    println!("{judged} grids, {parted} of them in part, {alike} of legs that follow alike");
-    assert!(parted > 400 && alike > 70, "{parted} and {alike} of {judged}");
+    println!(
+        "{judged} grids, {parted} of them in part, {independent} with legs independent of the slice"
+    );
+    assert!(parted > 400 && independent > 70, "{parted} and {independent} of {judged}");
 }
 
 /// How near the highest point of a disc is approximated before it is searched for.

@@ -151,13 +151,14 @@ fn what_is_violated_is_reported_and_nothing_else() {
                         continue;
                     }
                     let within = of.clone().find(|v| (v.start..=v.end).contains(time));
-                    let told = violated.iter().find(|(g, _)| g == gauge).map(|(_, amount)| *amount);
+                    let reported =
+                        violated.iter().find(|(g, _)| g == gauge).map(|(_, amount)| *amount);
                     assert_eq!(
                         within.is_some(),
-                        told.is_some(),
+                        reported.is_some(),
                         "{pair:?} {gauge:?} at {time}: {of:?}"
                     );
-                    if let (Some(within), Some(amount)) = (within, told)
+                    if let (Some(within), Some(amount)) = (within, reported)
                         && within.quantity.is_some()
                         && matches!(gauge, Gauge::Limit { .. })
                     {
@@ -170,7 +171,7 @@ fn what_is_violated_is_reported_and_nothing_else() {
 
             for (i, section) in [Section::Upper, Section::Lower].into_iter().enumerate() {
                 let gauge = Gauge::Parallel { part: Part::Section(section) };
-                let told: Vec<f64> =
+                let reported: Vec<f64> =
                     found.iter().filter(|v| v.gauge == gauge).map(|v| v.start).collect();
                 for pair in seen.windows(2) {
                     let [Some(before), Some(after)] = [pair[0].signs[i], pair[1].signs[i]] else {
@@ -179,7 +180,11 @@ fn what_is_violated_is_reported_and_nothing_else() {
                     if before * after < 0.0 {
                         crossings += 1;
                         let near = |t: &f64| *t > pair[0].time - STEP && *t < pair[1].time + STEP;
-                        assert!(told.iter().any(near), "{section} near {}: {told:?}", pair[0].time);
+                        assert!(
+                            reported.iter().any(near),
+                            "{section} near {}: {reported:?}",
+                            pair[0].time
+                        );
                     }
                 }
             }
@@ -192,7 +197,7 @@ fn what_is_violated_is_reported_and_nothing_else() {
 /// Passages through singularities are at the same times whatever the sample rate, and each is
 /// reported once, also if a sample before it is so near that its measure counts as zero.
 #[test]
-fn a_passage_through_a_singularity_is_told_once() {
+fn a_passage_through_a_singularity_is_reported_once() {
     let manipulator = shipped("double-spherical-5dof");
     let text = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\nduration = 4\n\
         rate = 200\n[coordinates]\n\

@@ -176,7 +176,7 @@ fn a_wrong_motion_is_told_with_its_places() {
     trajectory(PLANO, &motion, &[]).fails(
         1,
         &[
-            "m.toml:4:12: `duration` is 0, expected a number of seconds, above 0",
+            "m.toml:4:12: `duration` is 0, expected a number of seconds above 0",
             "m.toml:5:1: unknown key `speed`",
             "m.toml:6:8: `mode` is \"+\"",
             "m.toml:8:1: unknown key `yaw`",

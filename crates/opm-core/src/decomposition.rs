@@ -130,7 +130,7 @@ pub enum DecomposeError {
         "no partial subspaces (lambda = {lambda}, mobility N = {mobility}){}; opm needs legs that \
          split between two subgroups of less than {lambda} dimensions that share a one-parameter \
          motion{}",
-        subspace.map(|group| format!(": {}", one_group(&group))).unwrap_or_default(),
+        subspace.as_deref().map(|group| format!(": {}", one_group(group))).unwrap_or_default(),
         odd.as_ref().zip(miss.as_ref()).map(|([leg, joint], miss)| format!(
             "; without joint {joint} of leg {leg} there would be such a split: {miss}"
         )).unwrap_or_default()
@@ -144,10 +144,10 @@ pub enum DecomposeError {
         /// one.
         odd: Option<[String; 2]>,
         /// How far that joint is from the section that it would belong to.
-        miss: Option<JointMiss>,
+        miss: Option<Box<JointMiss>>,
         /// The group in which all legs move together; `None` if the span of all joint screws is not
         /// a subgroup.
-        subspace: Option<SubspaceClass>,
+        subspace: Option<Box<SubspaceClass>>,
     },
 }
 
@@ -224,7 +224,8 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
     if found.is_empty() {
         let (odd, miss) = odd_joint(mechanism, mobility).unzip();
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
-        let subspace = MotionSubspace::span(frame(mechanism), &screws).class();
+        let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
+        let miss = miss.map(Box::new);
         return Err(DecomposeError::NoPartialSubspaces { lambda, mobility, odd, miss, subspace });
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));

@@ -194,8 +194,8 @@ proptest! {
         // out.
         let first = (at[1] - at[0]).norm();
         let distance = (wrist - at[0]).norm();
-        let rim = (distance - (first + length).abs()).abs().min((distance - (first - length).abs()).abs());
-        prop_assume!(rim > 1e-5);
+        let margin = (distance - (first + length).abs()).abs().min((distance - (first - length).abs()).abs());
+        prop_assume!(margin > 1e-5);
         prop_assert_eq!(branches, crossings);
     }
 }
@@ -336,7 +336,7 @@ fn sliders_next_to_parallel_close() {
 }
 
 #[test]
-fn the_rim_is_inside_and_both_branches_meet_there() {
+fn the_boundary_is_inside_and_both_branches_meet_there() {
     let revolute = |x: f64| PlanarJoint::Revolute { at: Complex::new(x, 0.0), reversed: false };
     let joints = [revolute(0.0), revolute(0.1), revolute(0.3)];
     let chain = PlanarChain::new(joints).unwrap();

@@ -118,7 +118,7 @@ fn parallel_singularities_are_found() {
 /// At the boundary of a leg's reach two working modes coincide, and rounding does not lose the
 /// pose.
 #[test]
-fn the_rim_of_reach_is_inside() {
+fn the_boundary_of_reach_is_inside() {
     let mut rng = Rng::with_seed(12);
     let m = example("plano-spherical-5dof");
     let home = m.task().home();

@@ -353,7 +353,7 @@ fn limits_choose_the_turn_and_are_reported() {
 }
 
 #[test]
-fn other_mechanisms_are_told_what_a_linkage_is() {
+fn other_mechanisms_are_refused_with_what_a_linkage_is() {
     for (name, obstacle) in [
         ("plano-spherical-5dof", Obstacle::Legs(4)),
         ("translational-helical-3dof", Obstacle::Legs(3)),
@@ -370,7 +370,7 @@ fn other_mechanisms_are_told_what_a_linkage_is() {
 }
 
 #[test]
-fn loops_of_other_joints_are_told_what_a_linkage_is() {
+fn loops_of_other_joints_are_refused_with_what_a_linkage_is() {
     let refused = |legs: [Vec<Joint>; 2]| {
         let mut mechanism = shipped("bennett-double-spherical-6r");
         mechanism.legs = legs.map(|joints| Leg::new(joints[0].name.clone(), joints)).into();

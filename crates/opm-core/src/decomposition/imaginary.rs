@@ -127,8 +127,9 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The choice, leg by leg, is as large as the largest of all subsets that do what is asked;
-        /// in a planar section with the intersection motion along x, and a spherical one about z.
+        /// The choice, made leg by leg, is as large as the largest of all subsets that satisfy the
+        /// conditions: in a planar section with the intersection motion along x, and in a spherical
+        /// one with the intersection motion about z.
         #[test]
         fn no_subset_is_larger(
             spherical: bool,
@@ -148,7 +149,7 @@ mod tests {
             };
             let basis: Vec<_> = class.screws().iter().map(|s| s.to_vector()).collect();
             let shared: Vector6<f64> = basis.iter().map(|b| b * numbers.next()).sum();
-            // Some legs begin with a screw that they share, so that some sections move alone.
+            // Some legs begin with a common screw, so that some sections move on their own.
             let legs: Vec<Vec<Vector6<f64>>> = freedoms
                 .iter()
                 .zip(&coaxial)
@@ -176,7 +177,7 @@ mod tests {
                     chosen.map(|(_, &leg)| leg).collect()
                 })
                 .collect();
-            // Random sections are now and then all but singular: there, ranks are a matter of taste.
+            // A random section may be nearly singular; its ranks then depend on the tolerance.
             let clear = |s: &Vec<usize>| {
                 Svd::new(section.closure(s)).values.iter().all(|v| *v < 1e-12 || *v > 1e-3)
             };
@@ -194,7 +195,7 @@ mod tests {
             if choice.legs != candidates {
                 prop_assert_eq!(Some(choice.legs.len()), largest);
             } else if let Some(largest) = largest {
-                // Every candidate: as many as that, or more because fewer would miss motions.
+                // Every candidate is chosen: that many, or more because fewer would miss motions.
                 let all = section.mobility(&candidates);
                 let misses = f0 + largest < n.min(all.saturating_sub(1));
                 prop_assert!(largest == candidates.len() || misses);

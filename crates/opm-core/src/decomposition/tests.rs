@@ -139,7 +139,7 @@ fn planar_and_cylindrical_subspaces() {
 #[test]
 fn a_gough_platform_has_no_partial_subspaces() {
     let error = decompose(&gough(&mut Numbers::new(1))).unwrap_err();
-    let subspace = Some(SubspaceClass::Full);
+    let subspace = Some(Box::new(SubspaceClass::Full));
     let expected = DecomposeError::NoPartialSubspaces {
         lambda: 6,
         mobility: 6,

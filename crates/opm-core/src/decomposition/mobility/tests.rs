@@ -89,7 +89,7 @@ fn links_in_line_are_a_parallel_singularity() {
 
 /// The link a1 is perpendicular to its slider and the leg is stretched: its joints are dependent.
 #[test]
-fn a_link_square_to_its_slider_is_a_serial_singularity() {
+fn a_link_perpendicular_to_its_slider_is_a_serial_singularity() {
     let mut p = PlanoSpherical::default();
     let (_, theta) = p.upper(0).unwrap();
     p.h = p.a2 * (theta - p.alpha[0]).cos() + p.a1;

@@ -103,7 +103,7 @@ impl Parameter<'_> {
         let size = |value, quantity| checks::size(checks::finite(value)?, quantity, FileUnits::SI);
         match (&mut self.target, value) {
             (ParameterRef::Number(quantity, target), Number(value)) => {
-                **target = size(value, *quantity)?
+                **target = size(value, *quantity)?;
             }
             (ParameterRef::Optional(quantity, target), Number(value)) => {
                 **target = Some(size(value, *quantity)?);

@@ -90,7 +90,7 @@ fn every_parameter_is_listed_and_can_be_set() {
 }
 
 #[test]
-fn every_problem_is_told_with_its_parameter() {
+fn every_problem_is_reported_with_its_parameter() {
     let paper = family("plano-spherical-5dof");
     let problems = paper
         .with([
@@ -129,7 +129,7 @@ fn every_problem_is_told_with_its_parameter() {
 }
 
 #[test]
-fn what_does_not_assemble_is_told_by_leg() {
+fn what_does_not_assemble_is_reported_by_leg() {
     let paper = family("plano-spherical-5dof").with([("a1", Number(-1.0)), ("b1", Number(9.0))]);
     let paper = paper.unwrap();
     let found = paper.explain(&paper.assemble().unwrap_err()).problems;

@@ -146,7 +146,7 @@ proptest! {
 
 /// Each problem is reported for its own leg, in the words of the file.
 #[test]
-fn every_problem_is_told() {
+fn every_problem_is_reported() {
     let mut family = shipped();
     family.slider_legs[0].l = 0.1;
     family.slider_legs[1].a1 = -1.0;
