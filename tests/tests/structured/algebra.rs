@@ -45,7 +45,7 @@ fn balls_measure_rotation_vectors() {
             for angle in angles() {
                 let turn = matrix(&axis, angle);
                 let amounts = ball.inverse(&turn);
-                let vector = amounts.map(|amount| amount.value());
+                let vector = amounts.map(opm_core::chain::Amount::value);
                 let length = Vector3::from(vector).norm();
                 assert!(length <= PI + ROUNDING, "{axis}{angle}: {vector:?}");
                 let (expected, found) = (frame * turn * frame.transpose(), Vector3::from(vector));

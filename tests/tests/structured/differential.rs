@@ -11,14 +11,14 @@ const OFF: [f64; 2] = [1e-7, 1e-5];
 /// Compares the two where differences are sure of themselves, and counts these.
 fn compare(m: &Manipulator, pose: &[f64], mode: Mode, rates: &[f64]) -> usize {
     let mut at = m.solution();
-    if !m.inverse(pose, mode, &mut at).unwrap() {
+    if m.inverse(pose, mode, &mut at).unwrap().is_none() {
         return 0;
     }
     let through = |t: f64| {
         let mut moved = at.clone();
         let there: Vec<f64> = pose.iter().zip(rates).map(|(q, r)| q + t * r).collect();
-        let reached = m.inverse_near(&there, mode, &mut moved).unwrap();
-        reached.then(|| [moved.joints, moved.imaginary].concat())
+        let reached = m.inverse_near(&there, mode, &mut moved).unwrap().is_some();
+        reached.then(|| [moved.joints(), moved.imaginary()].concat())
     };
     let Some(differences) = derivatives(1e-2, through) else { return 0 };
     let mut motion = m.motion();

@@ -16,10 +16,10 @@ const SAME: f64 = 1e-6;
 fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
     let name = &m.mechanism().name;
     let mut at = m.solution();
-    if !m.inverse(pose, mode, &mut at).unwrap() {
+    if m.inverse(pose, mode, &mut at).unwrap().is_none() {
         return [0, 0];
     }
-    let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints[i]).collect();
+    let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints()[i]).collect();
     let target = m.task().displacement(pose);
     let Ok(found) = m.forward(&actuated) else { return [0, 0] };
     for a in &found.list {
@@ -86,13 +86,13 @@ fn steps_from_structured_poses_arrive() {
             let start = pose(&mut rng, &m);
             let aim: Vec<f64> = start.iter().map(|q| q + 0.004 * (rng.f64() - 0.5)).collect();
             let (mut at, mode) = (m.solution(), m.home_mode());
-            if !m.inverse(&start, mode, &mut at).unwrap()
-                || !m.inverse(&aim, mode, &mut at).unwrap()
+            if m.inverse(&start, mode, &mut at).unwrap().is_none()
+                || m.inverse(&aim, mode, &mut at).unwrap().is_none()
             {
                 continue;
             }
             tried += 1;
-            let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints[i]).collect();
+            let actuated: Vec<f64> = m.actuated().iter().map(|&i| at.joints()[i]).collect();
             if let Ok(found) = m.forward_near(&actuated, &start, mode) {
                 arrived += 1;
                 let off = gap(&m, &found.joints, &m.task().displacement(&found.pose));

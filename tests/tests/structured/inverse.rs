@@ -1,7 +1,7 @@
 //! Inverse kinematics at structured poses: what is found closes the legs as they stand in the mechanism.
 
 use fastrand::Rng;
-use opm_core::manipulator::{Answers, Manipulator, Mode};
+use opm_core::manipulator::{BatchOutput, Manipulator, Mode};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_tests::structured::{gap, manipulators, pose, quarter_turns};
 
@@ -12,24 +12,24 @@ const CLOSES: f64 = 1e-7;
 fn check(m: &Manipulator, pose: &[f64]) -> usize {
     let name = &m.mechanism().name;
     let (mut all, mut picked, mut alone) = (m.all_modes(), m.solution(), m.solution());
-    let mut drives = m.drives();
-    let reached = m.inverse_all(pose, &mut all).unwrap();
+    let mut drives = m.actuated_joints();
+    let reached = m.inverse_all(pose, &mut all).unwrap().is_some();
     let modes: Vec<Mode> = all.modes(m).collect();
     assert_eq!(reached, !modes.is_empty(), "{name} {pose:?}");
     let target = m.task().displacement(pose);
     for &mode in &modes {
-        assert!(m.pick(&all, mode, &mut picked), "{name} {pose:?}");
-        assert!(m.inverse(pose, mode, &mut alone).unwrap(), "{name} {pose:?}");
-        assert_eq!((&picked.joints, &picked.imaginary), (&alone.joints, &alone.imaginary));
-        assert!(m.inverse_drives(pose, mode, &mut drives).unwrap(), "{name} {pose:?}");
-        let actuated: Vec<f64> = m.actuated().iter().map(|&i| alone.joints[i]).collect();
-        assert_eq!((drives.actuated.clone(), &drives.imaginary), (actuated, &alone.imaginary));
-        let off = gap(m, &alone.joints, &target);
+        assert!(m.solution_in_mode(&all, mode, &mut picked).is_some(), "{name} {pose:?}");
+        assert!(m.inverse(pose, mode, &mut alone).unwrap().is_some(), "{name} {pose:?}");
+        assert_eq!((&picked.joints(), &picked.imaginary()), (&alone.joints(), &alone.imaginary()));
+        assert!(m.inverse_actuated(pose, mode, &mut drives).unwrap().is_some(), "{name} {pose:?}");
+        let actuated: Vec<f64> = m.actuated().iter().map(|&i| alone.joints()[i]).collect();
+        assert_eq!((drives.actuated(), drives.imaginary()), (&actuated[..], alone.imaginary()));
+        let off = gap(m, alone.joints(), &target);
         assert!(off < CLOSES, "{name} {pose:?} {}: off by {off:e}", m.format_mode(mode));
         // From where it is, nothing moves.
-        let before = alone.joints.clone();
-        assert!(m.inverse_near(pose, mode, &mut alone).unwrap());
-        let moved = before.iter().zip(&alone.joints).map(|(a, b)| (a - b).abs());
+        let before = alone.joints().to_vec();
+        assert!(m.inverse_near(pose, mode, &mut alone).unwrap().is_some());
+        let moved = before.iter().zip(alone.joints()).map(|(a, b)| (a - b).abs());
         assert!(moved.fold(0.0, f64::max) < 1e-9, "{name} {pose:?}");
     }
     modes.len()
@@ -40,7 +40,7 @@ fn check_many(m: &Manipulator, poses: &[Vec<f64>], mode: Mode) {
     let (joints, imaginary) = (m.coordinates().len(), m.imaginary().len());
     let mut out = (vec![0.0; poses.len() * joints], vec![0.0; poses.len() * imaginary]);
     let (mut reachable, mut within) = (vec![false; poses.len()], vec![false; poses.len()]);
-    let mut answers = Answers {
+    let mut answers = BatchOutput {
         joints: &mut out.0,
         imaginary: &mut out.1,
         reachable: &mut reachable,
@@ -50,14 +50,14 @@ fn check_many(m: &Manipulator, poses: &[Vec<f64>], mode: Mode) {
     let mut solution = m.solution();
     for (row, pose) in poses.iter().enumerate() {
         let name = &m.mechanism().name;
-        let reached = m.inverse(pose, mode, &mut solution).unwrap();
+        let reached = m.inverse(pose, mode, &mut solution).unwrap().is_some();
         assert_eq!(reachable[row], reached, "{name} {pose:?}");
         if reached {
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
             let found = &out.0[row * joints..][..joints];
-            assert_eq!(bits(found), bits(&solution.joints), "{name} {pose:?}");
+            assert_eq!(bits(found), bits(solution.joints()), "{name} {pose:?}");
             let found = &out.1[row * imaginary..][..imaginary];
-            assert_eq!(bits(found), bits(&solution.imaginary), "{name} {pose:?}");
+            assert_eq!(bits(found), bits(solution.imaginary()), "{name} {pose:?}");
         }
     }
 }
@@ -94,8 +94,8 @@ fn solutions_close_in_every_mode() {
 fn home_is_home() {
     for m in manipulators() {
         let mut solution = m.solution();
-        assert!(m.inverse(&m.task().home(), m.home_mode(), &mut solution).unwrap());
-        for (c, q) in m.coordinates().iter().zip(&solution.joints) {
+        assert!(m.inverse(&m.task().home(), m.home_mode(), &mut solution).unwrap().is_some());
+        for (c, q) in m.coordinates().iter().zip(solution.joints()) {
             assert!((c.home - q).abs() < 1e-7, "{} {}: {q}", m.mechanism().name, c.name);
         }
     }

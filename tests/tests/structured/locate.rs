@@ -24,9 +24,9 @@ fn there_and_back(m: &Manipulator, pose: &[f64]) {
     let found = m.locate(&target).unwrap_or_else(|e| panic!("{name} {pose:?}: {e}"));
     let off = apart(m, &m.task().displacement(&found), &target);
     assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
-    let target = m.platform_pose(pose);
+    let target = m.platform_pose(pose).unwrap();
     let found = m.locate_platform(&target).unwrap_or_else(|e| panic!("{name} {pose:?}: {e}"));
-    let off = apart(m, &m.platform_pose(&found), &target);
+    let off = apart(m, &m.platform_pose(&found).unwrap(), &target);
     assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
 }
 
