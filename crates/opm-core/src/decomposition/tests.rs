@@ -216,7 +216,7 @@ fn a_loose_platform_is_told_with_its_motion() {
         panic!("{error}")
     };
     assert_eq!(free.len(), 1);
-    // The upper arm's end can only turn about its base, elbow locked no more: P moves square to
+    // The upper arm's end can only turn about its base, elbow locked no more: P moves perpendicular to
     // the arm's outer link about the elbow.
     let motion = &free[0].screws()[0];
     let elbow = mechanism.legs[3].joints[1].point;

@@ -87,7 +87,7 @@ fn links_in_line_are_a_parallel_singularity() {
     assert!(error.to_string().contains(text), "{error}");
 }
 
-/// Link a1 square to its slider, the leg at full stretch: its joints are dependent.
+/// Link a1 perpendicular to its slider, the leg at full stretch: its joints are dependent.
 #[test]
 fn a_link_square_to_its_slider_is_a_serial_singularity() {
     let mut p = PlanoSpherical::default();

@@ -59,7 +59,7 @@ pub enum SubspaceClass {
         /// The point, metres.
         centre: Point3<f64>,
     },
-    /// Translations square to a direction and screw motions of one pitch about all its lines.
+    /// Translations perpendicular to a direction and screw motions of one pitch about all its lines.
     PlanarHelical {
         /// The direction.
         axis: Unit<Vector3<f64>>,
@@ -216,7 +216,7 @@ impl fmt::Display for SubspaceClass {
     }
 }
 
-/// Two directions square to one and to each other.
+/// Two directions perpendicular to one and to each other.
 fn across(axis: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let thin = axis.iamin();
     let u = Unit::new_normalize(axis.cross(&Vector3::ith(thin, 1.0)));
