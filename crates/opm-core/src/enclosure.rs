@@ -8,7 +8,7 @@
 //! put together by what holds whatever they have in common.
 //!
 //! The bounds hold for the poses that [`Manipulator::inverse`] calls reached and within limits, its
-//! allowances for rounding on a limit or on the rim of reach, 1e-12 of the numbers, included.
+//! allowances for rounding on a limit or on the boundary of reach, 1e-12 of the numbers, included.
 //!
 //! A box is even in the measure: coordinates are lengths and angles, but for `xi` and `nu`, which tilt an
 //! axis in a sphere. Of these a box is even in the cosine or sine, so that all its points weigh the same

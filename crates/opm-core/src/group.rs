@@ -1,8 +1,8 @@
 //! The displacement subgroups of SE(3) that a section of a leg can move in, and their algebra.
 //!
-//! Each subgroup is one file, which implements [`Subgroup`](subgroup::Subgroup) in a frame of its own
-//! ([`Subspace`]): displacements and twists, product, inverse, exponential, logarithm, action on points
-//! and on twists, and steps along the intersection motion.
+//! Each subgroup is one file, which implements the trait `Subgroup` in a frame of its own ([`Subspace`]):
+//! displacements and twists, product, inverse, exponential, logarithm, action on points and on twists,
+//! and steps along the intersection motion.
 //!
 //! | subgroup | file | displacement | twist |
 //! |---|---|---|---|
@@ -14,9 +14,9 @@
 //! A planar twist has the velocity of the point at the frame's origin; a twist of fewer than three
 //! numbers is padded with zeros.
 //!
-//! [`SubspaceKind`], [`Displacement`] and [`IntersectionMotion`] are the closed sets of all subgroups,
-//! matched exhaustively. A new subgroup is a new file and a variant of these three; the compiler names
-//! every place that has to know it. Objects of two different subgroups are never combined: what tries to
+//! [`SubspaceKind`], [`Displacement`], [`IntersectionMotion`] and [`Path`] are the closed sets of all
+//! subgroups, matched exhaustively. A new subgroup is a new file and a variant of these four; the compiler
+//! names every place that has to know it. Objects of two different subgroups are never combined: what tries to
 //! do so is a fault of the program, and panics in one place (`mismatch`).
 
 mod cylindrical;

@@ -11,7 +11,7 @@
 //! | cylindrical | `z` | `theta z` | `phi z` | `phi` |
 //! | translational plane | | `x y` | | `w` |
 //!
-//! `x y` move the reference point in the plane, `w` moves it square to `I`, `z` along the axis;
+//! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
 //! `theta phi` turn about the normal or the axis, `zeta xi psi` are Euler angles
 //! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
@@ -26,7 +26,7 @@
 //!   frames. It *points up*: positive z, of nearly level directions positive y, of those nearly along
 //!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
 //! * `x` is the base's x laid into the plane, or its y where x is within 6 degrees of the normal; in
-//!   a sphere likewise, into the plane square to `d`. `y` is a quarter turn ahead of it about the third
+//!   a sphere likewise, into the plane perpendicular to `d`. `y` is a quarter turn ahead of it about the third
 //!   direction.
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
@@ -193,7 +193,7 @@ pub enum FrameProblem {
         /// The line's.
         line: [f64; 3],
     },
-    /// It is not square to the normal or to the intersection motion.
+    /// It is not perpendicular to the normal or to the intersection motion.
     NotSquare {
         /// The direction given.
         given: [f64; 3],
@@ -257,7 +257,7 @@ impl Task {
     /// Frames and coordinates for a decomposition.
     ///
     /// # Errors
-    /// A subspace or an intersection motion that no chain covers, a positive direction square to
+    /// A subspace or an intersection motion that no chain covers, a positive direction perpendicular to
     /// that motion, a hint on a frame that does not fit the geometry, or a home value for a
     /// coordinate that there is not.
     pub fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, TaskError> {

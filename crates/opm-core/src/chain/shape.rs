@@ -67,7 +67,7 @@ impl Shape {
     }
 
     /// The region for targets that are turned by `rotation`, after every one of its points `z` has moved
-    /// to `scale · (z + shift)`; `None` where sliders are all but parallel.
+    /// to `scale · (z + shift)`; `None` where sliders are nearly parallel.
     #[inline(always)]
     pub fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
         if let Some(Turn { reversed, limits }) = &self.turn {

@@ -12,9 +12,9 @@ pub struct SphericalChain {
     axes: [Vector3<f64>; 3],
     /// `a₁·a₂` and `a₂·a₃`: cosines of the arcs of the two links.
     cosines: [f64; 2],
-    /// `a₂` square to `a₁`, and `a₁ × a₂`.
+    /// `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
     second_on_first: [Vector3<f64>; 2],
-    /// `a₃` square to `a₂`, and `a₂ × a₃`, both over the square of their length: on `a₃` as it turns
+    /// `a₃` perpendicular to `a₂`, and `a₂ × a₃`, both over the square of their length: on `a₃` as it turns
     /// about `a₂`, the cosine and the sine.
     third_on_second: [Vector3<f64>; 2],
     /// Two directions that make a right-handed triad with `a₃`.
@@ -53,7 +53,7 @@ impl SphericalChain {
     #[inline]
     pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
-        if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_rim(w) }
+        if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_boundary(w) }
     }
 
     #[inline(always)]
@@ -64,10 +64,10 @@ impl SphericalChain {
         Equation { a, b, d, square: a * a + b * b }
     }
 
-    /// On the rim, or out of reach. Where `w` lies on the first axis, in reach only because the
+    /// On the boundary of reach, or out of reach. Where `w` lies on the first axis, in reach only because the
     /// links' arcs are equal or supplementary, the angle is free.
     #[cold]
-    fn first_at_rim(&self, w: &Vector3<f64>) -> Result<Complex<f64>, ReachDeficit> {
+    fn first_at_boundary(&self, w: &Vector3<f64>) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.d.is_nan() || equation.has_none() {
             return Err(self.gap(w));
@@ -178,7 +178,7 @@ impl ClosedForm for SphericalChain {
         target: &Matrix3<f64>,
         _: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        let q1 = self.first_at_rim(&self.third_axis(target))?;
+        let q1 = self.first_at_boundary(&self.third_axis(target))?;
         Ok(self.with_first(target, q1))
     }
 }
@@ -197,7 +197,7 @@ impl Equation {
         (self.square > self.d * self.d) & (self.square > REACH_TOLERANCE * REACH_TOLERANCE)
     }
 
-    /// For certain: not even on the rim.
+    /// For certain: not even on the boundary of reach.
     #[inline(always)]
     fn has_none(&self) -> bool {
         self.d.abs() > self.square.sqrt() + REACH_TOLERANCE

@@ -74,7 +74,7 @@ impl Track {
     pub fn meetings(&self, other: &Self, size: f64) -> Option<Vec<Displacement>> {
         match (self, other) {
             (Self::Circle { centre: c, radius: a }, Self::Circle { centre: d, radius: b }) => {
-                // On the radical axis, which is square to the line of the centres.
+                // On the radical axis, which is perpendicular to the line of the centres.
                 let apart = d - c;
                 let square = apart.norm_sqr();
                 if square <= VERGE * VERGE * size * size {

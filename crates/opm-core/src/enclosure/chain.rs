@@ -222,7 +222,7 @@ impl Arm {
 struct Arcs {
     first: Vector3<f64>,
     third: Vector3<f64>,
-    /// `a₂` square to `a₁`, and `a₁ × a₂`.
+    /// `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
     second_on_first: [Vector3<f64>; 2],
     /// Of the arcs from `a₁` to `a₂` and from `a₂` to `a₃`.
     cosines: [f64; 2],

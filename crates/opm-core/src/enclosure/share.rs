@@ -7,7 +7,7 @@
 use super::affine::Affine;
 
 /// How far from the end of a range a quantity has to be to be on one side of it, as a share of the
-/// numbers: ten times what joint limits and the rim of reach give way by.
+/// numbers: ten times what joint limits and the boundary of reach give way by.
 const MARGIN: f64 = 1e-11;
 
 /// Rounding of the closed form of a share.

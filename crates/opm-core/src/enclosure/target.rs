@@ -52,7 +52,7 @@ pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
     v[0] * a.x + v[1] * a.y + v[2] * a.z
 }
 
-/// A [`Displacement`](crate::task::Displacement) over a box.
+/// A [`Displacement`](crate::group::Displacement) over a box.
 #[derive(Clone, Copy, Debug)]
 pub enum Target<const N: usize> {
     Planar(PlanarTarget<N>),

@@ -3,7 +3,7 @@
 //! Poses are solved a block at a time, step by step for all of the block: displacements, each leg's two
 //! chains, angles, limits. Every step is a loop over the block of what [`Manipulator::inverse`] does for
 //! one pose, compiled for the processor at hand, and gives the same to the bit. What is not straight
-//! arithmetic (a pose on the rim of a sphere, an angle of a million radians) is rare: such poses are
+//! arithmetic (a pose on the boundary of reach of a sphere, an angle of a million radians) is rare: such poses are
 //! marked, and left to [`Manipulator::inverse`].
 
 mod lanes;

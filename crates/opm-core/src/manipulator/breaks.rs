@@ -1,10 +1,11 @@
 //! Where along a row of a sweep a leg may begin or cease to follow.
 //!
 //! In a row all coordinates but the first are fixed, and the target of the leg's lower chain moves along
-//! a [`Path`](crate::chain::surface::Path). The leg changes its mind only where that meets the [`Surface`]s of its chain: a joint at
-//! its limit, two branches that meet. Of a leg whose lower section takes the cut, and whose upper section
-//! has a say, what the upper section allows is arcs of the cut's amount, since in a slice that is all that
-//! moves its target; their ends are limits of the cut, the last joint of the lower chain.
+//! a [`Path`](crate::group::Path). What the leg does changes only where the path meets the [`Surface`]s of
+//! its chain: a joint at its limit, two branches that meet. A leg may take the cut in its lower section,
+//! with an upper section that constrains it. In a slice only the cut moves the upper section's target, so
+//! that what the upper section allows is arcs of the cut's displacement. Their ends are limits of the cut,
+//! the last joint of the lower chain.
 
 use super::leg::CompiledSection;
 use super::{Follow, Manipulator};

@@ -53,7 +53,7 @@ pub(crate) struct Slot {
 #[derive(Clone, Debug)]
 pub(crate) struct CompiledSection {
     pub chain: Chain,
-    /// The chain's screws at home: see [`crate::chain::screws`].
+    /// The chain's screws at home: see `chain::screws`.
     pub screws: [Vector3<f64>; 3],
     /// What the determinant of the screws is measured in.
     pub scale: f64,

@@ -54,7 +54,7 @@ impl Screws {
         self.kind.bracket(&t1, &(t2 + t3)) + self.kind.bracket(&t2, &t3)
     }
 
-    /// The reciprocal screws, each square to the other two, not yet divided by the determinant, which
+    /// The reciprocal screws, each perpendicular to the other two, not yet divided by the determinant, which
     /// is the second: `sᵢ · rⱼ = δᵢⱼ det`.
     #[inline]
     pub fn reciprocal(&self) -> ([LocalTwist; 3], f64) {

@@ -29,7 +29,7 @@ impl Prp {
         Shape::sheared(*self, ranges)
     }
 
-    /// The parallelogram; `None` where the slides come to be all but parallel.
+    /// The parallelogram; `None` where the slides come to be nearly parallel.
     pub(in crate::chain) fn region(
         &self,
         rotation: Complex<f64>,

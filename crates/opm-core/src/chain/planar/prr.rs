@@ -36,7 +36,7 @@ impl Prr {
         (local.re, self.link_square - local.im * local.im)
     }
 
-    /// Whether the link can leave this square along the slide, the rim included.
+    /// Whether the link can leave this square along the slide, the boundary of reach included.
     #[inline]
     fn closes(&self, square: f64) -> bool {
         square >= -2.0 * REACH_TOLERANCE * self.link_square

@@ -13,7 +13,7 @@ use nalgebra::Complex;
 pub struct Rpr {
     pivots: [Pivot; 2],
     slide: Complex<f64>,
-    /// From the inner to the outer pivot at home, along the slide (re) and square to it (im).
+    /// From the inner to the outer pivot at home, along the slide (re) and perpendicular to it (im).
     offset: Complex<f64>,
 }
 

@@ -45,7 +45,7 @@ impl Rrr {
         ((wrist - self.pivots[0].at).norm_sqr() / 2.0 - self.mean_square) / self.product
     }
 
-    /// Whether the elbow can take this cosine, the rim included.
+    /// Whether the elbow can take this cosine, the boundary of reach included.
     #[inline]
     fn closes(cosine: f64) -> bool {
         cosine.abs() <= 1.0 + REACH_TOLERANCE
