@@ -442,6 +442,8 @@ mod tests {
                     assert!(line == points, "{color} {column:?} {count}");
                 }
             }
+            assert!(packer.pack_line(&row[1..], Some(0), &[1.0], &mut vec![]).is_err(), "{color}");
+            assert!(packer.pack_line(&row, Some(row.len()), &[1.0], &mut vec![]).is_err());
             let values = [1.0, f64::NAN];
             assert!(packer.pack_line(&row, Some(0), &values, &mut vec![]).is_err(), "{color}");
         }

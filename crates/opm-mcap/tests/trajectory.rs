@@ -247,3 +247,21 @@ fn what_does_not_fit_ends_the_recording() {
     let error = TrajectoryRecorder::create(&path, &twice).err().unwrap();
     assert!(error.to_string().contains("joint a is given twice"), "{error}");
 }
+
+/// Rates that a recording has no room for are no reason to panic: without values they are left out, with
+/// values they are refused.
+#[test]
+fn rates_in_a_recording_without_rates() {
+    let mut bytes = Vec::new();
+    let trajectory = trajectory(&[]);
+    let mut recorder = TrajectoryRecorder::new(Cursor::new(&mut bytes), &trajectory).unwrap();
+    let push = |recorder: &mut TrajectoryRecorder<_>, rates| {
+        let joints = &[1.0, 2.0, 3.0];
+        let posture = Posture { joints, rates: Some(rates), ..Posture::default() };
+        recorder.push(0, &Sample { posture: Some(posture), ..Sample::default() })
+    };
+    push(&mut recorder, Rates::default()).unwrap();
+    let rates = Rates { velocities: &[0.0; 3], ..Rates::default() };
+    let error = push(&mut recorder, rates).unwrap_err();
+    assert!(matches!(error, RecordError::Row { values: 3, columns: 0 }), "{error}");
+}

@@ -126,7 +126,7 @@ impl Range {
     }
 
     /// Whether it is an Euler angle about the intersection motion or the platform's axis.
-    fn turns(&self) -> bool {
+    fn is_euler_angle(&self) -> bool {
         matches!(self.extent.name, "zeta" | "psi")
     }
 
@@ -239,7 +239,7 @@ impl<'a> Search<'a> {
             });
             for (number, range) in found.iter_mut().enumerate() {
                 let least = FOLLOWED * range.width();
-                if range.extent.unbounded || least == 0.0 || level && range.turns() {
+                if range.extent.unbounded || least == 0.0 || level && range.is_euler_angle() {
                     continue;
                 }
                 let mut ends = [0.0; 2];

@@ -30,8 +30,8 @@ pub fn default_ranges(
     let coordinates = sections.coordinates(manipulator);
     if sections == Sections::Upper {
         for c in &coordinates {
-            let turns = c.quantity == Quantity::Angle && !c.counts_turns;
-            if turns && given.iter().all(|over| over.name != c.name) {
+            let periodic = c.quantity == Quantity::Angle && !c.counts_turns;
+            if periodic && given.iter().all(|over| over.name != c.name) {
                 let [min, max] = one_turn(&c.name, c.home);
                 over.push(CoordinateRange::new(&*c.name, min, max));
             }

@@ -15,8 +15,8 @@ pub const ROWS: usize = 64;
 /// A number of rows that vectors divide.
 const LANES: usize = 8;
 
-/// How near to a pose the end of an interval may come, in steps, and still tell on which side of it
-/// the pose is; the ends are right to within this.
+/// An end of an interval that is nearer to a pose than this, in steps, does not decide on which side of it
+/// the pose is. Ends are right to within this.
 const TIE: f64 = 1e-6;
 
 /// Ends that are rounded by more than this many steps are of no use.
@@ -192,8 +192,8 @@ pub struct ClippedRows {
     /// The number of poses of each row that is counted.
     counts: [f64; ROWS],
     total: u64,
-    /// What some of the regions have in common, and what one more leaves of it, by turns: a loop that writes
-    /// over what it reads is compiled to stores under a mask, which are slow.
+    /// What some of the regions have in common, and what one more leaves of it, in alternation: a loop that
+    /// writes over what it reads is compiled to stores under a mask, which are slow.
     partial: [Intervals; 2],
 }
 
