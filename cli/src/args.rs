@@ -1,11 +1,12 @@
 //! Every argument of the command line; the doc comments are the help.
 
-use crate::kind::Kind;
-use crate::linkage::InputValue;
-use crate::plot::{PanelName, PictureSize};
+use crate::linkage::input::InputValue;
+use crate::plot::options::{PanelName, PictureSize};
 use crate::pose::{GridAxis, Number, OverAxis, Pose, SliceValue};
 use crate::transform::Transform;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+use opm_study::WorkspaceKind;
 use opm_workspace::measure::check_tolerance;
 use opm_workspace::{MOST_THREADS, Sections, Shard};
 use std::path::PathBuf;
@@ -15,6 +16,9 @@ const WIDEST: usize = 100;
 
 /// Boxes of a measure that no machine has the memory for.
 const MOST_BOXES: f64 = 1e12;
+
+/// The clock of a recording counts nanoseconds: at more samples a second they would coincide.
+const HIGHEST_RATE: f64 = 1e9;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
 ///
@@ -309,7 +313,7 @@ pub struct TrajectoryArgs {
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Samples a second, instead of those of the motion file; of a CSV file 100
-    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = crate::trajectory::rate)]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = rate)]
     pub rate: Option<f64>,
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
@@ -375,8 +379,8 @@ pub struct WorkspaceArgs {
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// What the workspace is of
-    #[arg(long, value_name = "KIND", value_enum, default_value = "grid")]
-    pub kind: Kind,
+    #[arg(long, value_name = "KIND", value_parser = kind(), default_value = "grid")]
+    pub kind: WorkspaceKind,
     /// Values of one task coordinate: MIN, MAX and how many, or one value alone
     #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
     pub grid: Vec<GridAxis>,
@@ -548,10 +552,25 @@ impl SectionName {
     }
 }
 
+/// Kinds of workspace by their names, which the help lists.
+fn kind() -> impl TypedValueParser<Value = WorkspaceKind> {
+    let value = |kind: WorkspaceKind| PossibleValue::new(kind.name()).help(kind.description());
+    let names = PossibleValuesParser::new(WorkspaceKind::ALL.map(value));
+    names.try_map(|name| name.parse::<WorkspaceKind>())
+}
+
 /// A share of a measure.
 fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().unwrap_or(f64::NAN);
     check_tolerance(number).map(|()| number).map_err(|expected| format!("{text:?}, {expected}"))
+}
+
+/// Reads a number of samples a second.
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if rate > 0.0 && rate <= HIGHEST_RATE => Ok(rate),
+        _ => Err(format!("expected a number of hertz above 0 and at most {HIGHEST_RATE:e}")),
+    }
 }
 
 /// A number of boxes.

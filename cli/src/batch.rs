@@ -2,14 +2,13 @@
 
 use crate::args::{Format, IkArgs, Output};
 use crate::failure::Failure;
-use crate::ik::Modes;
 use crate::lines::{Line, Lines};
 use crate::load::Loaded;
 use crate::pose::find;
 use crate::progress::{interruptible, watch};
 use crate::text::{count, short};
 use csv::{ErrorKind, WriterBuilder};
-use opm_core::manipulator::{AllModes, Drives, Manipulator, PoseError, Solution};
+use opm_core::manipulator::{AllModes, Drives, Manipulator, Mode, PoseError, Solution};
 use opm_mcap::{PartialFile, Sink};
 use opm_workspace::Progress;
 use serde::Serialize;
@@ -19,6 +18,13 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+
+/// Which working modes are asked for.
+#[derive(Clone, Copy)]
+pub enum Modes {
+    All,
+    One(Mode),
+}
 
 /// Bytes written at a time.
 const BUFFER: usize = 1 << 16;

@@ -1,9 +1,9 @@
 //! `opm decompose`: partial subspaces and imaginary joints.
 
 use crate::args::{DecomposeArgs, Output};
-use crate::failure::{Failure, chain};
+use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::text::{self, Table, short};
+use crate::text::{self, Table, chain, short};
 use nalgebra::{Point3, Vector3};
 use opm_core::decomposition::{Decomposition, Freedom, MAX_DECOMPOSITIONS, decompose};
 use opm_core::joint::Quantity;

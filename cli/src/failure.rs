@@ -1,7 +1,10 @@
 //! How a command ends when it does not end well.
 
+use opm_study::recording::{ShardError, ShardProblem};
+use opm_study::text::located;
+use opm_study::{RequestError, RequestOption, StudyError};
 use std::error::Error;
-use std::fmt::{Display, Write as _};
+use std::fmt::Display;
 use std::io::{self, ErrorKind, Write as _};
 
 /// Why a command ends early. Messages have one line a problem.
@@ -20,11 +23,7 @@ pub enum Failure {
 impl Failure {
     /// The work failed at `place`, for instance a file. An error that names it itself says it once.
     pub fn at(place: impl Display, error: &(dyn Error + '_)) -> Self {
-        let (place, text) = (place.to_string(), chain(error));
-        if text.split([' ', ':']).any(|word| word == place) {
-            return Self::Work(text);
-        }
-        Self::Work(format!("{place}: {text}"))
+        Self::Work(located(place, error))
     }
 
     /// A flag was given what it cannot take.
@@ -61,15 +60,52 @@ pub fn talk(message: &str) {
     }
 }
 
-/// An error and what caused it, on one line.
-pub fn chain(error: &(dyn Error + '_)) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let _ = write!(text, ": {cause}");
-        source = cause.source();
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Request(error) => error.into(),
+            StudyError::Cancelled
+            | StudyError::CancelledRecording { .. }
+            | StudyError::CancelledShard { .. } => Self::Interrupted(error.to_string()),
+            StudyError::Shard(error) => error.into(),
+            StudyError::Closed => Self::Closed,
+            _ => Self::Work(error.to_string()),
+        }
     }
-    text
+}
+
+impl From<RequestError> for Failure {
+    fn from(error: RequestError) -> Self {
+        Self::flag(flag(error.option()), error.problem(flag))
+    }
+}
+
+impl From<ShardError> for Failure {
+    fn from(error: ShardError) -> Self {
+        match error {
+            ShardError { file, problem: ShardProblem::NoShard } => {
+                Self::Work(format!("{file}: no shard of `opm workspace --shard`"))
+            }
+            error => Self::Work(error.to_string()),
+        }
+    }
+}
+
+/// The flag that an option of a request is.
+fn flag(option: RequestOption) -> &'static str {
+    match option {
+        RequestOption::Kind => "--kind",
+        RequestOption::Grid => "--grid",
+        RequestOption::Mode => "--mode",
+        RequestOption::MaxCondition => "--max-condition",
+        RequestOption::Length => "--length",
+        RequestOption::Conditioning => "--conditioning",
+        RequestOption::Axes => "--axes",
+        RequestOption::Scalars => "--scalars",
+        RequestOption::Color => "--color",
+        RequestOption::Output => "--output",
+        other => other.name(),
+    }
 }
 
 #[cfg(test)]

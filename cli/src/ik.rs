@@ -1,7 +1,7 @@
 //! `opm ik`: inverse kinematics.
 
 use crate::args::{IkArgs, Output};
-use crate::batch;
+use crate::batch::{self, Modes};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::named;
@@ -22,7 +22,7 @@ const MOST_CHOICES: u32 = 16;
 pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let manipulator = loaded.compile()?;
-    let modes = Modes::new(args, &manipulator)?;
+    let modes = modes(args, &manipulator)?;
     let located = match (&args.pose, &args.transform) {
         (Some(pose), _) => Located::Pose(pose.resolve(manipulator.task_coordinates())?),
         (None, Some(transform)) => transform.locate(&manipulator),
@@ -35,27 +35,19 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     output.print(&answer.json(), answer.text())
 }
 
-/// Which working modes are asked for.
-#[derive(Clone, Copy)]
-pub enum Modes {
-    All,
-    One(Mode),
-}
-
-impl Modes {
-    fn new(args: &IkArgs, manipulator: &Manipulator) -> Result<Self, Failure> {
-        if !args.all_modes {
-            return load::mode(manipulator, &args.mode).map(Self::One);
-        }
-        let choices = manipulator.choices();
-        if choices > MOST_CHOICES {
-            return Err(Failure::flag(
-                "--all-modes",
-                format!("2^{choices} working modes, at most 2^{MOST_CHOICES}; use --mode"),
-            ));
-        }
-        Ok(Self::All)
+/// The working modes that the flags ask for.
+fn modes(args: &IkArgs, manipulator: &Manipulator) -> Result<Modes, Failure> {
+    if !args.all_modes {
+        return load::mode(manipulator, &args.mode).map(Modes::One);
     }
+    let choices = manipulator.choices();
+    if choices > MOST_CHOICES {
+        return Err(Failure::flag(
+            "--all-modes",
+            format!("2^{choices} working modes, at most 2^{MOST_CHOICES}; use --mode"),
+        ));
+    }
+    Ok(Modes::All)
 }
 
 /// The joints at one pose.

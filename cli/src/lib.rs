@@ -1,11 +1,9 @@
 //! `opm`: kinematics and workspaces of overconstrained parallel manipulators, from a mechanism file.
 //!
-//! The program as a library: [`main`], so that the Python package can bring the command along, and
-//! [`recording`], so that both record alike.
+//! The program as a library: [`main`], so that the Python package can bring the command along.
 
 mod args;
 mod batch;
-mod cloud;
 mod completions;
 mod decompose;
 mod examples;
@@ -13,7 +11,6 @@ mod failure;
 mod fk;
 mod ik;
 mod inspect;
-mod kind;
 mod lines;
 mod linkage;
 mod load;
@@ -24,11 +21,6 @@ mod output;
 mod plot;
 mod pose;
 mod progress;
-mod record;
-pub mod recording;
-mod scene;
-mod shard;
-mod source;
 mod text;
 mod trajectory;
 mod transform;

@@ -1,12 +1,14 @@
 //! Mechanism files, by path or by the name of a shipped example.
 
-use crate::failure::{Failure, chain};
+use crate::failure::Failure;
+use crate::text::chain;
 use opm_core::decomposition::DecomposeError;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::{self, MechanismFile};
 use opm_core::task::{OddJoint, TaskError};
+use opm_study::recording::Attachment;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -83,6 +85,11 @@ pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Fa
 }
 
 impl Loaded {
+    /// The file, as a recording takes it along.
+    pub fn attachment(&self) -> Attachment<'_> {
+        Attachment { name: &self.file_name, text: &self.text }
+    }
+
     /// The mechanism compiled for inverse kinematics.
     pub fn compile(&self) -> Result<Manipulator, Failure> {
         Manipulator::new(self.file.mechanism.clone()).map_err(|error| {

@@ -5,10 +5,11 @@ use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::progress::{interruptible, watch, watch_boxes};
 use crate::text::{self, Table, count, short};
-use crate::workspace::threads;
+use crate::workspace::{modes, threads};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::number::readable;
+use opm_study::unit_product;
 use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, Over, Stop, measure, ranges};
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
@@ -25,10 +26,7 @@ const MOST_DIGITS: i32 = 15;
 pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let manipulator = loaded.compile()?;
-    let modes = match &*args.mode {
-        "any" => Modes::Any,
-        mode => Modes::One(load::mode(&manipulator, mode)?),
-    };
+    let modes = modes(&args.mode, &manipulator)?;
     let progress = interruptible()?;
     let pool = threads(args.threads)?;
     let domain = domain(args, output, &manipulator, modes, &pool, &progress)?;
@@ -120,7 +118,7 @@ impl Run<'_> {
             "value": found.value(),
             "lower": found.lower,
             "upper": found.upper,
-            "units": text::product(&self.domain.powers(), FileUnits::SI).0,
+            "units": unit_product(&self.domain.powers(), FileUnits::SI).0,
             "fraction": found.fraction(),
             "boxes": found.boxes,
             "seconds": seconds,
@@ -154,7 +152,7 @@ impl Run<'_> {
         }
         let _ = writeln!(text, "\n\n{axes}");
 
-        let (symbol, factor) = text::product(&self.domain.powers(), units);
+        let (symbol, factor) = unit_product(&self.domain.powers(), units);
         let ends = [found.value(), found.lower, found.upper];
         let decimals = |ends: [f64; 3]| resolving(ends[2] - ends[1], ends[2]);
         let measures = ends.map(|end| end / factor);

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::load;
 use opm_core::manipulator::Manipulator;
 use opm_core::motion::{Motion, examples, file, table};
+use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
 
 /// Longest table of poses: some millions of lines.
@@ -21,6 +22,13 @@ pub struct LoadedMotion {
     pub text: String,
     /// What it says.
     pub motion: Motion,
+}
+
+impl LoadedMotion {
+    /// The file, as a recording takes it along.
+    pub fn attachment(&self) -> Attachment<'_> {
+        Attachment { name: &self.file_name, text: &self.text }
+    }
 }
 
 /// Reads a motion: a table of poses where the name ends in `.csv`, a motion file otherwise. An existing

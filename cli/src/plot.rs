@@ -4,6 +4,8 @@ mod choice;
 mod cloud;
 mod layout;
 mod motion;
+pub mod options;
+mod sized;
 mod slices;
 mod source;
 mod traces;
@@ -12,68 +14,13 @@ mod workspace;
 
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
-use crate::pose::Misread;
 use crate::progress::interruptible;
-use clap::ValueEnum;
 use opm_mcap::{PartialFile, Sink};
-use opm_plot::{Drawing, Size, TooSmall, png, svg};
+use opm_plot::{Size, png, svg};
 use serde_json::json;
 use source::Source;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
-/// What `--panels` names: what is drawn, and of a motion what of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PanelName {
-    /// Task coordinates over time
-    Pose,
-    /// Imaginary joints: over time, or the values that they take in a workspace
-    Imaginary,
-    /// Actuated joints over time
-    Actuated,
-    /// Passive joints over time
-    Passive,
-    /// Condition number and singularity measures over time
-    Condition,
-    /// Of a motion: positions
-    Positions,
-    /// Of a motion: velocities, in a second column
-    Velocities,
-    /// Of a motion: accelerations, in a further column
-    Accelerations,
-    /// Slices of a workspace
-    Slices,
-}
-
-impl PanelName {
-    /// As it is given.
-    fn name(self) -> String {
-        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-    }
-}
-
-/// What `--size` gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PictureSize(Size);
-
-impl FromStr for PictureSize {
-    type Err = Misread;
-
-    fn from_str(text: &str) -> Result<Self, Misread> {
-        const MOST: u32 = opm_plot::MOST as u32;
-        let sides = text.split_once(['x', 'X', '×']);
-        let side = |side: &str| side.trim().parse().ok().filter(|side| (1..=MOST).contains(side));
-        match sides.map(|(width, height)| (side(width), side(height))) {
-            Some((Some(width), Some(height))) => {
-                Ok(Self(Size { width: width.into(), height: height.into() }))
-            }
-            _ => Err(Misread::new(format!(
-                "{text:?}, expected width and height up to {MOST} pixels, for example 900x600"
-            ))),
-        }
-    }
-}
 
 /// The formats.
 #[derive(Clone, Copy)]
@@ -141,19 +88,6 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
             output.print(&json, "")
         }
     }
-}
-
-/// Turns a figure into a picture of the size asked for.
-fn drawn(
-    args: &PlotArgs,
-    draw: impl FnOnce(Option<Size>) -> Result<Drawing, TooSmall>,
-) -> Result<Drawing, Failure> {
-    draw(args.size.map(|size| size.0)).map_err(|error| match args.size {
-        Some(PictureSize(Size { width, height })) => {
-            Failure::flag("--size", format!("{width}x{height}: {error}"))
-        }
-        None => Failure::Work(format!("{error}; choose fewer with --panels or --values")),
-    })
 }
 
 /// The file of the picture: opened before the work, so that a wrong path costs no time.

@@ -133,6 +133,12 @@ impl Number {
 }
 
 impl Number {
+    /// The characteristic length that `--length` gives.
+    pub fn characteristic_length(self) -> Result<f64, Failure> {
+        let length = self.value_of("the characteristic length", Quantity::Length);
+        length.map_err(|error| Failure::flag("--length", error))
+    }
+
     /// The value of what is called `name` and has no unit.
     pub fn bare(self, name: &str) -> Result<f64, Misread> {
         match self.quantity {

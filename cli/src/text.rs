@@ -1,5 +1,7 @@
 //! Text for people: aligned tables, and numbers in the units of a mechanism file.
 
+pub use opm_study::text::{chain, count};
+
 use opm_core::joint::Quantity;
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use std::fmt;
@@ -79,28 +81,9 @@ pub fn range([low, high]: [f64; 2], quantity: Quantity, units: FileUnits) -> Str
     format!("{} .. {}", number(low, quantity, units), number(high, quantity, units))
 }
 
-/// The unit of a product of so many values of each quantity, and how many of SI's it is.
-pub fn product(powers: &[(Quantity, usize)], units: FileUnits) -> (String, f64) {
-    let (mut symbols, mut factor) = (Vec::new(), 1.0);
-    for &(quantity, power) in powers.iter().filter(|(_, power)| *power > 0) {
-        let symbol = units.symbol(quantity);
-        symbols.push(if power == 1 { symbol.to_owned() } else { format!("{symbol}^{power}") });
-        factor *= units.factor(quantity).powi(power as i32);
-    }
-    (if symbols.is_empty() { "1".to_owned() } else { symbols.join(" ") }, factor)
-}
-
-/// A whole number with its digits in threes.
-pub fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::with_capacity(digits.len() * 4 / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+/// A number of things, told.
+pub fn plural(number: u64, what: &str) -> String {
+    format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })
 }
 
 /// A number to four significant digits.
@@ -146,10 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_and_shares_are_short() {
-        assert_eq!(count(0), "0");
-        assert_eq!(count(999), "999");
-        assert_eq!(count(9_600_001), "9,600,001");
+    fn shares_are_short() {
         assert_eq!(short(12.345_678), "12.35");
         assert_eq!(short(0.0), "0");
         assert_eq!(short(123_456.0), "123456");

@@ -11,6 +11,7 @@ use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, Measures, Motion, Singularities, VelocityError,
 };
+use opm_study::characteristic_length;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -20,7 +21,8 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let mode = load::mode(&manipulator, &args.mode)?;
     let pose = args.pose.resolve(manipulator.task_coordinates())?;
     let rates = args.rates.resolve_rates(manipulator.task_coordinates())?;
-    let length = characteristic_length(args.length, "--length", &manipulator)?;
+    let length = args.length.map(Number::characteristic_length).transpose()?;
+    let length = characteristic_length(length, &manipulator)?;
     let mut at = manipulator.solution();
     let reached = manipulator.inverse(&pose, mode, &mut at);
     let reached = reached.map_err(|error| Failure::flag("--pose", error))?;
@@ -30,23 +32,6 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     }
     let answer = Answer::new(&asked, &at, length)?;
     output.print(&answer.json(), answer.text())
-}
-
-/// The length that a flag gives, or the mechanism's own.
-pub fn characteristic_length(
-    given: Option<Number>,
-    flag: &str,
-    manipulator: &Manipulator,
-) -> Result<f64, Failure> {
-    let Some(number) = given else { return Ok(manipulator.characteristic_length()) };
-    let length = number.value_of("the characteristic length", Quantity::Length);
-    let length = length.map_err(|error| Failure::flag(flag, error))?;
-    // Its square, and that of a mechanism over it, must be numbers.
-    if !(1e-75..=1e75).contains(&length) {
-        let problem = format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m");
-        return Err(Failure::flag(flag, problem));
-    }
-    Ok(length)
 }
 
 /// What was asked for.

@@ -1,32 +1,30 @@
 //! Sweeps of a grid of poses. What is asked of one that is done has a file each.
 
-mod asked;
 mod boundary;
 mod components;
 mod conditioning;
 mod measure;
 mod places;
 mod points;
+mod query;
 mod recording;
 mod shards;
 
-pub use asked::modes;
 pub use boundary::Outline;
 pub use conditioning::Conditioning;
+pub use query::modes;
 
 use crate::arguments;
-use crate::error::{failed, wrong};
+use crate::error::request;
 use crate::html;
 use crate::manipulator::Manipulator;
 use crate::parts::Parts;
-use crate::velocity::characteristic_length;
-use asked::{Asked, condition_number, fitted, named};
 use numpy::IntoPyArray;
-use opm_cli::recording::check;
-use opm_core::manipulator as core;
-use opm_workspace::{Axis, ConditionLimit, Count, Grid, Modes, Shard};
+use opm_study::{Workspace, WorkspaceRequest};
+use opm_workspace::{Axis, Count, Shard};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use query::{fitted, named};
 use shards::{Counted, count_of, spread};
 use std::collections::BTreeMap;
 use std::num::{NonZeroU64, NonZeroUsize};
@@ -36,11 +34,9 @@ use std::sync::{Arc, OnceLock};
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
     of: Py<Manipulator>,
-    manipulator: Arc<core::Manipulator>,
-    /// The values of every coordinate of the grid; of places and orientations, the others as well.
-    grid: Grid,
-    modes: Modes,
-    asked: Asked,
+    workspace: Workspace,
+    /// The working mode, as it was asked for.
+    mode: String,
     threads: Option<NonZeroUsize>,
     /// Points of the workspace: of poses, those in reach and within all limits.
     count: Count,
@@ -114,32 +110,24 @@ pub fn sweep(
     #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     axes: Option<BTreeMap<String, Bound<'_, PyAny>>>,
 ) -> PyResult<Sweep> {
-    let mut axes = asked::axes(axes.unwrap_or_default())?;
-    let inner = &manipulator.get().inner;
-    let asked = Asked {
-        kind: named(kind)?,
-        mode: mode.to_owned(),
-        most: max_condition.map(condition_number).transpose()?,
-        length: characteristic_length(inner, length)?,
-    };
+    let mut query = WorkspaceRequest::new(named(kind)?);
+    query.axes = query::axes(axes.unwrap_or_default())?;
+    (query.max_condition, query.length) = (max_condition, length);
     let parts = Parts::new(executor, shards)?;
-    if axes.is_empty() {
-        axes = fitted(py, inner, asked.kind, modes(manipulator.get(), mode)?, threads)?;
-    }
-    let planned = Sweep::planned(manipulator, axes, asked, threads)?;
+    let planned = Sweep::planned(py, manipulator, query, mode.to_owned(), threads)?;
     let plan = Bound::new(py, planned)?;
     let mut count = match &parts {
         None => plan.get().counted(py, Shard::WHOLE)?,
         Some(parts) => {
             let counted: Vec<Counted> = spread(&plan, parts, "_count", None)?.extract()?;
-            let nothing = Count::nothing(&plan.get().manipulator);
+            let nothing = Count::nothing(plan.get().workspace.manipulator());
             counted.into_iter().fold(nothing, |all, part| all.merge(&count_of(part)))
         }
     };
-    if let Some(least) = plan.get().least() {
+    if let Some(required) = plan.get().workspace.required_visits() {
         let tally = Sweep::tally(&plan, parts.as_ref())?;
         count.poses = tally.len() as u64;
-        count.reachable = tally.iter().filter(|&&visits| visits >= least).count() as u64;
+        count.reachable = tally.iter().filter(|&&visits| visits >= required).count() as u64;
     }
     Ok(Sweep { count, ..plan.get().clone(py) })
 }
@@ -148,26 +136,26 @@ pub fn sweep(
 impl Sweep {
     /// What the workspace is of, as it was asked for.
     #[getter]
-    fn kind(&self) -> String {
-        self.asked.kind.name()
+    fn kind(&self) -> &'static str {
+        self.workspace.kind().name()
     }
 
     /// The largest condition number at which a pose counts, if there is one.
     #[getter]
     fn max_condition(&self) -> Option<f64> {
-        self.asked.most
+        self.workspace.limit().map(|limit| limit.most)
     }
 
     /// Characteristic length of condition numbers, metres.
     #[getter]
     fn length(&self) -> f64 {
-        self.asked.length
+        self.workspace.length()
     }
 
     /// Orientations of the grid: values of the upper section's coordinates together.
     #[getter]
     fn orientations(&self) -> u64 {
-        self.grid.slices()
+        self.workspace.grid().slices()
     }
 
     /// Points of the workspace: of poses, those in reach and within all limits.
@@ -192,7 +180,9 @@ impl Sweep {
     #[getter]
     fn imaginary_range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (joint, range) in self.manipulator.imaginary().iter().zip(&self.count.imaginary) {
+        for (joint, range) in
+            self.workspace.manipulator().imaginary().iter().zip(&self.count.imaginary)
+        {
             dict.set_item(&joint.name, range.map(|[low, high]| (low, high)))?;
         }
         Ok(dict)
@@ -201,25 +191,26 @@ impl Sweep {
     /// The values of every coordinate of the points, in the order of the mask's axes.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        values(py, &self.grid.axes()[self.span()])
+        values(py, &self.workspace.grid().axes()[self.span()])
     }
 
     /// The values of every coordinate of the grid; of places and orientations, the others as well.
     #[getter]
     fn grid<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        values(py, self.grid.axes())
+        values(py, self.workspace.grid().axes())
     }
 
     /// ``"m"`` or ``"rad"`` of every coordinate of the grid, by name.
     #[getter]
     fn units(&self) -> BTreeMap<&str, &'static str> {
-        self.grid.coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
+        self.workspace.grid().coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
     /// Sweeps are the same if they are of the same mechanism and were asked for the same, on any number of threads.
     fn __eq__(&self, other: &Self) -> bool {
         self.of.get() == other.of.get()
-            && (&self.grid, &self.asked, self.modes) == (&other.grid, &other.asked, other.modes)
+            && self.mode == other.mode
+            && self.workspace.is_asked_like(&other.workspace)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -229,21 +220,28 @@ impl Sweep {
     /// The working mode, as it was asked for.
     #[getter]
     fn mode(&self) -> &str {
-        &self.asked.mode
+        &self.mode
     }
 
     fn __repr__(&self) -> String {
-        let axes: Vec<_> =
-            self.grid.axes().iter().map(|a| format!("{} {}", a.name, a.count)).collect();
-        let Asked { kind, mode, most, .. } = &self.asked;
-        let limit = most.map_or(String::new(), |most| format!(", condition at most {most}"));
+        let axes: Vec<_> = self
+            .workspace
+            .grid()
+            .axes()
+            .iter()
+            .map(|a| format!("{} {}", a.name, a.count))
+            .collect();
+        let (kind, mode) = (self.workspace.kind(), &self.mode);
+        let limit = self
+            .max_condition()
+            .map_or(String::new(), |most| format!(", condition at most {most}"));
         format!(
             "<Sweep of {}: {} of {} {} {} in mode {mode:?}{limit}, grid {}>",
-            self.manipulator.mechanism().name,
+            self.workspace.manipulator().mechanism().name,
             self.count.reachable,
             self.count.poses,
-            kind.points(),
-            kind.reached(),
+            kind.point_name(),
+            kind.member_name(),
             axes.join(" x ")
         )
     }
@@ -260,46 +258,39 @@ fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
 }
 
 impl Sweep {
-    /// A sweep that is still to be done.
+    /// A sweep that is still to be done. Where no axis is given, the grid is fitted to the workspace.
     fn planned(
+        py: Python<'_>,
         of: Py<Manipulator>,
-        axes: Vec<Axis>,
-        asked: Asked,
+        mut query: WorkspaceRequest,
+        mode: String,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Self> {
+        query.modes = Some(modes(of.get(), &mode)?);
         let manipulator = Arc::clone(&of.get().inner);
-        let grid = Grid::of(asked.kind.sections(), &manipulator, axes).map_err(|e| failed(&e))?;
-        let modes = modes(of.get(), &asked.mode)?;
-        let (count, tally) = (Count::nothing(&manipulator), OnceLock::new());
-        let planned = Self { of, manipulator, grid, modes, asked, threads, count, tally };
-        let kind = planned.asked.kind;
-        check(kind, &planned.manipulator, &planned.grid, modes, planned.limit()).map_err(wrong)?;
-        Ok(planned)
+        let count = Count::nothing(&manipulator);
+        let checked = query.check(manipulator).map_err(|error| request(&error))?;
+        let workspace = fitted(py, checked, threads)?;
+        Ok(Self { of, workspace, mode, threads, count, tally: OnceLock::new() })
     }
 
     fn clone(&self, py: Python<'_>) -> Self {
         Self {
             of: self.of.clone_ref(py),
-            manipulator: Arc::clone(&self.manipulator),
-            grid: self.grid.clone(),
-            asked: self.asked.clone(),
+            workspace: self.workspace.clone(),
+            mode: self.mode.clone(),
             count: self.count.clone(),
             tally: self.tally.clone(),
             ..*self
         }
     }
 
-    fn limit(&self) -> Option<ConditionLimit> {
-        self.asked.most.map(|most| ConditionLimit { most, length: self.asked.length })
-    }
-
     /// The numbers of the axes that its points have.
     fn span(&self) -> std::ops::Range<usize> {
-        self.asked.kind.axes(&self.grid)
+        self.workspace.kind().axes(self.workspace.grid())
     }
 
     fn swept(&self, shard: Shard) -> opm_workspace::Sweep<'_> {
-        let sweep = opm_workspace::Sweep::new(&self.manipulator, &self.grid, self.modes);
-        sweep.limited(self.limit()).shard(shard)
+        self.workspace.sweep().shard(shard)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments;
 use crate::columns::columns;
-use crate::error::{failed, wrong};
+use crate::error::{failed, study, wrong};
 use crate::html::{self, digits};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
@@ -11,19 +11,17 @@ use crate::pickle::{attribute, attributes, equal, frozen, pickled};
 use crate::rows::{Rows, no_memory};
 use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_cli::recording::{Attached, Followed, record_motion};
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::motion::{Motion, examples, file, table};
 use opm_core::trajectory::{self as core_trajectory, Change, Sample, Told};
+use opm_study::recording::{Attachment, MotionRecorder};
+use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Samples a second where nobody says, as on the command line.
-const RATE: f64 = 100.0;
 
 /// A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate.
 #[pyclass(frozen, module = "opm_kinematics")]
@@ -177,7 +175,7 @@ pub fn trajectory(
         Some(mode) => manipulator.mode(mode)?,
         None => motion.mode.unwrap_or_else(|| manipulator.inner.home_mode()),
     };
-    let rate = rate.or(motion.rate).unwrap_or(RATE);
+    let rate = rate.or(motion.rate).unwrap_or(DEFAULT_RATE);
     let inner = &*manipulator.inner;
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
@@ -496,19 +494,20 @@ impl Trajectory {
         let Source { manipulator, motion, file_name, text, mode, rate } = &self.source;
         let manipulator = manipulator.get();
         let name = manipulator.file_name();
-        let followed = Followed {
-            mechanism: Attached { name: &name, text: manipulator.text() },
-            motion_file: Attached { name: file_name, text },
-            manipulator: &manipulator.inner,
-            motion,
-            mode: *mode,
-            rate: *rate,
-        };
+        let files = [
+            Attachment { name: &name, text: manipulator.text() },
+            Attachment { name: file_name, text },
+        ];
+        let request = MotionRequest::new(&manipulator.inner, motion, file_name);
+        let request = request.mode(*mode).rate(*rate);
         let stop = AtomicBool::new(false);
-        let cancelled = || stop.load(Ordering::Relaxed);
-        let work = || record_motion(&followed, &path, cancelled);
+        let work = || {
+            let trajectory = request.trajectory()?;
+            let recorder = MotionRecorder::create(&path, request, files)?;
+            recorder.follow(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
+        };
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
-            .map_err(wrong)
+            .map_err(study)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -1,7 +1,7 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
 use crate::arguments;
-use crate::error::wrong;
+use crate::error::{request, wrong};
 use crate::html;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
@@ -359,12 +359,7 @@ impl Manipulator {
 
 /// The length that is given, checked, or the mechanism's own.
 pub fn characteristic_length(inner: &core::Manipulator, given: Option<f64>) -> PyResult<f64> {
-    let length = given.unwrap_or_else(|| inner.characteristic_length());
-    // Its square must be a number.
-    if !(1e-75..=1e75).contains(&length) {
-        return Err(wrong(format!("length is {length:?}, expected a positive one, 1e-75 to 1e75")));
-    }
-    Ok(length)
+    opm_study::characteristic_length(given, inner).map_err(|error| request(&error))
 }
 
 impl Manipulator {

@@ -1,11 +1,11 @@
 //! The values that joints take in a workspace, against each other.
 
 use super::source::{Rate, Source};
-use crate::kind::Kind;
 use crate::text::count;
 use opm_mcap::Cloud as Points;
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cloud, Content, Histogram, Measure, Scale, Section, Tile};
+use opm_study::WorkspaceKind;
 
 /// Joints that are drawn against each other: six pairs.
 const MOST: usize = 4;
@@ -13,7 +13,7 @@ const MOST: usize = 4;
 /// Joint values in the making.
 pub struct JointCloud {
     /// What its points are points of.
-    kind: Kind,
+    kind: WorkspaceKind,
     joints: Vec<Joint>,
     /// Joints that there is no room for.
     left_out: usize,
@@ -30,7 +30,7 @@ struct Joint {
 
 impl JointCloud {
     /// None without joints that are stored.
-    pub fn new(kind: Kind, source: &Source<'_>, names: &[String]) -> Option<Self> {
+    pub fn new(kind: WorkspaceKind, source: &Source<'_>, names: &[String]) -> Option<Self> {
         let mut joints = vec![];
         let mut ranges = vec![];
         for name in names.iter().take(MOST) {
@@ -78,7 +78,7 @@ impl JointCloud {
                 "{}: a dot for all of the {} {} that it covers.",
                 self.values(),
                 count(self.points),
-                self.kind.points()
+                self.kind.point_name()
             ));
         }
         if self.left_out > 0 {
@@ -91,17 +91,17 @@ impl JointCloud {
     /// What the values are called: a set of places has its share of the orientations, no joints.
     fn values(&self) -> &'static str {
         match self.kind {
-            Kind::Reachable | Kind::Dexterous => "Values",
+            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => "Values",
             _ => "Joint values",
         }
     }
 
     /// The finished tiles.
     pub fn section(self) -> Section {
-        let points = self.kind.points();
+        let points = self.kind.point_name();
         let measure = |number: usize| self.joints[number].measure.clone();
         let names: Vec<&str> = self.joints.iter().map(|joint| &*joint.field).collect();
-        let (values, reached, names) = (self.values(), self.kind.reached(), names.join(", "));
+        let (values, reached, names) = (self.values(), self.kind.member_name(), names.join(", "));
         let title = format!("{values} in {reached} {points}: {names}");
         let tile = |(a, b, content): (usize, usize, Content)| {
             let y = match content {

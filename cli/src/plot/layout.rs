@@ -2,18 +2,18 @@
 
 use super::choice::{is_home, nearest};
 use super::source::Source;
-use crate::kind::{FLAT, Kind};
-use crate::record::together;
 use opm_core::joint::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_mcap::cloud::POSITION_FIELDS;
 use opm_mcap::workspace::BOUNDARY_TOPIC;
+use opm_study::recording::slices_together;
+use opm_study::{NO_AXIS, WorkspaceKind};
 use opm_workspace::{Axis, Grid};
 
 /// What a recorded workspace is made of.
 pub struct Layout {
     /// What the workspace is of.
-    pub kind: Kind,
+    pub kind: WorkspaceKind,
     /// The recording shows the boundary.
     pub bounded: bool,
     /// What can be known of a point: task coordinates, stored values.
@@ -75,7 +75,7 @@ impl Layout {
         };
         let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
         let mut layout = Self {
-            kind: run.get("kind").and_then(|name| Kind::named(name)).unwrap_or(Kind::Grid),
+            kind: run.get("kind").and_then(|name| name.parse().ok()).unwrap_or_default(),
             bounded: source.recording.topic(BOUNDARY_TOPIC).is_some(),
             coordinates: vec![],
             grid: vec![],
@@ -96,7 +96,7 @@ impl Layout {
             Grid::new(manipulator, axes.collect::<Option<_>>()?).ok()
         });
         if let (Some(manipulator), Some(grid)) = (manipulator, grid) {
-            let together = together(&grid);
+            let together = slices_together(&grid);
             let mut product = 1;
             for (i, (c, axis)) in manipulator.task_coordinates().iter().zip(grid.axes()).enumerate()
             {
@@ -125,7 +125,8 @@ impl Layout {
             }
         }
         // The platform's point; or of an unknown mechanism, the axes as they are called.
-        for (name, field) in names.iter().zip(POSITION_FIELDS).filter(|(name, _)| *name != FLAT) {
+        for (name, field) in names.iter().zip(POSITION_FIELDS).filter(|(name, _)| *name != NO_AXIS)
+        {
             if layout.find(name).is_none() {
                 layout.coordinates.push(Coordinate {
                     name: name.clone(),

@@ -6,11 +6,11 @@ use super::source::{Rate, Source, Stop};
 use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
-use crate::kind::Kind;
 use opm_mcap::Cloud as Points;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
+use opm_study::WorkspaceKind;
 use opm_workspace::{Axis, rings};
 
 /// Most slices that are chosen without --slice.
@@ -94,7 +94,7 @@ impl<'a> Slices<'a> {
             Colored { field: field.clone(), measure, factor, range }
         });
         // Where every place is reached at every orientation, there is nothing to colour.
-        let color = color.filter(|_| layout.kind != Kind::Dexterous);
+        let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
         let mut slices =
             Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
         let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
@@ -269,9 +269,9 @@ impl<'a> Slices<'a> {
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
         let kind = self.layout.kind;
-        let reached = kind.reached();
+        let reached = kind.member_name();
         let reached = format!("{}{}", reached[..1].to_uppercase(), &reached[1..]);
-        let mut title = format!("{reached} {}", kind.points());
+        let mut title = format!("{reached} {}", kind.point_name());
         if !self.held.is_empty() {
             let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
             title = format!("{reached} at {}", held.join(", "));

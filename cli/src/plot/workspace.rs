@@ -2,16 +2,17 @@
 
 use super::cloud::JointCloud;
 use super::layout::Layout;
+use super::options::PanelName;
+use super::sized::drawn;
 use super::slices::Slices;
 use super::source::{Rate, Source, Stop};
-use super::{PanelName, drawn};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
-use crate::kind::Kind;
 use crate::text::{count, short};
 use opm_core::joint::Quantity;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::{Drawing, Heading, TileFigure};
+use opm_study::WorkspaceKind;
 use opm_workspace::Axis;
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
@@ -31,7 +32,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     }
     let (view, joints) = chosen(&layout, source, args)?;
     // What has no axis on a grid has no slices, unless somebody wants to see them.
-    let default = args.panels.is_empty() && layout.kind != Kind::Imaginary;
+    let default = args.panels.is_empty() && layout.kind != WorkspaceKind::Imaginary;
     let mut slices = match default || asked(PanelName::Slices) {
         true => Some(Slices::new(&layout, source, args, view)?),
         false => None,
@@ -144,12 +145,12 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
         (Some(reachable), Some(poses)) if poses > 0 => {
             let share = value_label(100.0 * reachable as f64 / poses as f64);
             let (reachable, poses) = (count(reachable), count(poses));
-            let (points, reached) = (layout.kind.points(), layout.kind.reached());
+            let (points, reached) = (layout.kind.point_name(), layout.kind.member_name());
             parts.push(format!("{reachable} of {poses} {points} {reached} ({share} %)"));
         }
         _ => {
             let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
-            parts.push(format!("{} {}", count(points.unwrap_or(0)), layout.kind.points()));
+            parts.push(format!("{} {}", count(points.unwrap_or(0)), layout.kind.point_name()));
         }
     }
     let mut lines = vec![format!("{}; {}", parts.join(", "), source.units_line())];

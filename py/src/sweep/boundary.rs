@@ -7,7 +7,6 @@ use crate::html::digits;
 use crate::parts::Parts;
 use crate::pickle::{equal, frozen};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
-use opm_cli::recording::Kind;
 use opm_workspace::boundary;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -130,7 +129,7 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Vec<Outline>> {
         let py = slf.py();
-        if slf.get().asked.kind == Kind::Imaginary {
+        if !slf.get().workspace.kind().has_boundary() {
             let message = "the boundary of the orientations says nothing of the imaginary joints";
             return Err(wrong(format!("{message}; kind imaginary has none")));
         }

@@ -152,19 +152,20 @@ impl Sweep {
         let short = |_| no_memory(format_args!("a number for each of {poses} poses"));
         all.try_reserve_exact(poses).map_err(short)?;
         all.resize(poses, f64::NAN);
-        let limit = self.limit().unwrap_or(ConditionLimit::none(self.length()));
+        let manipulator = self.workspace.manipulator();
+        let limit = self.workspace.limit().unwrap_or(ConditionLimit::none(self.length()));
         self.visit(
             py,
             shard,
             |hits, (made, conditioned): &mut (Vec<(u64, f64)>, Option<Conditioned<'_>>)| {
                 let conditioned =
-                    conditioned.get_or_insert_with(|| Conditioned::new(&self.manipulator, limit));
+                    conditioned.get_or_insert_with(|| Conditioned::new(manipulator, limit));
                 let mut pose = vec![0.0; hits.others.len() + 1];
                 pose[1..].copy_from_slice(hits.others);
-                let numbers = hits.numbers(&self.grid).flat_map(|run| run.from..run.to);
+                let numbers = hits.numbers(self.workspace.grid()).flat_map(|run| run.from..run.to);
                 for (number, &first) in numbers.zip(hits.first) {
                     pose[0] = first;
-                    if let Some(local) = conditioned.local_index(&pose, self.modes) {
+                    if let Some(local) = conditioned.local_index(&pose, self.workspace.modes()) {
                         made.push((number, local));
                     }
                 }
@@ -181,11 +182,11 @@ impl Sweep {
 
 impl Sweep {
     fn check_conditioned(&self) -> PyResult<()> {
-        let kind = self.asked.kind;
+        let kind = self.workspace.kind();
         if kind.is_of_poses() {
             return Ok(());
         }
-        let points = format!("the {} of kind {} have none", kind.points(), kind.name());
+        let points = format!("the {} of kind {} have none", kind.point_name(), kind.name());
         Err(wrong(format!("only poses have a condition number; {points}")))
     }
 }

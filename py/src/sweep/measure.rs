@@ -37,19 +37,19 @@ impl Sweep {
         executor: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Measure> {
-        if self.least().is_some() {
-            let (kind, points) = (self.kind(), self.asked.kind.points());
+        if self.workspace.required_visits().is_some() {
+            let (kind, points) = (self.kind(), self.workspace.kind().point_name());
             return Err(wrong(format!(
                 "a measure is of poses or of one section, not of {kind} {points}"
             )));
         }
-        if self.asked.most.is_some() {
+        if self.workspace.limit().is_some() {
             return Err(wrong("a measure knows no max_condition: sweep without it"));
         }
-        let axes = self.grid.axes().iter();
+        let axes = self.workspace.grid().axes().iter();
         let over: Vec<_> = axes.map(|a| Over::new(a.name.as_str(), a.min, a.max)).collect();
-        let (of, sections) = (self.of.clone_ref(py), self.grid.sections());
-        let asked = Asked { of, sections, modes: self.modes, threads: self.threads };
+        let (of, sections) = (self.of.clone_ref(py), self.workspace.grid().sections());
+        let asked = Asked { of, sections, modes: self.workspace.modes(), threads: self.threads };
         asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)
     }
 }

@@ -7,8 +7,7 @@ use crate::error::{failed, wrong};
 use crate::interrupt::{self, few};
 use crate::parts::Parts;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
-use opm_cli::recording::Kind;
-use opm_workspace::{GridSet, Progress, SetError, Shard, Visits};
+use opm_workspace::{Progress, SetError, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -35,7 +34,7 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
-        if !matches!(this.asked.kind, Kind::Reachable | Kind::Dexterous) {
+        if !this.workspace.kind().is_of_places() {
             let kind = this.kind();
             return Err(wrong(format!("visits are of kind reachable or dexterous, not of {kind}")));
         }
@@ -55,30 +54,14 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// How often a point has to be reached to be in: of a kind whose points are no points of the grid.
-    pub fn least(&self) -> Option<u64> {
-        match self.asked.kind {
-            Kind::Reachable | Kind::Imaginary => Some(1),
-            Kind::Dexterous => Some(self.grid.slices()),
-            _ => None,
-        }
-    }
-
-    /// Of every point of a kind that has [`least`](Self::least), how often a part of the grid reaches it.
+    /// In how many slices of a part of the grid each point is reached; nothing of a kind whose points are points of
+    /// the grid.
     fn tallied(&self, py: Python<'_>, shard: Shard) -> PyResult<Vec<u64>> {
         let (progress, sweep) = (Progress::default(), self.swept(shard));
-        let work = || match self.asked.kind {
-            Kind::Imaginary => {
-                let set = GridSet::slices(&sweep, &progress)?;
-                let mut tally = vec![0; set.points() as usize];
-                set.numbers().for_each(|number| tally[number as usize] = 1);
-                Ok(tally)
-            }
-            _ => Ok(Visits::new(&sweep, &progress)?.counts().to_vec()),
-        };
+        let work = || self.workspace.visits(&sweep, &progress);
         let done =
             interrupt::run(py, few(self.threads, sweep.pieces()), work, || progress.cancel())?;
-        done.map_err(|error: SetError| failed(&error))
+        Ok(done.map_err(|error: SetError| failed(&error))?.unwrap_or_default())
     }
 
     /// The same of the whole grid, which is kept.

@@ -9,7 +9,7 @@ use crate::parts::Parts;
 use crate::rows::no_memory;
 use numpy::npyffi::NPY_ORDER;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_workspace::{Cancelled, GridSet, Hits, Progress, Run, SetAxis, Shard};
+use opm_workspace::{Cancelled, GridSet, Hits, Progress, Run, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
@@ -51,7 +51,7 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, this, parts) = (slf.py(), slf.get(), Parts::new(executor, shards)?);
-        match (this.least(), parts) {
+        match (this.workspace.required_visits(), parts) {
             (Some(_), parts) => {
                 let set = Self::set(slf, parts.as_ref())?;
                 let points: Vec<f64> =
@@ -97,10 +97,10 @@ impl Sweep {
         parts: Option<&Parts<'py>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (py, this) = (slf.py(), slf.get());
-        match (this.least(), parts) {
-            (Some(least), parts) => {
+        match (this.workspace.required_visits(), parts) {
+            (Some(required), parts) => {
                 let tally = Self::tally(slf, parts)?;
-                Ok(PyArray1::from_iter(py, tally.iter().map(|&visits| visits >= least)))
+                Ok(PyArray1::from_iter(py, tally.iter().map(|&visits| visits >= required)))
             }
             (None, None) => this.masked(py, Shard::WHOLE),
             (None, Some(parts)) => {
@@ -113,17 +113,10 @@ impl Sweep {
     /// Its points.
     pub fn set<'py>(slf: &Bound<'py, Self>, parts: Option<&Parts<'py>>) -> PyResult<GridSet> {
         let (py, this) = (slf.py(), slf.get());
-        let axes = || {
-            let axis = |i: usize| SetAxis {
-                axis: this.grid.axes()[i].clone(),
-                circle: this.grid.is_circle(i),
-            };
-            this.span().map(axis).collect()
-        };
-        let set = match (this.least(), parts) {
-            (Some(least), parts) => {
+        let set = match (this.workspace.required_visits(), parts) {
+            (Some(required), parts) => {
                 let tally = Self::tally(slf, parts)?;
-                py.detach(|| GridSet::of(axes(), |number| tally[number as usize] >= least))
+                py.detach(|| this.workspace.set(|number| tally[number as usize] >= required))
             }
             (None, None) => {
                 let (progress, sweep) = (Progress::default(), this.swept(Shard::WHOLE));
@@ -133,7 +126,7 @@ impl Sweep {
             (None, Some(parts)) => {
                 let mask = Self::flat_mask(slf, Some(parts))?.readonly();
                 let mask = mask.as_slice()?;
-                py.detach(|| GridSet::of(axes(), |number| mask[number as usize]))
+                py.detach(|| this.workspace.set(|number| mask[number as usize]))
             }
         };
         set.map_err(|error| failed(&error))
@@ -144,7 +137,7 @@ impl Sweep {
         &self,
         flat: &Bound<'py, PyArray1<T>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let axes = &self.grid.axes()[self.span()];
+        let axes = &self.workspace.grid().axes()[self.span()];
         let shape: Vec<usize> = axes.iter().map(|axis| axis.count as usize).collect();
         // The first coordinate is the fastest: an array in Fortran's order, which numpy sees as such.
         Ok(flat.reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?.into_any())
@@ -161,7 +154,7 @@ impl Sweep {
         self.visit(
             py,
             shard,
-            |hits, made: &mut Vec<Run>| made.extend(hits.numbers(&self.grid)),
+            |hits, made: &mut Vec<Run>| made.extend(hits.numbers(self.workspace.grid())),
             |made| {
                 for Run { from, to } in made {
                     mask[(from - before) as usize..(to - before) as usize].fill(true);
@@ -177,7 +170,7 @@ impl Sweep {
         shard: Shard,
         expected: u64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let width = self.grid.axes().len();
+        let width = self.workspace.grid().axes().len();
         let expected = usize::try_from(expected).map_err(|error| failed(&error))?;
         let mut all = Vec::new();
         let short = |_| no_memory(format_args!("{expected} points"));

@@ -2,9 +2,10 @@
 
 use super::Sweep;
 use crate::arguments;
-use crate::error::wrong;
+use crate::error::{request, study, wrong};
 use crate::interrupt;
-use opm_cli::recording::{Attached, Shown, Swept, record_sweep};
+use opm_study::recording::{Attachment, Findings, WorkspaceRecording};
+use opm_study::{Analysis, PointOptions};
 use opm_workspace::Progress;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -43,22 +44,21 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
     ) -> PyResult<()> {
-        let of = self.of.get();
+        let (of, workspace) = (self.of.get(), &self.workspace);
+        let points = PointOptions { axes: axes.unwrap_or_default(), scalars, color };
+        let points = points.choose(workspace.kind(), workspace.manipulator());
+        let points = points.map_err(|error| request(&error))?;
         let name = of.file_name();
-        let swept = Swept {
-            mechanism: Attached { name: &name, text: of.text() },
-            manipulator: &self.manipulator,
-            kind: self.asked.kind,
-            grid: &self.grid,
-            modes: self.modes,
-            limit: self.limit(),
-            length: self.asked.length,
-            found: &self.count,
-        };
-        let shown = Shown { axes: axes.unwrap_or_default(), scalars, color };
+        let mechanism = Attachment { name: &name, text: of.text() };
         let progress = Progress::default();
-        let work = || record_sweep(&swept, shown, &path, &progress);
-        interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(wrong)
+        let work = || {
+            let recording = WorkspaceRecording::of_workspace(&path, workspace, points)?;
+            let (poses, count) = (&workspace.poses(), self.count.clone());
+            let analysis = &Analysis::of_points(workspace, count, poses, &progress)?;
+            recording.write(&Findings { mechanism, workspace, poses, analysis }, &progress)
+        };
+        interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(study)?;
+        Ok(())
     }
 
     /// :meth:`write`, of a name that ends in ``.mcap``.

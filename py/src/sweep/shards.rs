@@ -1,11 +1,12 @@
 //! A sweep in parts, of which each crosses to another process: pickled, with the number of its shard.
 
 use super::Sweep;
-use super::asked::{Asked, named};
+use super::query::named;
 use crate::error::failed;
 use crate::interrupt::{self, few};
 use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
+use opm_study::WorkspaceRequest;
 use opm_workspace::{Axis, Count, Progress, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -28,7 +29,7 @@ pub fn spread<'py>(
     fold: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     parts.session(plan.py(), |workers| {
-        let count = parts.count(workers, plan.get().grid.poses(), LEAST_PART)?;
+        let count = parts.count(workers, plan.get().workspace.grid().poses(), LEAST_PART)?;
         let numbers: Vec<(u64, u64)> = (1..=count).map(|number| (number, count)).collect();
         workers.call_method1("run", (plan, task, numbers, fold))
     })
@@ -49,20 +50,28 @@ impl Sweep {
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
         let this = slf.get();
-        let axes = this.grid.axes().iter().map(|a| (a.name.clone(), a.min, a.max, a.count));
+        let axes = this.workspace.grid().axes().iter();
+        let axes = axes.map(|a| (a.name.clone(), a.min, a.max, a.count)).collect();
         let Count { poses, reachable, imaginary } = this.count.clone();
-        let Asked { kind, mode, most, length } = this.asked.clone();
-        let spec = (axes.collect(), kind.name(), mode, most, length, this.threads);
+        let (kind, mode) = (this.kind().to_owned(), this.mode.clone());
+        let spec = (axes, kind, mode, this.max_condition(), this.length(), this.threads);
         let of = this.of.clone_ref(slf.py());
         Ok((slf.get_type().getattr("_restored")?, (of, spec, (poses, reachable, imaginary))))
     }
 
     #[staticmethod]
-    fn _restored(manipulator: Py<Manipulator>, spec: Spec, count: Counted) -> PyResult<Self> {
+    fn _restored(
+        py: Python<'_>,
+        manipulator: Py<Manipulator>,
+        spec: Spec,
+        count: Counted,
+    ) -> PyResult<Self> {
         let (axes, kind, mode, most, length, threads) = spec;
         let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
-        let asked = Asked { kind: named(&kind)?, mode, most, length };
-        let planned = Self::planned(manipulator, axes.collect(), asked, threads)?;
+        let mut query = WorkspaceRequest::new(named(&kind)?);
+        query.axes = axes.collect();
+        (query.max_condition, query.length) = (most, Some(length));
+        let planned = Self::planned(py, manipulator, query, mode, threads)?;
         Ok(Self { count: count_of(count), ..planned })
     }
 

@@ -1,25 +1,15 @@
-//! What is asked of a sweep, as it comes from Python: kind, working modes, limit and axes.
+//! What is asked of a sweep, as it comes from Python: kind, working modes and axes.
 
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use opm_cli::recording::Kind;
-use opm_core::manipulator as core;
-use opm_workspace::{Axis, Modes, Progress, default_grid};
+use opm_study::{CheckedRequest, Workspace, WorkspaceKind};
+use opm_workspace::{Axis, Modes, Progress};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::num::NonZeroUsize;
-
-/// What is asked of a grid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
-    pub kind: Kind,
-    pub mode: String,
-    pub most: Option<f64>,
-    pub length: f64,
-}
 
 /// Values of one coordinate: a number, or lowest, highest and how many.
 #[derive(FromPyObject)]
@@ -41,42 +31,34 @@ pub fn axes(given: BTreeMap<String, Bound<'_, PyAny>>) -> PyResult<Vec<Axis>> {
     given.into_iter().map(axis).collect()
 }
 
-/// The axes of a grid that suits the workspace, with a warning where that has no end.
+/// The workspace of a request. Where no grid is given, one is fitted, with a warning where the workspace goes on
+/// beyond it.
 pub fn fitted(
     py: Python<'_>,
-    manipulator: &core::Manipulator,
-    kind: Kind,
-    modes: Modes,
+    request: CheckedRequest,
     threads: Option<NonZeroUsize>,
-) -> PyResult<Vec<Axis>> {
+) -> PyResult<Workspace> {
     let progress = Progress::default();
-    let find = || default_grid(manipulator, modes, &progress);
-    let found = interrupt::run(py, threads, find, || progress.cancel())?;
-    let (grid, extents) = found.map_err(|error| failed(&error))?;
-    let grid = kind.fit(manipulator, grid);
-    for extent in extents.iter().filter(|extent| extent.unbounded && kind.asks(extent, &grid)) {
-        let name = extent.name;
+    if request.grid().is_some() {
+        return request.fit(&progress).map_err(|error| failed(&error));
+    }
+    let fit = || request.fit(&progress);
+    let workspace = interrupt::run(py, threads, fit, || progress.cancel())?;
+    let workspace = workspace.map_err(|error| failed(&error))?;
+    for name in workspace.unbounded().unwrap_or_default() {
         let message = format!(
             "the workspace goes on beyond this grid along {name}; limit a joint, or give {name}"
         );
         let category = py.get_type::<PyUserWarning>();
         PyErr::warn(py, &category, &CString::new(message)?, 1)?;
     }
-    Ok(grid.axes().to_vec())
+    Ok(workspace)
 }
 
 /// The kind of this name.
-pub fn named(word: &str) -> PyResult<Kind> {
-    let words = || Kind::all().iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-    Kind::named(word).ok_or_else(|| wrong(format!("kind is {word:?}, expected one of {}", words())))
-}
-
-/// A limit on condition numbers, checked.
-pub fn condition_number(most: f64) -> PyResult<f64> {
-    match most {
-        1.0.. if most.is_finite() => Ok(most),
-        _ => Err(wrong(format!("max_condition is {most:?}, expected a number of at least 1"))),
-    }
+pub fn named(word: &str) -> PyResult<WorkspaceKind> {
+    let names = || WorkspaceKind::ALL.map(WorkspaceKind::name).join(", ");
+    word.parse().map_err(|_| wrong(format!("kind is {word:?}, expected one of {}", names())))
 }
 
 /// The working modes that count: one, or any.

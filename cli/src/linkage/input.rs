@@ -1,0 +1,42 @@
+//! The joint that moves a linkage, as it is written on the command line: `a1=30deg`.
+
+use crate::pose::{Misread, Number};
+use std::str::FromStr;
+
+/// A joint, and where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputValue {
+    /// The name of the joint.
+    pub name: String,
+    /// Its value, where that is given.
+    pub value: Option<Number>,
+}
+
+impl FromStr for InputValue {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let (name, value) = match text.split_once('=') {
+            Some((name, value)) => (name, Some(value.parse()?)),
+            None => (text, None),
+        };
+        Ok(Self { name: name.trim().to_owned(), value })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opm_core::joint::Quantity;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn an_input_is_a_name_and_a_value() {
+        let value = |text: &str| text.parse::<InputValue>().map_err(|e| e.to_string());
+        assert_eq!(value(" a1 ").unwrap(), InputValue { name: "a1".into(), value: None });
+        let given = value("a1=180deg").unwrap();
+        assert_eq!(given.value.unwrap().value_of("a1", Quantity::Angle), Ok(PI));
+        assert!(given.value.unwrap().value_of("a1", Quantity::Length).is_err());
+        assert!(value("a1=much").unwrap_err().contains("not a number"));
+    }
+}

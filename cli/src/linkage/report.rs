@@ -1,0 +1,123 @@
+//! What is printed of the positions of a linkage.
+
+use crate::load::Loaded;
+use crate::output::named;
+use crate::text::{self, Table};
+use opm_core::chain::Amount;
+use opm_core::joint::{JointCoordinate, Quantity};
+use opm_core::limits::Limits;
+use opm_core::linkage::{Input, Linkage, Position};
+use opm_study::input_intervals;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A linkage, and the joint that moves it.
+pub struct Run<'a> {
+    pub loaded: &'a Loaded,
+    pub linkage: &'a Linkage,
+    pub input: Input<'a>,
+}
+
+impl Run<'_> {
+    pub fn json(&self, value: f64, positions: &[Position]) -> Value {
+        let coordinates = self.linkage.coordinates();
+        let solution = |position: &Position| {
+            let joints = coordinates.iter().map(|c| &*c.name).zip(position.joints.iter().copied());
+            json!({
+                "branch": position.branch.to_string(),
+                "within_limits": position.within_limits,
+                "joints": named(joints),
+                "imaginary": named([(&*self.linkage.imaginary().name, position.imaginary)]),
+            })
+        };
+        json!({
+            "name": self.linkage.mechanism().name,
+            "input": { "joint": self.input.coordinate().name, "value": value },
+            "range": input_intervals(&self.input),
+            "full_turn": self.input.range().is_full_turn(),
+            "home_branch": self.input.home_branch().to_string(),
+            "solutions": positions.iter().map(solution).collect::<Vec<_>>(),
+        })
+    }
+
+    fn range(&self) -> String {
+        if self.input.range().is_full_turn() {
+            return "the full turn".to_owned();
+        }
+        let units = self.loaded.file.units;
+        let range = |ends: &[f64; 2]| text::range(*ends, Quantity::Angle, units);
+        let ranges: Vec<String> = input_intervals(&self.input).iter().map(range).collect();
+        format!("{} {}", ranges.join(", "), units.symbol(Quantity::Angle))
+    }
+
+    pub fn text(&self, value: f64, positions: &[Position]) -> String {
+        let units = self.loaded.file.units;
+        let name = &self.input.coordinate().name;
+        let mut text = format!(
+            "{}, moved by {name} = {}\nrange of {name}: {}\n\n",
+            self.linkage.mechanism().name,
+            units.show(value, Quantity::Angle),
+            self.range()
+        );
+        if positions.is_empty() {
+            let _ = writeln!(text, "out of range: the loop does not close");
+            return text;
+        }
+        let branches = if positions.len() == 1 { "branch" } else { "branches" };
+        let _ = writeln!(
+            text,
+            "{} {branches}; home is in {}\n",
+            positions.len(),
+            self.input.home_branch()
+        );
+        let _ = write!(text, "{}", self.table(positions));
+        if positions.iter().any(|position| !position.within_limits) {
+            text.push_str("\n* beyond its limits\n");
+        }
+        text
+    }
+
+    /// A row a joint, a column a branch.
+    fn table(&self, positions: &[Position]) -> Table {
+        let units = self.loaded.file.units;
+        let angle = |value: f64| text::number(value, Quantity::Angle, units);
+        let unit = units.symbol(Quantity::Angle);
+        let mut headers = ["leg", "joint", "", "unit"].map(String::from).to_vec();
+        headers.extend(positions.iter().map(|position| format!(">{}", position.branch)));
+        let mut table = Table::new(headers);
+        let mut row = |leg: &str, name: &str, kind: &str, values: Vec<String>| {
+            let head = [leg, name, kind, unit].map(String::from);
+            table.row(head.into_iter().chain(values));
+        };
+        let mut number = 0;
+        for leg in &self.linkage.mechanism().legs {
+            for joint in &leg.joints {
+                for coordinate in &joint.coordinates {
+                    let value = |position: &Position| {
+                        let value = position.joints[number];
+                        angle(value)
+                            + if within(&self.linkage.limits()[number], coordinate, value) {
+                                ""
+                            } else {
+                                "*"
+                            }
+                    };
+                    let values = positions.iter().map(value).collect();
+                    let kind = if joint.actuated { "actuated" } else { "passive" };
+                    row(&leg.name, &coordinate.name, kind, values);
+                    number += 1;
+                }
+            }
+        }
+        let imaginary = self.linkage.imaginary();
+        let leg = &self.linkage.mechanism().legs[imaginary.leg].name;
+        let values = positions.iter().map(|position| angle(position.imaginary)).collect();
+        row(leg, &imaginary.name, "imaginary", values);
+        table
+    }
+}
+
+/// Whether a value is within the limits of its joint.
+fn within(limits: &Limits, coordinate: &JointCoordinate, value: f64) -> bool {
+    limits.admits(Amount::Value(value - coordinate.home))
+}

@@ -1,0 +1,58 @@
+//! What is drawn, and how large, as it is written on the command line.
+
+use crate::pose::Misread;
+use clap::ValueEnum;
+use opm_plot::Size;
+use std::str::FromStr;
+
+/// What `--panels` names: what is drawn, and of a motion what of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PanelName {
+    /// Task coordinates over time
+    Pose,
+    /// Imaginary joints: over time, or the values that they take in a workspace
+    Imaginary,
+    /// Actuated joints over time
+    Actuated,
+    /// Passive joints over time
+    Passive,
+    /// Condition number and singularity measures over time
+    Condition,
+    /// Of a motion: positions
+    Positions,
+    /// Of a motion: velocities, in a second column
+    Velocities,
+    /// Of a motion: accelerations, in a further column
+    Accelerations,
+    /// Slices of a workspace
+    Slices,
+}
+
+impl PanelName {
+    /// As it is given.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+/// What `--size` gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureSize(pub Size);
+
+impl FromStr for PictureSize {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        const MOST: u32 = opm_plot::MOST as u32;
+        let sides = text.split_once(['x', 'X', '×']);
+        let side = |side: &str| side.trim().parse().ok().filter(|side| (1..=MOST).contains(side));
+        match sides.map(|(width, height)| (side(width), side(height))) {
+            Some((Some(width), Some(height))) => {
+                Ok(Self(Size { width: width.into(), height: height.into() }))
+            }
+            _ => Err(Misread::new(format!(
+                "{text:?}, expected width and height up to {MOST} pixels, for example 900x600"
+            ))),
+        }
+    }
+}

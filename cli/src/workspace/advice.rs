@@ -1,0 +1,94 @@
+//! Notes and warnings about a workspace: what may not be meant, and which flags help.
+
+use crate::args::Output;
+use crate::text::count;
+use opm_core::joint::Quantity;
+use opm_core::number::readable;
+use opm_study::{Analysis, Workspace, WorkspaceKind};
+use opm_workspace::{Axis, Grid, Sections};
+
+/// Says which grid was fitted, and where the workspace goes on beyond it.
+pub fn of_fitted(workspace: &Workspace, output: &Output) {
+    output.note(format_args!("grid fitted to the workspace: {}", grid_flags(workspace.grid())));
+    for name in workspace.unbounded().unwrap_or_default() {
+        output.warn(format_args!(
+            "the workspace goes on beyond this grid along {name}; limit a joint, or give --grid"
+        ));
+    }
+}
+
+/// Warns of what may not be meant, before the sweep.
+pub fn before(workspace: &Workspace, output: &Output) {
+    let (kind, manipulator) = (workspace.kind(), workspace.manipulator());
+    if kind.sections() != Sections::Whole && !manipulator.sections_decide() {
+        output.note(
+            "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
+             be out of reach, which no section alone is asked for: the whole reaches less than both",
+        );
+    }
+    if let Some(warning) = one_orientation(kind, workspace.grid()) {
+        output.warn(warning);
+    }
+}
+
+/// Warns where there is nothing in reach.
+pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
+    if analysis.count.reachable == 0 {
+        let kind = workspace.kind();
+        let nothing = kind.nothing(workspace.limit().is_some());
+        let hint = fewer(kind, workspace.grid());
+        let hint = hint.map_or_else(String::new, |hint| format!("; {hint}"));
+        output.warn(format_args!("{nothing}{hint}"));
+    }
+}
+
+/// What is to be said where a set that is over orientations is asked for at home's alone.
+fn one_orientation(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
+    let upper = &grid.axes()[grid.lower()..];
+    if kind.required_visits(grid).is_none() || upper.iter().any(|axis| axis.count > 1) {
+        return None;
+    }
+    let names: Vec<String> =
+        upper.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
+    let names = names.join(", ");
+    Some(format!("--kind {kind} has one orientation alone; for more give {names}"))
+}
+
+/// How to ask for fewer orientations where no place is in reach at all of them.
+fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
+    /// Values of a coordinate, and how far it goes from home if it is an angle.
+    const VALUES: u64 = 5;
+    const HALF: f64 = 20.0;
+    let axes = || grid.axes().iter().zip(grid.coordinates()).skip(grid.lower());
+    let orientations: u64 = axes().map(|(axis, _)| axis.count).product();
+    if kind != WorkspaceKind::Dexterous || orientations == 1 {
+        return None;
+    }
+    // A part of the range, about home where that is in it.
+    let flags = axes().filter(|(axis, _)| axis.count > 1).map(|(axis, c)| {
+        let (unit, scale, most) = match c.quantity {
+            Quantity::Angle => ("deg", 1_f64.to_degrees(), HALF),
+            Quantity::Length => ("mm", 1e3, f64::INFINITY),
+        };
+        let [min, max] = [axis.min, axis.max].map(|end| end * scale);
+        let middle = (c.home * scale).clamp(min, max);
+        let half = (0.25 * (max - min)).min(most);
+        let end = |value: f64| readable((1e2 * value.clamp(min, max)).round() / 1e2 + 0.0);
+        let [from, to] = [end(middle - half), end(middle + half)];
+        format!("--grid {}={from}{unit}:{to}{unit}:{VALUES}", axis.name)
+    });
+    let flags: Vec<String> = flags.collect();
+    let (number, flags) = (count(orientations), flags.join(" "));
+    Some(format!("these are {number} orientations; ask for fewer, for example {flags}"))
+}
+
+/// The flags that ask for a grid, in SI.
+pub fn grid_flags(grid: &Grid) -> String {
+    let flags: Vec<String> = (grid.axes().iter())
+        .map(|Axis { name, min, max, count }| match count {
+            1 => format!("--grid {name}={min}"),
+            _ => format!("--grid {name}={min}:{max}:{count}"),
+        })
+        .collect();
+    flags.join(" ")
+}

@@ -1,0 +1,120 @@
+//! Work on a workspace, on some threads, while a bar shows how far it has come.
+
+use super::advice;
+use super::report::Effort;
+use crate::args::Output;
+use crate::failure::Failure;
+use crate::progress::watch;
+use crate::text::count;
+use opm_study::recording::{
+    Findings, ShardCount, ShardFindings, ShardRecording, WorkspaceRecording,
+};
+use opm_study::{Analysis, CheckedRequest, PoseSource, StudyError, Workspace};
+use opm_workspace::{Cancelled, Progress, Shard};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::time::Instant;
+
+/// Where the work is done, and who hears of it.
+pub struct Work<'a> {
+    pub output: &'a Output,
+    pub pool: &'a ThreadPool,
+    pub progress: &'a Progress,
+}
+
+impl Work<'_> {
+    /// Fits a grid, where none is given.
+    pub fn fit(&self, request: CheckedRequest) -> Result<Workspace, Failure> {
+        if request.grid().is_some() {
+            return request.fit(self.progress).map_err(StudyError::from).map_err(Failure::from);
+        }
+        let (progress, pool) = (self.progress, self.pool);
+        let find = || pool.install(|| request.fit(progress));
+        let workspace = watch(self.output, "fitting a grid", None, || progress.done(), find)
+            .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting a grid".into()))?;
+        advice::of_fitted(&workspace, self.output);
+        Ok(workspace)
+    }
+
+    /// Counts the poses of a shard, and sums up their conditioning, if that is asked for.
+    pub fn count(
+        &self,
+        workspace: &Workspace,
+        shard: Shard,
+    ) -> Result<(ShardCount, Effort), Failure> {
+        let sweep = workspace.sweep().shard(shard);
+        let start = Instant::now();
+        let poses = sweep.poses();
+        let before = self.progress.done();
+        let found = self.watch("counting", poses, || sweep.count(self.progress));
+        let found = found.map_err(|Cancelled| {
+            let (done, poses) = (count(self.progress.done() - before), count(poses));
+            Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
+        })?;
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        let conditioning = match workspace.conditioning_length() {
+            None => None,
+            Some(_) => {
+                let job = || workspace.index(&sweep, self.progress);
+                self.watch("conditioning", poses, job)?
+            }
+        };
+        Ok((ShardCount { count: found, conditioning }, Effort::Counted { poses, seconds }))
+    }
+
+    /// Finds what else is asked of a workspace whose poses are counted.
+    pub fn analyse(
+        &self,
+        workspace: &Workspace,
+        found: ShardCount,
+        poses: &PoseSource<'_>,
+    ) -> Result<Analysis, Failure> {
+        let ShardCount { count, conditioning } = found;
+        let mut analysis = match workspace.needs_points() {
+            false => Analysis::of_count(workspace.kind(), count),
+            true => {
+                let job = || Analysis::of_points(workspace, count, poses, self.progress);
+                self.watch("analysing", workspace.grid().poses(), job)?
+            }
+        };
+        analysis.conditioning = conditioning;
+        Ok(analysis)
+    }
+
+    /// Records every point that was counted.
+    pub fn record(
+        &self,
+        recording: WorkspaceRecording,
+        findings: &Findings<'_>,
+    ) -> Result<(), Failure> {
+        let poses = recording.work(findings.workspace);
+        let job = || recording.write(findings, self.progress);
+        let path = self.watch("recording", poses, job)?;
+        let points = count(findings.analysis.count.reachable);
+        self.output.note(format_args!("{}: {points} points", path.display()));
+        Ok(())
+    }
+
+    /// Stores the poses of a shard.
+    pub fn record_shard(
+        &self,
+        recording: ShardRecording,
+        findings: &ShardFindings<'_>,
+    ) -> Result<(), Failure> {
+        let poses = findings.workspace.sweep().shard(findings.shard).poses();
+        let job = || recording.write(findings, self.progress);
+        Ok(self.watch("recording", poses, job)?)
+    }
+
+    /// Does a job on the threads while a bar shows how far it has come.
+    fn watch<T: Send>(&self, label: &'static str, poses: u64, job: impl FnOnce() -> T + Send) -> T {
+        let before = self.progress.done();
+        let done = || self.progress.done() - before;
+        watch(self.output, label, Some(poses), done, || self.pool.install(job))
+    }
+}
+
+/// A pool of so many threads, or of one a processor.
+pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
+    let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
+    builder.build().map_err(|error| Failure::at("threads", &error))
+}

@@ -1,0 +1,304 @@
+//! The values that a recording stores of every point: which there are, which are asked for, which suit the
+//! workspace.
+
+use crate::kind::WorkspaceKind;
+use crate::request::{RequestError, RequestOption};
+use opm_core::manipulator::Manipulator;
+use opm_workspace::{Axis, Grid, GridSet};
+
+/// The name of the platform's point among the axes of a cloud.
+pub const TIP: &str = "tip";
+/// The name of one over the condition number, the local conditioning index.
+pub const INVERSE_CONDITION: &str = "inverse_condition";
+/// The name of the share of the orientations that reach a place.
+pub const SHARE: &str = "share";
+/// The name of an axis of a cloud along which all points have zero: the set has fewer than three.
+pub const NO_AXIS: &str = "0";
+
+/// The position of a point in every cloud.
+const POSITION_FIELDS: [&str; 3] = ["x", "y", "z"];
+/// The colour of a point in every cloud.
+const COLOR_FIELDS: [&str; 4] = ["red", "green", "blue", "alpha"];
+
+/// One value of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// A coordinate, by its number among the axes of the points.
+    Coordinate(usize),
+    /// An imaginary joint.
+    Imaginary(usize),
+    /// An actuated joint.
+    Actuated(usize),
+    /// The platform's point: x, y or z.
+    Tip(usize),
+    /// One over the condition number.
+    InverseCondition,
+    /// The share of the orientations that reach a place.
+    Share,
+    /// Zero.
+    Zero,
+}
+
+/// A value of a point with its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedColumn {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub column: Column,
+}
+
+impl NamedColumn {
+    fn new(name: &str, column: Column) -> Self {
+        Self { name: name.to_owned(), column }
+    }
+}
+
+/// Which values of the points are asked for, by name. What is not given suits the workspace.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PointOptions {
+    /// The three values that are x, y and z of a point, or [`TIP`]; none if not given.
+    pub axes: Vec<String>,
+    /// Further values that are stored.
+    pub scalars: Option<Vec<String>>,
+    /// The value that the colour shows.
+    pub color: Option<String>,
+}
+
+/// Values of points that are asked for, and that the points of a kind of workspace have.
+#[derive(Clone, Debug)]
+pub struct PointChoice {
+    kind: WorkspaceKind,
+    known: Vec<NamedColumn>,
+    axes: Option<[NamedColumn; 3]>,
+    scalars: Option<Vec<NamedColumn>>,
+    color: Option<NamedColumn>,
+}
+
+impl PointOptions {
+    /// Finds the values by their names.
+    ///
+    /// # Errors
+    /// A name that is not known, or that no scalar can have; other than three axes.
+    pub fn choose(
+        &self,
+        kind: WorkspaceKind,
+        manipulator: &Manipulator,
+    ) -> Result<PointChoice, RequestError> {
+        let known = known(kind, manipulator);
+        let find = |name: &String, option| {
+            let found = known.iter().find(|column| column.name == *name).cloned();
+            found.ok_or_else(|| RequestError::UnknownColumn {
+                option,
+                name: name.clone(),
+                kind,
+                known: known.iter().map(|column| column.name.clone()).collect(),
+            })
+        };
+        let color = self.color.as_ref().map(|name| find(name, RequestOption::Color)).transpose()?;
+        let scalars = self.scalars.as_ref().map(|names| -> Result<Vec<_>, RequestError> {
+            names.iter().map(|name| find(name, RequestOption::Scalars)).collect()
+        });
+        let scalars = scalars.transpose()?;
+        for (number, NamedColumn { name, .. }) in scalars.iter().flatten().enumerate() {
+            if is_field(name) {
+                return Err(RequestError::ReservedField { name: name.clone() });
+            }
+            if scalars.iter().flatten().take(number).any(|earlier| earlier.name == *name) {
+                return Err(RequestError::RepeatedScalar { name: name.clone() });
+            }
+        }
+        let axis = |name: &String| match kind.is_of_poses() {
+            true => task_coordinate(name, manipulator),
+            false => find(name, RequestOption::Axes),
+        };
+        let axes = match &self.axes[..] {
+            [] => None,
+            [one] if one == TIP && kind.is_of_poses() => Some(std::array::from_fn(|i| {
+                NamedColumn::new(&format!("{TIP}.{}", POSITION_FIELDS[i]), Column::Tip(i))
+            })),
+            [a, b, c] if a != b && b != c && a != c => Some([axis(a)?, axis(b)?, axis(c)?]),
+            given => return Err(RequestError::CloudAxes { given: given.to_vec(), kind }),
+        };
+        Ok(PointChoice { kind, known, axes, scalars, color })
+    }
+}
+
+impl PointChoice {
+    /// Whether one of the values is a condition number.
+    pub fn has_condition(&self) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|named| named.column == Column::InverseCondition)
+    }
+}
+
+/// An axis of a cloud of poses.
+fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn, RequestError> {
+    let coordinates = manipulator.task_coordinates();
+    let number = coordinates.iter().position(|c| c.name == name);
+    let number = number.ok_or_else(|| RequestError::UnknownCoordinate {
+        name: name.to_owned(),
+        known: coordinates.iter().map(|c| c.name.to_owned()).collect(),
+    })?;
+    Ok(NamedColumn::new(name, Column::Coordinate(number)))
+}
+
+/// Every value that the points of a kind have.
+fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
+    let lower = manipulator.task().lower_count;
+    let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
+    let mut known: Vec<NamedColumn> = coordinates
+        .filter(|(i, _)| match kind {
+            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => *i < lower,
+            WorkspaceKind::Imaginary => *i >= lower,
+            WorkspaceKind::Grid
+            | WorkspaceKind::ConstantOrientation
+            | WorkspaceKind::Orientation
+            | WorkspaceKind::Upper
+            | WorkspaceKind::Lower => true,
+        })
+        .enumerate()
+        .map(|(number, (_, c))| NamedColumn::new(&c.name, Column::Coordinate(number)))
+        .collect();
+    let imaginary = manipulator.imaginary().iter().enumerate();
+    let imaginary = imaginary.map(|(i, j)| NamedColumn::new(&j.name, Column::Imaginary(i)));
+    match kind {
+        WorkspaceKind::Grid | WorkspaceKind::ConstantOrientation | WorkspaceKind::Orientation => {
+            known.extend(imaginary);
+            let actuated = manipulator.actuated().iter().enumerate();
+            known.extend(actuated.map(|(i, &joint)| {
+                NamedColumn::new(&manipulator.coordinates()[joint].name, Column::Actuated(i))
+            }));
+            known.push(NamedColumn::new(INVERSE_CONDITION, Column::InverseCondition));
+        }
+        WorkspaceKind::Reachable | WorkspaceKind::Dexterous => {
+            known.push(NamedColumn::new(SHARE, Column::Share));
+        }
+        WorkspaceKind::Imaginary | WorkspaceKind::Upper => known.extend(imaginary),
+        WorkspaceKind::Lower => {}
+    }
+    known
+}
+
+/// Whether every cloud has a field of this name.
+pub(crate) fn is_field(name: &str) -> bool {
+    POSITION_FIELDS.contains(&name) || COLOR_FIELDS.contains(&name)
+}
+
+/// What every point of a recording consists of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PointColumns {
+    /// What x, y and z of the cloud are.
+    pub axes: [NamedColumn; 3],
+    /// Further values that are stored.
+    pub scalars: Vec<NamedColumn>,
+    /// What the colour shows.
+    pub color: NamedColumn,
+    /// Whether somebody chose the scalars.
+    pub(crate) scalars_chosen: bool,
+}
+
+impl PointColumns {
+    /// The values of poses of a grid; what was not asked for suits the grid.
+    pub fn of_poses(choice: PointChoice, grid: &Grid) -> Self {
+        let tallest = tallest(grid);
+        let axis = |i: usize| NamedColumn::new(&grid.axes()[i].name, Column::Coordinate(i));
+        let color = choice.color.unwrap_or_else(|| axis(tallest));
+        let several = |number: &usize| grid.axes()[*number].count > 1;
+        let varying: Vec<usize> = (0..grid.axes().len()).filter(several).collect();
+        let axes = choice.axes.unwrap_or_else(|| {
+            if let [a, b] = varying[..] {
+                let flat = (0..grid.axes().len()).rfind(|number| !several(number));
+                return [axis(a), axis(b), axis(flat.unwrap_or(tallest))];
+            }
+            // What varies, then what does not; every pair of subspaces has at least three coordinates.
+            let fixed = (0..grid.axes().len()).filter(|number| !several(number));
+            let mut order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
+            // Places stand on the ground, the tallest orientation above them.
+            if varying.len() > 2 && varying[0] < grid.lower() {
+                order.retain(|&number| number != tallest);
+                order.insert(2, tallest);
+            }
+            [axis(order[0]), axis(order[1]), axis(order[2])]
+        });
+        let scalars_chosen = choice.scalars.is_some();
+        let scalars = choice.scalars.unwrap_or_else(|| {
+            // What the colour shows can be read off, too.
+            let known = axes.contains(&color) || is_field(&color.name);
+            if known { vec![] } else { vec![color.clone()] }
+        });
+        Self { axes, scalars, color, scalars_chosen }
+    }
+
+    /// The values of the points of a set in memory; what was not asked for suits the set.
+    pub fn of_set(choice: PointChoice, set: &GridSet) -> Self {
+        let PointChoice { kind, known, .. } = choice;
+        let varying = set.varying();
+        let axis = |i: usize| NamedColumn::new(&set.axes()[i].axis.name, Column::Coordinate(i));
+        // What varies first, then what does not.
+        let fixed = (0..set.axes().len()).filter(|i| !varying.contains(i));
+        let order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
+        let is_imaginary = |named: &&NamedColumn| matches!(named.column, Column::Imaginary(_));
+        let imaginary = || known.iter().filter(is_imaginary).cloned();
+        let shown: Vec<NamedColumn> = match kind == WorkspaceKind::Imaginary {
+            true => imaginary().collect(),
+            false => order.iter().map(|&i| axis(i)).collect(),
+        };
+        let axes = choice.axes.unwrap_or_else(|| {
+            let flat = || NamedColumn::new(NO_AXIS, Column::Zero);
+            [0, 1, 2].map(|i| shown.get(i).cloned().unwrap_or_else(flat))
+        });
+        let color = choice.color.unwrap_or_else(|| match kind.is_of_places() {
+            true => NamedColumn::new(SHARE, Column::Share),
+            false => axis(varying.get(2).or(varying.last()).copied().unwrap_or(0)),
+        });
+        let scalars_chosen = choice.scalars.is_some();
+        let scalars = choice.scalars.unwrap_or_else(|| {
+            let mut scalars: Vec<NamedColumn> = match kind == WorkspaceKind::Imaginary {
+                // By their names as well, for pictures of more than three.
+                true => imaginary().collect(),
+                // Nothing of a point is lost.
+                false => varying.iter().map(|&i| axis(i)).filter(|c| !axes.contains(c)).collect(),
+            };
+            if !axes.contains(&color) && !scalars.contains(&color) {
+                scalars.push(color.clone());
+            }
+            scalars.retain(|named| !is_field(&named.name));
+            scalars
+        });
+        Self { axes, scalars, color, scalars_chosen }
+    }
+
+    /// The values of a row: axes, scalars, and the colour where it is none of these.
+    pub fn columns(&self) -> Vec<Column> {
+        let listed = || self.axes.iter().chain(&self.scalars);
+        let mut columns: Vec<Column> = listed().map(|named| named.column).collect();
+        if !listed().any(|named| named.name == self.color.name) {
+            columns.push(self.color.column);
+        }
+        columns
+    }
+}
+
+/// The coordinate that a picture of the workspace is tallest in: the tilt where it varies, else the
+/// slowest varying one of the upper section, else of the lower.
+fn tallest(grid: &Grid) -> usize {
+    let several = |axis: &Axis| axis.count > 1;
+    let tilts = |axis: &Axis| axis.name == "xi" && several(axis);
+    let upper = &grid.axes()[grid.lower()..];
+    match upper.iter().position(tilts).or_else(|| upper.iter().rposition(several)) {
+        Some(number) => grid.lower() + number,
+        None => grid.axes().iter().position(several).unwrap_or(0),
+    }
+}
+
+#[cfg(all(test, feature = "recording"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_those_of_every_recorded_cloud() {
+        assert_eq!(POSITION_FIELDS, opm_mcap::cloud::POSITION_FIELDS);
+        assert_eq!(COLOR_FIELDS, opm_mcap::cloud::COLOR_FIELDS);
+    }
+}

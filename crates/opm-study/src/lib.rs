@@ -1,0 +1,106 @@
+//! Studies of overconstrained parallel manipulators: what there is to ask of a workspace or a motion, what
+//! is found of it, and what a recording of it stores.
+//!
+//! This crate stands between the engines (`opm-core` computes poses, `opm-workspace` sweeps grids of them,
+//! `opm-mcap` writes files) and the front ends (the command line, Python). It reads no flags and prints
+//! nothing. Every front end goes the same way:
+//!
+//! ```text
+//! WorkspaceRequest -> check -> fit -> Workspace -> analyse -> Analysis -> WorkspaceRecording
+//! ```
+//!
+//! # Example
+//!
+//! The dexterous workspace of a mechanism as a set, its boundary, and its recording:
+//!
+//! ```
+//! use opm_core::manipulator::Manipulator;
+//! use opm_core::mechanism::{examples, file};
+//! use opm_study::recording::{Attachment, Findings, WorkspaceRecording};
+//! use opm_study::{PointOptions, WorkspaceKind, WorkspaceRequest};
+//! use opm_workspace::{Axis, Progress};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let example = examples::find("plano-spherical-5dof").ok_or("no such example")?;
+//! let manipulator = Manipulator::new(file::read(example.text)?.mechanism)?;
+//!
+//! let progress = Progress::default();
+//! let workspace = WorkspaceRequest::new(WorkspaceKind::Dexterous)
+//!     .axis(Axis::new("x", -0.1, 0.1, 41))
+//!     .axis(Axis::new("y", -0.1, 0.1, 41))
+//!     .axis(Axis::new("xi", -0.2, 0.2, 5))
+//!     .resolve(manipulator, &progress)?;
+//! let analysis = workspace.analyse(&progress)?;
+//!
+//! let set = analysis.set.as_ref().ok_or("no set")?;
+//! let boundary = analysis.boundary().ok_or("no boundary")?;
+//! assert_eq!(set.count(), analysis.count.reachable);
+//! assert!(boundary[0].area() > 0.0);
+//!
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("dexterous.mcap");
+//! let points = PointOptions::default().choose(workspace.kind(), workspace.manipulator())?;
+//! let recording = WorkspaceRecording::of_workspace(&path, &workspace, points)?;
+//! let mechanism = Attachment { name: "plano-spherical-5dof.toml", text: example.text };
+//! let poses = &workspace.poses();
+//! let findings = Findings { mechanism, workspace: &workspace, poses, analysis: &analysis };
+//! recording.write(&findings, &progress)?;
+//! assert!(path.is_file());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Modules
+//!
+//! | | |
+//! |---|---|
+//! | [`WorkspaceKind`] | kinds of workspace, and which points belong to each |
+//! | [`WorkspaceRequest`] | what is asked for; [`RequestError`] names the [`RequestOption`] that is wrong |
+//! | [`Workspace`] | what is asked for, once nothing is left open |
+//! | [`Analysis`] | what is found: counts, set, shape, conditioning |
+//! | [`PointOptions`] | which values a recording stores of every point |
+//! | [`MotionRequest`], [`LinkageRound`] | motions of a platform, rounds of a single loop |
+//! | [`recording`] | recordings, tables and shards, in files: with the feature `recording`, which is on by default |
+//!
+//! Work runs on the current thread pool of rayon. [`opm_workspace::Progress`] says how far it has come, and
+//! stops it.
+
+mod analysis;
+mod columns;
+mod error;
+mod kind;
+mod linkage;
+mod measure;
+mod motion;
+mod poses;
+#[cfg(feature = "recording")]
+pub mod recording;
+mod request;
+pub mod text;
+mod workspace;
+
+pub use analysis::{Analysis, Shape};
+pub use columns::{
+    Column, INVERSE_CONDITION, NO_AXIS, NamedColumn, PointChoice, PointColumns, PointOptions,
+    SHARE, TIP,
+};
+pub use error::StudyError;
+pub use kind::{UnknownKind, WorkspaceKind};
+pub use linkage::{LinkageRound, RoundSummary, input_intervals};
+pub use measure::{Measure, unit_product};
+pub use motion::{CoordinateRanges, DEFAULT_RATE, MotionRequest, MotionSummary, Range};
+pub use poses::PoseSource;
+pub use request::{
+    CheckedRequest, RequestError, RequestOption, SetPart, Spelling, WorkspaceRequest,
+    characteristic_length,
+};
+pub use workspace::Workspace;
+
+/// A shipped mechanism, for the tests.
+#[cfg(test)]
+fn example() -> opm_core::manipulator::Manipulator {
+    use opm_core::mechanism::{examples, file};
+    let example = examples::find("plano-spherical-5dof").expect("a shipped example");
+    let mechanism = file::read(example.text).expect("a mechanism file").mechanism;
+    opm_core::manipulator::Manipulator::new(mechanism).expect("a manipulator")
+}

@@ -1,0 +1,64 @@
+//! Single loops, moved once round by one of their joints.
+
+use crate::error::StudyError;
+use opm_core::linkage::{Input, InputRange, Linkage, Position};
+use std::f64::consts::PI;
+
+/// One round of a linkage: one turn of an input that can make it; else to the end of its range, back in
+/// the branch that meets there, and so on until the linkage is home.
+pub struct LinkageRound<'a> {
+    /// The linkage.
+    pub linkage: &'a Linkage,
+    /// The joint that moves it.
+    pub input: &'a Input<'a>,
+    /// Positions, home at both ends: two or more.
+    pub count: u32,
+}
+
+/// What a round comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RoundSummary {
+    /// Positions.
+    pub positions: u64,
+    /// Positions within all limits.
+    pub within_limits: u64,
+    /// Whether the input made a full turn.
+    pub is_turn: bool,
+}
+
+impl LinkageRound<'_> {
+    /// Gives every position of the round, in order, with its number.
+    ///
+    /// # Errors
+    /// What `take` gives; or a position at which the loop does not close.
+    pub fn each<E: From<StudyError>>(
+        &self,
+        mut take: impl FnMut(u32, &Position) -> Result<(), E>,
+    ) -> Result<RoundSummary, E> {
+        let cycle = self.input.cycle();
+        let mut position = self.input.home();
+        let mut within_limits = 0;
+        for number in 0..self.count {
+            let phase = f64::from(number) / f64::from(self.count - 1);
+            let (value, branch) = cycle.at(phase);
+            if !self.input.position_near(value, branch, &mut position) {
+                let joint = self.input.coordinate().name.clone();
+                let branch = branch.to_string();
+                return Err(StudyError::OpenLoop { joint, value, branch }.into());
+            }
+            within_limits += u64::from(position.within_limits);
+            take(number, &position)?;
+        }
+        let (positions, is_turn) = (self.count.into(), cycle.is_turn());
+        Ok(RoundSummary { positions, within_limits, is_turn })
+    }
+}
+
+/// The range of an input, interval by interval; of a full turn, the one around home.
+pub fn input_intervals(input: &Input<'_>) -> Vec<[f64; 2]> {
+    let home = input.coordinate().home;
+    match input.range() {
+        InputRange::FullTurn => vec![[home - PI, home + PI]],
+        InputRange::Intervals(intervals) => intervals,
+    }
+}

@@ -1,0 +1,107 @@
+//! What a motion comes to: ranges of all joints, the worst condition number, violations.
+
+use opm_core::manipulator::Manipulator;
+use opm_core::trajectory::{Sample, Violation};
+
+/// Violations that are kept; their number is counted in any case.
+pub const MOST_LISTED: usize = 10_000;
+
+/// Lowest and highest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range([f64; 2]);
+
+impl Range {
+    /// Of no value.
+    const NONE: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
+
+    fn add(&mut self, value: f64) {
+        self.0 = [self.0[0].min(value), self.0[1].max(value)];
+    }
+
+    /// Both ends; `None` where there was no value.
+    pub fn get(self) -> Option<[f64; 2]> {
+        (self.0[0] <= self.0[1]).then_some(self.0)
+    }
+}
+
+/// Of a coordinate: its position, its velocity and its acceleration.
+pub type CoordinateRanges = [Range; 3];
+
+/// What a motion comes to.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct MotionSummary {
+    /// Samples.
+    pub samples: u64,
+    /// Samples in reach.
+    pub reached: u64,
+    /// Samples in reach and within all limits.
+    pub valid: u64,
+    /// Ranges of every joint coordinate.
+    pub joints: Vec<CoordinateRanges>,
+    /// Ranges of every imaginary joint.
+    pub imaginary: Vec<CoordinateRanges>,
+    /// The worst condition number, and when, seconds.
+    pub condition: Option<[f64; 2]>,
+    /// What the mechanism cannot follow, in the order of time: [`MOST_LISTED`] at most.
+    pub violations: Vec<Violation>,
+    /// How many violations there were.
+    pub violation_count: u64,
+}
+
+impl MotionSummary {
+    pub(super) fn new(manipulator: &Manipulator) -> Self {
+        Self {
+            samples: 0,
+            reached: 0,
+            valid: 0,
+            joints: vec![[Range::NONE; 3]; manipulator.coordinates().len()],
+            imaginary: vec![[Range::NONE; 3]; manipulator.imaginary().len()],
+            condition: None,
+            violations: Vec::new(),
+            violation_count: 0,
+        }
+    }
+
+    pub(super) fn add(&mut self, sample: &Sample) {
+        self.samples += 1;
+        self.reached += u64::from(sample.reached);
+        self.valid += u64::from(sample.valid());
+        if !sample.reached {
+            return;
+        }
+        let condition = sample.condition;
+        if self.condition.is_none_or(|[worst, _]| condition > worst) {
+            self.condition = Some([condition, sample.time]);
+        }
+        let (solution, motion) = (&sample.solution, &sample.motion);
+        for (ranges, positions, rates, accelerations) in [
+            (&mut self.joints, &solution.joints, &motion.joint_rates, &motion.joint_accelerations),
+            (
+                &mut self.imaginary,
+                &solution.imaginary,
+                &motion.imaginary_rates,
+                &motion.imaginary_accelerations,
+            ),
+        ] {
+            for (i, [position, velocity, acceleration]) in ranges.iter_mut().enumerate() {
+                position.add(positions[i]);
+                if sample.regular {
+                    velocity.add(rates[i]);
+                    acceleration.add(accelerations[i]);
+                }
+            }
+        }
+    }
+
+    pub(super) fn add_violation(&mut self, violation: Violation) {
+        self.violation_count += 1;
+        if self.violations.len() < MOST_LISTED {
+            self.violations.push(violation);
+        }
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.violations.sort_by(|a, b| a.start.total_cmp(&b.start));
+    }
+}

@@ -1,0 +1,74 @@
+//! Recordings: what is stored of a workspace, of a motion, of a linkage, of a shard, and the files it is
+//! written to.
+//!
+//! The same study gives the same bytes, whichever front end asks for it.
+
+mod describe;
+mod linkage;
+mod motion;
+mod points;
+mod scene;
+mod set;
+mod shard;
+mod shards;
+mod workspace;
+
+pub use linkage::record_linkage;
+pub use motion::{MotionRecorder, violation_fields};
+pub use shard::{ShardCount, ShardFindings, ShardPoses, ShardRecording, StoredShard};
+pub use shards::{MissingShards, ShardError, ShardProblem, Shards};
+pub use workspace::{Findings, WorkspaceRecording, slices_together};
+
+use crate::error::StudyError;
+use crate::request::RequestError;
+use opm_mcap::{Metadata, PartialFile};
+use std::path::{Path, PathBuf};
+
+/// The program that writes the files.
+pub(crate) const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
+
+/// A file that goes into a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attachment<'a> {
+    /// Its own name, without folders.
+    pub name: &'a str,
+    /// What is in it.
+    pub text: &'a str,
+}
+
+/// The name that a file has until it is whole.
+pub fn partial(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".partial");
+    name.into()
+}
+
+/// Refuses a name that does not end in `.mcap`, for content that is written as MCAP alone.
+///
+/// # Errors
+/// [`RequestError::ContentIsMcap`], or [`RequestError::StandardOutput`]
+pub fn expect_mcap(path: &Path, content: &'static str) -> Result<(), RequestError> {
+    check_mcap(path, || RequestError::ContentIsMcap { path: path.to_owned(), content })
+}
+
+fn check_mcap(path: &Path, wrong: impl FnOnce() -> RequestError) -> Result<(), RequestError> {
+    refuse_standard_output(path)?;
+    let is_mcap = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
+    if is_mcap { Ok(()) } else { Err(wrong()) }
+}
+
+/// Refuses standard output: a recording has another name until it is whole.
+fn refuse_standard_output(path: &Path) -> Result<(), RequestError> {
+    if path == Path::new("-") { Err(RequestError::StandardOutput) } else { Ok(()) }
+}
+
+/// Opens a file before the work starts, so that a wrong path costs no time.
+fn create(path: &Path) -> Result<PartialFile, StudyError> {
+    refuse_standard_output(path)?;
+    PartialFile::create(path).map_err(|error| StudyError::record(path.display(), error))
+}
+
+/// A metadata record.
+fn record<const N: usize>(pairs: [(&str, String); N]) -> Metadata {
+    pairs.map(|(key, value)| (key.to_owned(), value)).into()
+}

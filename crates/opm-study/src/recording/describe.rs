@@ -1,0 +1,134 @@
+//! What a recording says of the workspace it is of, and the workspace read back from that.
+
+use super::{Attachment, PROGRAM, record};
+use crate::kind::WorkspaceKind;
+use crate::workspace::Workspace;
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::FileUnits;
+use opm_mcap::Metadata;
+use opm_workspace::{Axis, ConditionLimit, ConditioningIndex, Count, Grid, Modes};
+use std::sync::Arc;
+
+/// The key of the characteristic length of a conditioning index, and the beginning of those of its parts.
+const CONDITIONING: &str = "conditioning";
+
+/// The parts of a conditioning index; `sum` counts units of 2⁻⁶⁰.
+const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
+
+/// What is known of a workspace before it is swept.
+pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
+    let mut run = record([
+        ("program", PROGRAM.to_owned()),
+        ("mechanism", workspace.manipulator.mechanism().name.clone()),
+        ("mechanism_file", mechanism.name.to_owned()),
+        ("kind", workspace.kind.name().to_owned()),
+        ("mode", workspace.mode_name()),
+        ("poses", workspace.grid.poses().to_string()),
+    ]);
+    if let Some(ConditionLimit { most, length }) = workspace.limit {
+        run.insert("max_condition".to_owned(), most.to_string());
+        run.insert("characteristic_length".to_owned(), length.to_string());
+    }
+    for Axis { name, min, max, count } in workspace.grid.axes() {
+        run.insert(format!("grid.{name}"), format!("{min}:{max}:{count}"));
+    }
+    run
+}
+
+/// As [`describe`], with all that the shards of the workspace have in common.
+pub fn describe_sharded(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
+    let mut run = describe(workspace, mechanism);
+    if let Some(length) = workspace.conditioning_length() {
+        run.insert(CONDITIONING.to_owned(), length.to_string());
+    }
+    run
+}
+
+/// The workspace of which this is the description; `None` where it is not one of this manipulator.
+pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Workspace> {
+    let kind: WorkspaceKind = run.get("kind")?.parse().ok()?;
+    let sections = kind.sections();
+    let axes = sections.coordinates(&manipulator).into_iter().map(|coordinate| {
+        let values = run.get(&format!("grid.{}", coordinate.name))?;
+        let mut values = values.split(':');
+        let mut next = || values.next();
+        let [min, max] = [next()?.parse().ok()?, next()?.parse().ok()?];
+        Some(Axis::new(coordinate.name, min, max, next()?.parse().ok()?))
+    });
+    let grid = Grid::of(sections, &manipulator, axes.collect::<Option<_>>()?).ok()?;
+    let modes = match &**run.get("mode")? {
+        "any" => Modes::Any,
+        signs => Modes::One(manipulator.parse_mode(signs).ok()?),
+    };
+    let number = |key: &str| run.get(key).map(|text| text.parse().ok());
+    let limit = match (number("max_condition"), number("characteristic_length")) {
+        (None, None) => None,
+        (most, length) => Some(ConditionLimit { most: most??, length: length?? }),
+    };
+    let conditioning: Option<f64> = match number(CONDITIONING) {
+        None => None,
+        Some(length) => Some(length?),
+    };
+    let length = limit.map(|limit| limit.length).or(conditioning);
+    let length = length.unwrap_or_else(|| manipulator.characteristic_length());
+    let conditioning = conditioning.is_some();
+    let (shape, unbounded) = (false, None);
+    Some(Workspace {
+        manipulator,
+        kind,
+        grid,
+        modes,
+        limit,
+        length,
+        conditioning,
+        shape,
+        unbounded,
+    })
+}
+
+/// What was found of a workspace.
+pub fn result(workspace: &Workspace, count: &Count) -> Metadata {
+    let mut result = record([
+        ("reachable", count.reachable.to_string()),
+        ("fraction", (count.reachable as f64 / count.poses as f64).to_string()),
+    ]);
+    if let Some(measure) = workspace.measure(workspace.kind, count, FileUnits::SI) {
+        result.insert("measure".to_owned(), measure.value.to_string());
+        result.insert("measure_units".to_owned(), measure.unit);
+    }
+    result.extend(ranges(workspace, count));
+    result
+}
+
+/// The ranges of the imaginary joints, to the last digit.
+pub fn ranges(workspace: &Workspace, count: &Count) -> Metadata {
+    let ranges = workspace.manipulator.imaginary().iter().zip(&count.imaginary);
+    ranges
+        .filter_map(|(joint, range)| {
+            let [low, high] = (*range)?;
+            Some((range_key(&joint.name), format!("{low}:{high}")))
+        })
+        .collect()
+}
+
+/// The key of the range of an imaginary joint.
+pub fn range_key(joint: &str) -> String {
+    format!("range.{joint}")
+}
+
+/// A conditioning index to the last digit.
+pub fn conditioning(index: &ConditioningIndex) -> Metadata {
+    let ConditioningIndex { length: _, poses, min, max, sum } = index;
+    let parts = [poses.to_string(), min.to_string(), max.to_string(), sum.to_string()];
+    let keys = CONDITIONING_PARTS.map(|key| format!("{CONDITIONING}.{key}"));
+    keys.into_iter().zip(parts).collect()
+}
+
+/// The conditioning index of which these are the parts.
+pub fn conditioning_of(result: &Metadata, length: f64) -> Option<ConditioningIndex> {
+    let [poses, min, max, sum] =
+        CONDITIONING_PARTS.map(|key| result.get(&format!("{CONDITIONING}.{key}")));
+    let (poses, sum) = (poses?.parse().ok()?, sum?.parse().ok()?);
+    let (min, max) = (min?.parse().ok()?, max?.parse().ok()?);
+    Some(ConditioningIndex { length, poses, min, max, sum })
+}

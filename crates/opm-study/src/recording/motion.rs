@@ -1,0 +1,250 @@
+//! The recording of a motion.
+
+use super::scene::{Scene, imaginary_coordinates, joint_coordinates};
+use super::{Attachment, PROGRAM, create, expect_mcap, record};
+use crate::error::StudyError;
+use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
+use opm_core::manipulator::Manipulator;
+use opm_core::skeleton;
+use opm_core::trajectory::{Change, Sample, Told, Trajectory, Violation};
+use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
+use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// A recording of a motion under way.
+pub struct MotionRecorder<'a> {
+    request: MotionRequest<'a>,
+    recorder: TrajectoryRecorder<PartialFile>,
+    scene: Scene,
+    place: String,
+    /// Of the last message, nanoseconds.
+    last: u64,
+    /// Whether the upper and the lower section have a parallel singularity measure.
+    parallel: [bool; 2],
+    measures: Vec<f64>,
+}
+
+impl<'a> MotionRecorder<'a> {
+    /// Opens the file before the work starts, so that a wrong path costs no time. `files` are those of the
+    /// mechanism and of the motion.
+    ///
+    /// # Errors
+    /// A file that is not MCAP, or cannot be written.
+    pub fn create(
+        path: &Path,
+        request: MotionRequest<'a>,
+        files: [Attachment<'_>; 2],
+    ) -> Result<Self, StudyError> {
+        expect_mcap(path, "the recording of a motion")?;
+        let place = path.display().to_string();
+        let file = create(path)?;
+        let scene = Scene::of(request.manipulator);
+        let parallel = parallel(request.manipulator);
+        let recorded = recorded(&request, files, &scene, parallel);
+        let recorder = TrajectoryRecorder::new(file, &recorded);
+        let recorder = recorder.map_err(|error| StudyError::record(&place, error))?;
+        Ok(Self { request, recorder, scene, place, last: 0, parallel, measures: Vec::new() })
+    }
+
+    /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::follow`].
+    ///
+    /// # Errors
+    /// A pose that cannot be computed with, or a file that cannot be written; that it was told to stop.
+    pub fn follow(
+        mut self,
+        trajectory: Trajectory<'_>,
+        go_on: impl Fn(u64) -> bool,
+    ) -> Result<MotionSummary, StudyError> {
+        let request = self.request;
+        let take =
+            |number, sample: &Sample, changes: &[Change]| self.sample(number, sample, changes);
+        let summary = request.follow(trajectory, take, go_on)?;
+        self.finish(&summary)?;
+        Ok(summary)
+    }
+
+    /// Records a sample, and what changed up to it.
+    fn sample(
+        &mut self,
+        number: u64,
+        sample: &Sample,
+        changes: &[Change],
+    ) -> Result<(), StudyError> {
+        let MotionRequest { motion, rate, .. } = self.request;
+        let clock = |time: f64| ((time - motion.start) * 1e9).round().max(0.0) as u64;
+        // A sample's own stamp, free of the rounding of its time.
+        let now = clock(motion.start + number as f64 / rate);
+        let now = now.min(clock(motion.end())).max(self.last);
+        self.record(now, sample, changes, clock)
+            .map_err(|error| StudyError::record(&self.place, error))?;
+        self.last = now;
+        Ok(())
+    }
+
+    fn record(
+        &mut self,
+        now: u64,
+        sample: &Sample,
+        changes: &[Change],
+        clock: impl Fn(f64) -> u64,
+    ) -> Result<(), RecordError> {
+        let manipulator = self.request.manipulator;
+        for change in changes {
+            let line = match change {
+                Change::Begins(violation) => Told::new(violation, manipulator).what(),
+                // A singularity has been told when it began.
+                Change::Ends(violation) if violation.is_singularity() => continue,
+                Change::Ends(violation) => {
+                    format!("no longer: {}", Told::new(violation, manipulator).si())
+                }
+            };
+            self.recorder.mark(clock(change.time()).clamp(self.last, now), &line)?;
+        }
+        let Sample { instant, solution, motion, .. } = sample;
+        let rates = sample.regular.then_some(Rates {
+            velocities: &motion.joint_rates,
+            imaginary: &motion.imaginary_rates,
+            accelerations: &motion.joint_accelerations,
+        });
+        let (joints, imaginary) = (&solution.joints, &solution.imaginary);
+        let posture = if sample.reached {
+            let frames = if self.recorder.shows(now) {
+                let platform = manipulator.task().displacement(&instant.pose);
+                self.scene.frames(&skeleton::Posture { joints, imaginary, platform })
+            } else {
+                &[]
+            };
+            Some(Posture { joints, imaginary, rates, frames })
+        } else {
+            None
+        };
+        self.measures.clear();
+        self.measures.push(sample.condition);
+        for (parallel, measures) in self.parallel.into_iter().zip([sample.upper, sample.lower]) {
+            // Out of reach there is nothing to measure: a gap for whoever plots it.
+            let told = |measure: f64| if sample.reached { measure } else { f64::NAN };
+            self.measures.push(told(measures.serial));
+            if parallel {
+                self.measures.push(told(measures.parallel.unwrap_or_default()));
+            }
+        }
+        let recorded = Recorded {
+            pose: &instant.pose,
+            pose_velocities: &instant.velocity,
+            measures: &self.measures,
+            valid: sample.valid(),
+            posture,
+        };
+        self.recorder.push(now, &recorded)
+    }
+
+    /// Completes the recording.
+    fn finish(mut self, summary: &MotionSummary) -> Result<(), StudyError> {
+        let manipulator = self.request.manipulator;
+        let mut complete = || {
+            for (number, violation) in summary.violations.iter().enumerate() {
+                let fields = violation_fields(&Told::new(violation, manipulator)).into_iter();
+                let record: Metadata = fields
+                    .map(|(key, value)| {
+                        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                        (key.to_owned(), text)
+                    })
+                    .collect();
+                self.recorder.describe(&format!("violation.{}", number + 1), &record)?;
+            }
+            Ok(())
+        };
+        let result = record([
+            ("samples", summary.samples.to_string()),
+            ("valid", summary.valid.to_string()),
+            ("violations", summary.violation_count.to_string()),
+            ("violations_listed", summary.violations.len().min(MOST_LISTED).to_string()),
+        ]);
+        complete()
+            .and_then(|()| self.recorder.finish(&result))
+            .map_err(|error: RecordError| StudyError::record(&self.place, error))
+    }
+}
+
+/// What the recording is of.
+fn recorded<'a>(
+    request: &MotionRequest<'_>,
+    files: [Attachment<'a>; 2],
+    scene: &Scene,
+    parallel: [bool; 2],
+) -> opm_mcap::Trajectory<'a> {
+    let MotionRequest { manipulator, motion, mode, rate, .. } = *request;
+    let [mechanism_file, motion_file] = files;
+    opm_mcap::Trajectory {
+        pose: task_coordinates(manipulator),
+        joints: joint_coordinates(manipulator.mechanism()),
+        imaginary: imaginary_coordinates(manipulator.imaginary()),
+        rates: true,
+        measures: measures(parallel),
+        bodies: scene.bodies(),
+        files: files.map(|file| (file.name, file.text.as_bytes())).to_vec(),
+        run: record([
+            ("command", "trajectory".to_owned()),
+            ("program", PROGRAM.to_owned()),
+            ("mechanism", manipulator.mechanism().name.clone()),
+            ("mechanism_file", mechanism_file.name.to_owned()),
+            ("motion", motion.name.clone()),
+            ("motion_file", motion_file.name.to_owned()),
+            ("mode", manipulator.format_mode(mode)),
+            ("start", motion.start.to_string()),
+            ("duration", motion.duration.to_string()),
+            ("rate", rate.to_string()),
+        ]),
+    }
+}
+
+/// Keys and values of a violation, the same in JSON and in a recording.
+pub fn violation_fields(told: &Told<'_>) -> Vec<(&'static str, Value)> {
+    let Violation { start, end, worst, amount, .. } = *told.violation;
+    let mut fields = vec![
+        ("kind", json!(told.kind)),
+        ("start", json!(start)),
+        ("end", json!(end)),
+        ("worst", json!(worst)),
+        ("amount", json!(amount)),
+        ("unit", json!(told.unit())),
+    ];
+    let words = [
+        ("leg", told.leg.map(String::from)),
+        ("joint", told.joint.map(String::from)),
+        ("section", told.section.map(|section| section.to_string())),
+        ("bound", told.bound.map(|bound| bound.name().to_owned())),
+        ("singularity", told.singularity().map(String::from)),
+    ];
+    fields.extend(words.into_iter().filter_map(|(key, word)| Some((key, json!(word?)))));
+    fields
+}
+
+/// The names of the measures in `/condition`, in the order in which a [`MotionRecorder`] gathers them.
+fn measures(parallel: [bool; 2]) -> Vec<String> {
+    let mut names = vec!["condition".to_owned()];
+    for (parallel, section) in parallel.into_iter().zip(["upper", "lower"]) {
+        names.push(format!("{section}_serial"));
+        if parallel {
+            names.push(format!("{section}_parallel"));
+        }
+    }
+    names
+}
+
+/// Which of the sections, upper and lower, have as many inputs as motions, or more.
+fn parallel(manipulator: &Manipulator) -> [bool; 2] {
+    let mut measured = manipulator.singularities();
+    manipulator.measure_singularities(&manipulator.jacobians(), &mut measured);
+    [measured.upper, measured.lower].map(|measures| measures.parallel.is_some())
+}
+
+fn task_coordinates(manipulator: &Manipulator) -> Vec<Coordinate> {
+    let coordinate = |c: &opm_core::task::TaskCoordinate| Coordinate {
+        name: c.name.to_owned(),
+        unit: c.quantity.unit(),
+        role: Role::Task,
+    };
+    manipulator.task_coordinates().iter().map(coordinate).collect()
+}

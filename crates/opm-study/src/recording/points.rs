@@ -1,0 +1,358 @@
+//! The points of a cloud of poses: rows of values, or packed as a recording stores them.
+
+use crate::columns::{Column, NamedColumn, PointColumns, is_field};
+use crate::error::StudyError;
+use crate::poses::PoseSource;
+use crate::workspace::Workspace;
+use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
+use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
+use opm_workspace::{ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
+use std::sync::{Mutex, PoisonError};
+
+/// What the points of a recording of poses consist of.
+#[derive(Clone)]
+pub struct Cloud<'a> {
+    workspace: &'a Workspace,
+    shown: PointColumns,
+}
+
+impl<'a> Cloud<'a> {
+    /// The cloud of a workspace whose points are poses.
+    pub fn new(workspace: &'a Workspace, shown: PointColumns) -> Self {
+        Self { workspace, shown }
+    }
+
+    fn manipulator(&self) -> &'a Manipulator {
+        &self.workspace.manipulator
+    }
+
+    /// The same with every task coordinate as a value of a point, where nobody chose the values: rows of
+    /// a table know nothing of slices. A mesh tool's x, y and z are the axes.
+    pub fn with_every_coordinate(mut self, format: TableFormat) -> Self {
+        if self.shown.scalars_chosen {
+            return self;
+        }
+        let grid = &self.workspace.grid;
+        let coordinates = grid.coordinates().iter().enumerate();
+        let named = coordinates.map(|(number, c)| NamedColumn {
+            name: c.name.clone(),
+            column: Column::Coordinate(number),
+        });
+        let PointColumns { axes, scalars, .. } = &self.shown;
+        let more: Vec<NamedColumn> = named
+            .filter(|named| !axes.contains(named) && !scalars.contains(named))
+            .filter(|named| format == TableFormat::Npy || !is_field(&named.name))
+            .collect();
+        self.shown.scalars.extend(more);
+        self
+    }
+
+    /// How often the grid is swept to record it.
+    pub fn passes(&self) -> u64 {
+        match self.shown.color.column {
+            Column::Actuated(number) if self.limits(number).is_none() => 3,
+            Column::InverseCondition => 3,
+            Column::Coordinate(_)
+            | Column::Imaginary(_)
+            | Column::Actuated(_)
+            | Column::Tip(_)
+            | Column::Share
+            | Column::Zero => 2,
+        }
+    }
+
+    fn limits(&self, actuated: usize) -> Option<[f64; 2]> {
+        let manipulator = self.manipulator();
+        manipulator.coordinates()[manipulator.actuated()[actuated]].limits
+    }
+
+    /// What a recorder has to know of the points.
+    pub fn layout(&self, color_range: [f64; 2]) -> CloudLayout {
+        let of_base = matches!(self.shown.axes[0].column, Column::Tip(_));
+        layout(&self.shown, color_range, if of_base { "base" } else { "task" })
+    }
+
+    /// Where a pose is in the cloud.
+    pub fn place(&self, pose: &[f64]) -> [f64; 3] {
+        let tip = || {
+            let manipulator = self.manipulator();
+            manipulator.task().displacement(pose) * manipulator.mechanism().platform
+        };
+        self.shown.axes.each_ref().map(|named| match named.column {
+            Column::Coordinate(number) => pose[number],
+            Column::Tip(i) => tip()[i],
+            Column::Imaginary(_)
+            | Column::Actuated(_)
+            | Column::InverseCondition
+            | Column::Share
+            | Column::Zero => unreachable!("axes are task coordinates, or the platform's point"),
+        })
+    }
+
+    /// The values of a row, in the order of [`CloudLayout::columns`].
+    pub fn columns(&self) -> Vec<Column> {
+        self.shown.columns()
+    }
+
+    /// The values at the ends of the colours: of a task coordinate the grid's, of a joint its
+    /// limits or what there is; of condition numbers what there is.
+    pub fn color_range(
+        &self,
+        poses: &PoseSource<'_>,
+        count: &Count,
+        progress: &Progress,
+    ) -> Result<[f64; 2], StudyError> {
+        let axis = |number: usize| &self.workspace.grid.axes()[number];
+        let color = self.shown.color.column;
+        let known = match color {
+            Column::Coordinate(number) => Some([axis(number).min, axis(number).max]),
+            Column::Imaginary(number) => Some(count.imaginary[number].unwrap_or_default()),
+            Column::Actuated(number) => self.limits(number),
+            Column::InverseCondition | Column::Tip(_) | Column::Share | Column::Zero => None,
+        };
+        if let Some(range) = known {
+            return Ok(range);
+        }
+        let columns = [color];
+        let mut range: Option<[f64; 2]> = None;
+        poses.points(
+            progress,
+            |hits, points: &mut Points<'_>| points.add(hits),
+            || Points::new(self, &columns, None),
+            |mut points| {
+                for value in points.take()?.into_iter().flat_map(|portion| portion.values) {
+                    let [low, high] = range.unwrap_or([value; 2]);
+                    range = Some([low.min(value), high.max(value)]);
+                }
+                Ok(())
+            },
+        )?;
+        Ok(range.unwrap_or_default())
+    }
+}
+
+/// What a recorder has to know of points with these values.
+pub fn layout(shown: &PointColumns, color_range: [f64; 2], frame: &str) -> CloudLayout {
+    CloudLayout {
+        axes: shown.axes.each_ref().map(|named| named.name.clone()),
+        scalars: shown.scalars.iter().map(|named| named.name.clone()).collect(),
+        color: shown.color.name.clone(),
+        color_range,
+        frame_id: frame.to_owned(),
+    }
+}
+
+/// Points of one slice: values, or bytes of a cloud where there is a packer.
+pub struct Portion {
+    pub slice: u64,
+    pub values: Vec<f64>,
+    pub packed: Vec<u8>,
+}
+
+/// Packs points, into buffers that are used again: those of the system are cleared first, page by page,
+/// which takes a third as long as everything else.
+pub struct Packing {
+    packer: Packer,
+    buffers: Mutex<Vec<Vec<u8>>>,
+}
+
+impl Packing {
+    /// For the points of this layout.
+    pub fn new(layout: &CloudLayout) -> Result<Self, RecordError> {
+        Ok(Self { packer: Packer::new(layout)?, buffers: Mutex::default() })
+    }
+
+    /// An empty buffer.
+    fn buffer(&self) -> Vec<u8> {
+        let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        buffers.pop().unwrap_or_default()
+    }
+
+    /// Takes back the buffer of points that are written.
+    pub fn reuse(&self, portion: Portion) {
+        let mut buffer = portion.packed;
+        buffer.clear();
+        self.buffers.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
+    }
+}
+
+/// Points of a cloud in the making, in portions of one slice.
+pub struct Points<'a> {
+    cloud: &'a Cloud<'a>,
+    columns: &'a [Column],
+    packing: Option<&'a Packing>,
+    /// All columns are task coordinates.
+    plain: bool,
+    joints: Joints<'a>,
+    pose: Vec<f64>,
+    row: Vec<f64>,
+    portions: Vec<Portion>,
+    /// A pose that the sweep found and inverse kinematics did not, or a value that is no number.
+    wrong: Option<StudyError>,
+}
+
+/// Buffers for what inverse kinematics finds.
+enum Joints<'a> {
+    /// No column asks for joints.
+    Unused,
+    One(Drives),
+    Any(Box<(AllModes, Solution)>),
+    /// With a limit on the condition number, which decides on the mode, or with a column that asks for
+    /// that number.
+    Limited(Box<(Conditioned<'a>, Solution)>),
+}
+
+impl<'a> Points<'a> {
+    pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packing: Option<&'a Packing>) -> Self {
+        let manipulator = cloud.manipulator();
+        let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
+        let condition = columns.contains(&Column::InverseCondition);
+        let joints = match (cloud.workspace.modes, cloud.workspace.limit) {
+            _ if condition => {
+                let none = ConditionLimit::none(cloud.workspace.length);
+                let limit = cloud.workspace.limit.unwrap_or(none);
+                let conditioned = Conditioned::new(manipulator, limit);
+                Joints::Limited(Box::new((conditioned, manipulator.solution())))
+            }
+            _ if !columns.iter().any(asked) => Joints::Unused,
+            (Modes::One(_), _) => Joints::One(manipulator.drives()),
+            (Modes::Any, Some(limit)) => {
+                let conditioned = Conditioned::new(manipulator, limit);
+                Joints::Limited(Box::new((conditioned, manipulator.solution())))
+            }
+            (Modes::Any, None) => {
+                Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
+            }
+        };
+        let plain = columns.iter().all(|column| matches!(column, Column::Coordinate(_)));
+        let (pose, row, portions) = (Vec::new(), Vec::new(), Vec::new());
+        Self { cloud, columns, packing, plain, joints, pose, row, portions, wrong: None }
+    }
+
+    pub fn add(&mut self, hits: &Hits<'_>) {
+        self.line(hits.slice, hits.first, hits.others);
+    }
+
+    /// The points of a slice that have these first coordinates, and all others in common.
+    pub fn line(&mut self, slice: u64, first: &[f64], others: &[f64]) {
+        let mut pose = std::mem::take(&mut self.pose);
+        pose.clear();
+        pose.push(0.0);
+        pose.extend(others);
+        match self.packing {
+            Some(packing) if self.plain => self.plain_line(&packing.packer, slice, first, &pose),
+            _ => {
+                for &value in first {
+                    pose[0] = value;
+                    self.point(slice, &pose);
+                }
+                self.pack();
+            }
+        }
+        self.pose = pose;
+    }
+
+    /// Points that have nothing but coordinates.
+    fn plain_line(&mut self, packer: &Packer, slice: u64, first: &[f64], pose: &[f64]) {
+        let value = |column: &Column| match *column {
+            Column::Coordinate(number) => pose[number],
+            _ => unreachable!("plain points are made of task coordinates"),
+        };
+        let mut row = std::mem::take(&mut self.row);
+        row.clear();
+        row.extend(self.columns.iter().map(value));
+        let column = self.columns.iter().position(|column| *column == Column::Coordinate(0));
+        self.open(slice);
+        if let Some(portion) = self.portions.last_mut()
+            && let Err(error) = packer.pack_line(&row, column, first, &mut portion.packed)
+        {
+            self.wrong.get_or_insert(StudyError::record("a point", error));
+        }
+        self.row = row;
+    }
+
+    /// Packs the values so far.
+    fn pack(&mut self) {
+        let (Some(packing), Some(portion)) = (self.packing, self.portions.last_mut()) else {
+            return;
+        };
+        if let Err(error) = packing.packer.pack(&portion.values, &mut portion.packed) {
+            self.wrong.get_or_insert(StudyError::record("a point", error));
+        }
+        portion.values.clear();
+    }
+
+    /// Makes the last portion one of this slice.
+    fn open(&mut self, slice: u64) {
+        if self.portions.last().is_none_or(|last| last.slice != slice) {
+            let packed = self.packing.map_or_else(Vec::new, Packing::buffer);
+            self.portions.push(Portion { slice, values: Vec::new(), packed });
+        }
+    }
+
+    fn point(&mut self, slice: u64, pose: &[f64]) {
+        let manipulator = self.cloud.manipulator();
+        let found = match (&mut self.joints, self.cloud.workspace.modes) {
+            (Joints::One(drives), Modes::One(mode)) => {
+                manipulator.inverse_drives(pose, mode, drives) == Ok(true)
+            }
+            (Joints::Any(buffers), _) => {
+                let (all, solution) = &mut **buffers;
+                manipulator.inverse_all(pose, all) == Ok(true)
+                    && manipulator.pick_within_limits(all, solution).is_some()
+            }
+            (Joints::Limited(buffers), modes) => {
+                let (conditioned, solution) = &mut **buffers;
+                let first = conditioned.first(pose, modes);
+                first.is_some_and(|first| {
+                    solution.clone_from(first);
+                    true
+                })
+            }
+            _ => true,
+        };
+        if !found {
+            self.wrong.get_or_insert_with(|| StudyError::LostPose { pose: pose.to_vec() });
+            return;
+        }
+        self.open(slice);
+        let Some(Portion { values: row, .. }) = self.portions.last_mut() else { return };
+        let mut tip = None;
+        for column in self.columns {
+            row.push(match (*column, &self.joints) {
+                (Column::Coordinate(number), _) => pose[number],
+                (Column::Tip(i), _) => tip.get_or_insert_with(|| {
+                    manipulator.task().displacement(pose) * manipulator.mechanism().platform
+                })[i],
+                (Column::Imaginary(number), Joints::One(drives)) => drives.imaginary[number],
+                (Column::Actuated(number), Joints::One(drives)) => drives.actuated[number],
+                (Column::Imaginary(number), Joints::Any(buffers)) => buffers.1.imaginary[number],
+                (Column::Actuated(number), Joints::Any(buffers)) => {
+                    buffers.1.joints[manipulator.actuated()[number]]
+                }
+                (Column::Imaginary(number), Joints::Limited(buffers)) => {
+                    buffers.1.imaginary[number]
+                }
+                (Column::Actuated(number), Joints::Limited(buffers)) => {
+                    buffers.1.joints[manipulator.actuated()[number]]
+                }
+                (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
+                (
+                    Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition,
+                    Joints::Unused | Joints::One(_) | Joints::Any(_),
+                ) => {
+                    unreachable!("Points::new has buffers for what columns ask for")
+                }
+                (Column::Share | Column::Zero, _) => {
+                    unreachable!("poses have no share of orientations, and three coordinates")
+                }
+            });
+        }
+    }
+
+    /// The points so far; the next ones start anew.
+    pub fn take(&mut self) -> Result<Vec<Portion>, StudyError> {
+        self.pack();
+        self.wrong.take().map_or_else(|| Ok(std::mem::take(&mut self.portions)), Err)
+    }
+}

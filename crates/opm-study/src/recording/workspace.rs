@@ -1,0 +1,363 @@
+//! The recording of a workspace: the passes over its points that write it.
+
+use super::describe::{describe, result};
+use super::points::{Cloud, Packing, Points, Portion};
+use super::set::{SetCloud, pose_boundary};
+use super::{Attachment, check_mcap, create, partial, refuse_standard_output};
+use crate::analysis::Analysis;
+use crate::columns::{PointChoice, PointColumns};
+use crate::error::StudyError;
+use crate::kind::WorkspaceKind;
+use crate::poses::PoseSource;
+use crate::request::{CheckedRequest, RequestError, SetPart};
+use crate::workspace::Workspace;
+use opm_mcap::{
+    CloudLayout, MAX_SLICES, PartialFile, RecordError, TableFormat, TableRecorder,
+    WorkspaceRecorder, table_columns,
+};
+use opm_workspace::{Grid, Poses, Progress};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// More slices than this play for longer than a quarter of an hour.
+const PLAYABLE: u64 = 10_000;
+
+/// Points between two looks at whether the recording was told to stop.
+const PORTION: u64 = 1 << 12;
+
+/// A file that is open for the recording of a workspace.
+///
+/// It is opened before the work starts, so that a wrong path costs no time, and gets its name when it is
+/// whole.
+#[derive(Debug)]
+pub struct WorkspaceRecording {
+    path: PathBuf,
+    file: PartialFile,
+    format: Format,
+    points: PointChoice,
+}
+
+/// What is known of a workspace: what a recording is made of.
+#[derive(Clone, Copy)]
+pub struct Findings<'a> {
+    /// The file of the mechanism.
+    pub mechanism: Attachment<'a>,
+    /// The workspace.
+    pub workspace: &'a Workspace,
+    /// Its poses.
+    pub poses: &'a PoseSource<'a>,
+    /// What was found of it.
+    pub analysis: &'a Analysis,
+}
+
+/// The file format of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Mcap,
+    Table(TableFormat),
+}
+
+impl Format {
+    /// The format that the ending of a file name asks for.
+    fn of(path: &Path) -> Result<Self, RequestError> {
+        refuse_standard_output(path)?;
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("mcap") => Ok(Self::Mcap),
+            Some("npy") => Ok(Self::Table(TableFormat::Npy)),
+            Some("ply") => Ok(Self::Table(TableFormat::Ply)),
+            _ => Err(RequestError::FileEnding { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Refuses a name of no known ending, or that is not for sets of a kind; and for MCAP a grid whose slowest
+/// axis alone has more values than a recording may have slices.
+fn check(path: &Path, kind: WorkspaceKind, grid: Option<&Grid>) -> Result<(), RequestError> {
+    if !kind.is_of_poses() {
+        return check_mcap(path, || RequestError::KindIsMcap { path: path.to_owned(), kind });
+    }
+    let format = Format::of(path)?;
+    let Some(grid) = grid.filter(|_| format == Format::Mcap) else { return Ok(()) };
+    let slices = grid.slices() / slices_together(grid);
+    if slices <= MAX_SLICES {
+        return Ok(());
+    }
+    let axis = grid.axes().last().map_or_else(String::new, |axis| axis.name.clone());
+    let (part, given, most) = (SetPart::Slices, slices, MAX_SLICES);
+    Err(RequestError::TooManySlices { part, given, axis, most })
+}
+
+impl WorkspaceRecording {
+    /// Opens a file for the workspace that is asked for; the ending of its name says in which format.
+    ///
+    /// # Errors
+    /// A name or a grid that a recording cannot have; a file that cannot be written.
+    pub fn create(path: &Path, request: &CheckedRequest) -> Result<Self, StudyError> {
+        check(path, request.kind(), request.grid())?;
+        Self::open(path, request.points().clone())
+    }
+
+    /// Opens a file for a workspace, of whose points these values are stored.
+    ///
+    /// # Errors
+    /// As [`WorkspaceRecording::create`].
+    pub fn of_workspace(
+        path: &Path,
+        workspace: &Workspace,
+        points: PointChoice,
+    ) -> Result<Self, StudyError> {
+        check(path, workspace.kind, Some(&workspace.grid))?;
+        Self::open(path, points)
+    }
+
+    fn open(path: &Path, points: PointChoice) -> Result<Self, StudyError> {
+        let format = Format::of(path)?;
+        Ok(Self { path: path.to_owned(), file: create(path)?, format, points })
+    }
+
+    /// How many poses are decided anew to write it: every pass goes through the whole grid.
+    pub fn work(&self, workspace: &Workspace) -> u64 {
+        if !workspace.kind.is_of_poses() {
+            return 0;
+        }
+        let shown = PointColumns::of_poses(self.points.clone(), &workspace.grid);
+        let passes = Cloud::new(workspace, shown).passes();
+        let passes = if self.format == Format::Mcap { passes } else { passes - 1 };
+        passes * workspace.grid.poses()
+    }
+
+    /// Writes the recording of a workspace, and gives its path.
+    ///
+    /// # Errors
+    /// A file that cannot be written, or poses that cannot be had; that it was cancelled.
+    pub fn write(
+        self,
+        findings: &Findings<'_>,
+        progress: &Progress,
+    ) -> Result<PathBuf, StudyError> {
+        let Self { path, file, format, points } = self;
+        let Findings { mechanism, workspace, analysis, .. } = *findings;
+        if !workspace.kind.is_of_poses() {
+            let set = analysis.set.as_ref().ok_or(StudyError::NoSet)?;
+            let cloud = SetCloud::new(workspace, analysis, set, points)?;
+            record_set(findings, &cloud, file, &path, progress)?;
+            return Ok(path);
+        }
+        let shown = PointColumns::of_poses(points, &workspace.grid);
+        let cloud = Cloud::new(workspace, shown);
+        let cloud = match format {
+            Format::Mcap => cloud,
+            Format::Table(format) => cloud.with_every_coordinate(format),
+        };
+        let color_range = cloud.color_range(findings.poses, &analysis.count, progress)?;
+        let layout = cloud.layout(color_range);
+        let job =
+            PoseRecording { findings, cloud: &cloud, mechanism, progress, path: &path, layout };
+        match format {
+            Format::Mcap => job.mcap(file)?,
+            Format::Table(format) => job.table(file, format).inspect_err(|_| {
+                // Nothing reads part of a table.
+                let _ = fs::remove_file(partial(&path));
+            })?,
+        }
+        Ok(path)
+    }
+}
+
+/// Records a set in memory: an overview, then every point.
+fn record_set(
+    findings: &Findings<'_>,
+    set: &SetCloud<'_>,
+    file: PartialFile,
+    path: &Path,
+    progress: &Progress,
+) -> Result<(), StudyError> {
+    let Findings { mechanism, workspace, analysis, .. } = *findings;
+    let failed = |error: RecordError| StudyError::record(path.display(), error);
+    let mut run = describe(workspace, mechanism);
+    run.insert("poses".to_owned(), analysis.count.poses.to_string());
+    run.insert("set".to_owned(), set.axis_names());
+    let header = opm_mcap::Workspace {
+        layout: set.layout(),
+        mechanism_name: mechanism.name,
+        mechanism: mechanism.text.as_bytes(),
+        run,
+        points: analysis.count.reachable,
+        slices: set.slices,
+    };
+    let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
+    if let Some(lines) = set.boundary() {
+        recorder.boundary(lines).map_err(failed)?;
+    }
+    let every = recorder.overview_every();
+    let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
+        false => Ok(()),
+        true => Err(StudyError::CancelledRecording { partial: partial(path) }),
+    };
+    let mut number = 0;
+    set.points(|_, row| {
+        going(number)?;
+        let wanted = number % every == 0;
+        number += 1;
+        if wanted { recorder.overview(row).map_err(failed) } else { Ok(()) }
+    })?;
+    set.points(|slice, row| {
+        number += 1;
+        going(number)?;
+        recorder.push(slice, row).map_err(failed)
+    })?;
+    recorder.finish(&result(workspace, &analysis.count)).map_err(failed)
+}
+
+/// A recording of poses in the making.
+struct PoseRecording<'a> {
+    findings: &'a Findings<'a>,
+    cloud: &'a Cloud<'a>,
+    mechanism: Attachment<'a>,
+    progress: &'a Progress,
+    path: &'a Path,
+    layout: CloudLayout,
+}
+
+impl PoseRecording<'_> {
+    fn failed(&self, error: RecordError) -> StudyError {
+        StudyError::record(self.path.display(), error)
+    }
+
+    /// One table of all points, in one pass.
+    fn table(&self, file: PartialFile, format: TableFormat) -> Result<(), StudyError> {
+        let Self { findings, cloud, layout, .. } = self;
+        let failed = |error| self.failed(error);
+        let packing = match format {
+            TableFormat::Npy => None,
+            TableFormat::Ply => Some(Packing::new(layout).map_err(failed)?),
+        };
+        let mut columns = cloud.columns();
+        if format == TableFormat::Npy {
+            let names = layout.columns();
+            let kept = table_columns(layout);
+            let column = |name: &&str| names.iter().position(|n| n == name).map(|i| columns[i]);
+            columns = kept.iter().filter_map(column).collect();
+        }
+        let points = findings.analysis.count.reachable;
+        let run = describe(findings.workspace, self.mechanism);
+        let table = TableRecorder::new(file, format, layout, points, &run);
+        let mut table = table.map_err(failed)?;
+        let made = || Points::new(cloud, &columns, packing.as_ref());
+        let mut bytes = Vec::new();
+        let mut write = |portion: Portion| {
+            bytes.clear();
+            bytes.extend(portion.values.iter().flat_map(|value| value.to_le_bytes()));
+            table.push(&bytes).map_err(failed)?;
+            table.push(&portion.packed).map_err(failed)?;
+            if let Some(packing) = &packing {
+                packing.reuse(portion);
+            }
+            Ok(())
+        };
+        findings.poses.points(
+            self.progress,
+            |hits, points: &mut Points<'_>| points.add(hits),
+            made,
+            |mut points| points.take()?.into_iter().try_for_each(&mut write),
+        )?;
+        table.finish().map_err(failed)
+    }
+
+    /// What is to be said of a recording that was cancelled: where it is.
+    fn interrupted(&self, error: StudyError) -> StudyError {
+        match error {
+            StudyError::Cancelled => StudyError::CancelledRecording { partial: partial(self.path) },
+            other => other,
+        }
+    }
+
+    /// A recording: an overview, then all points.
+    fn mcap(&self, file: PartialFile) -> Result<(), StudyError> {
+        let failed = |error| self.failed(error);
+        let Self { cloud, findings, mechanism, progress, .. } = *self;
+        let Findings { workspace, poses, analysis, .. } = *findings;
+        let (grid, count) = (&workspace.grid, &analysis.count);
+        let columns = cloud.columns();
+        let together = slices_together(grid);
+        let header = opm_mcap::Workspace {
+            layout: self.layout.clone(),
+            mechanism_name: mechanism.name,
+            mechanism: mechanism.text.as_bytes(),
+            run: describe(workspace, mechanism),
+            points: count.reachable,
+            slices: grid.slices() / together,
+        };
+        let packing = Packing::new(&header.layout).map_err(failed)?;
+        let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
+        if let Some(lines) = pose_boundary(grid, analysis, together, |pose| cloud.place(pose)) {
+            recorder.boundary(lines).map_err(failed)?;
+        }
+        let interrupted = |error| self.interrupted(error);
+        let every = recorder.overview_every();
+        // Of all points, how many there were, and which is the overview's next.
+        let (mut seen, mut next) = (0, 0);
+        let mut overview = Points::new(cloud, &columns, Some(&packing));
+        let first = &grid.axes()[0];
+        let (mut pose, mut chosen) = (vec![0.0; grid.axes().len()], Vec::new());
+        poses
+            .points(
+                progress,
+                |hits, runs: &mut Vec<_>| runs.extend(hits.numbers(grid)),
+                Vec::new,
+                |runs| {
+                    for poses in runs {
+                        let end = seen + (poses.to - poses.from);
+                        if next < end {
+                            // A run is in one row.
+                            grid.pose_into(poses.from, &mut pose);
+                            let place = poses.from % first.count;
+                            chosen.clear();
+                            while next < end {
+                                chosen.push(first.value(place + (next - seen)));
+                                next += every;
+                            }
+                            overview.line(0, &chosen, &pose[1..]);
+                        }
+                        seen = end;
+                    }
+                    overview.take()?.into_iter().try_for_each(|portion| {
+                        recorder.overview_packed(&portion.packed).map_err(failed)?;
+                        packing.reuse(portion);
+                        Ok(())
+                    })
+                },
+            )
+            .map_err(interrupted)?;
+        poses
+            .points(
+                progress,
+                |hits, points: &mut Points<'_>| points.add(hits),
+                || Points::new(cloud, &columns, Some(&packing)),
+                |mut points| {
+                    points.take()?.into_iter().try_for_each(|portion| {
+                        let slice = portion.slice / together;
+                        recorder.push_packed(slice, &portion.packed).map_err(failed)?;
+                        packing.reuse(portion);
+                        Ok(())
+                    })
+                },
+            )
+            .map_err(interrupted)?;
+        recorder.finish(&result(workspace, count)).map_err(failed)
+    }
+}
+
+/// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
+/// a person can play what is left.
+pub fn slices_together(grid: &Grid) -> u64 {
+    let upper = &grid.axes()[grid.lower()..];
+    let mut together = 1;
+    for axis in &upper[..upper.len() - 1] {
+        if grid.slices() / together > PLAYABLE {
+            together *= axis.count;
+        }
+    }
+    together
+}

@@ -1,0 +1,292 @@
+//! Requests of a workspace: what is asked for, before anything is computed.
+
+mod error;
+mod fit;
+
+pub use error::{RequestError, RequestOption, SetPart, Spelling};
+
+use crate::columns::{PointChoice, PointOptions};
+use crate::error::StudyError;
+use crate::kind::WorkspaceKind;
+use crate::workspace::Workspace;
+use opm_core::manipulator::Manipulator;
+use opm_workspace::{
+    Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sections, default_grid,
+};
+use std::sync::Arc;
+
+/// Characteristic lengths that can be computed with, metres: the square of one, and that of a mechanism
+/// over it, must be numbers.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
+
+/// What is asked of a workspace. A request says nothing of the mechanism, so that one request can be made
+/// of many.
+///
+/// ```
+/// use opm_study::{WorkspaceKind, WorkspaceRequest};
+/// use opm_workspace::Axis;
+///
+/// let request = WorkspaceRequest::new(WorkspaceKind::Reachable)
+///     .axis(Axis::new("x", -0.1, 0.1, 41))
+///     .axis(Axis::new("y", -0.1, 0.1, 41))
+///     .max_condition(20.0);
+/// assert_eq!(request.axes.len(), 2);
+/// ```
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct WorkspaceRequest {
+    /// What the workspace consists of.
+    pub kind: WorkspaceKind,
+    /// The axes of the grid; a coordinate that is not given stays at home. With no axis at all, the grid
+    /// is fitted to the workspace.
+    pub axes: Vec<Axis>,
+    /// The working modes that count; the mode of home if not given.
+    pub modes: Option<Modes>,
+    /// The largest condition number at which a pose counts.
+    pub max_condition: Option<f64>,
+    /// Characteristic length of condition numbers, metres; the spread of the joint axes if not given.
+    pub length: Option<f64>,
+    /// Whether the global conditioning index is asked for.
+    pub conditioning: bool,
+    /// Whether the boundary and the connected components are asked for. All kinds but
+    /// [`WorkspaceKind::Grid`] are asked for them in any case.
+    pub shape: bool,
+    /// What a recording stores of every point.
+    pub points: PointOptions,
+}
+
+impl WorkspaceRequest {
+    /// A request of a kind of workspace, in the working mode of home, over a grid that is fitted to it.
+    pub fn new(kind: WorkspaceKind) -> Self {
+        Self { kind, ..Self::default() }
+    }
+
+    /// Adds an axis to the grid.
+    #[must_use]
+    pub fn axis(mut self, axis: Axis) -> Self {
+        self.axes.push(axis);
+        self
+    }
+
+    /// Asks for other working modes than that of home.
+    #[must_use]
+    pub fn modes(mut self, modes: Modes) -> Self {
+        self.modes = Some(modes);
+        self
+    }
+
+    /// Asks for poses with a condition number of at most this.
+    #[must_use]
+    pub fn max_condition(mut self, most: f64) -> Self {
+        self.max_condition = Some(most);
+        self
+    }
+
+    /// Sets the characteristic length of condition numbers, metres.
+    #[must_use]
+    pub fn length(mut self, length: f64) -> Self {
+        self.length = Some(length);
+        self
+    }
+
+    /// Asks for the global conditioning index.
+    #[must_use]
+    pub fn conditioning(mut self) -> Self {
+        self.conditioning = true;
+        self
+    }
+
+    /// Asks for the boundary and the connected components.
+    #[must_use]
+    pub fn shape(mut self) -> Self {
+        self.shape = true;
+        self
+    }
+
+    /// Sets what a recording stores of every point.
+    #[must_use]
+    pub fn points(mut self, points: PointOptions) -> Self {
+        self.points = points;
+        self
+    }
+
+    /// Checks the request for a manipulator, as far as that takes no work.
+    ///
+    /// # Errors
+    /// What is wrong, and with which option.
+    pub fn check(
+        self,
+        manipulator: impl Into<Arc<Manipulator>>,
+    ) -> Result<CheckedRequest, RequestError> {
+        let (manipulator, kind) = (manipulator.into(), self.kind);
+        if self.conditioning && !kind.is_of_poses() {
+            return Err(RequestError::NotOfPoses { kind });
+        }
+        let length = characteristic_length(self.length, &manipulator)?;
+        let limit = self.max_condition.map(|most| condition_limit(most, length)).transpose()?;
+        let modes = self.modes.unwrap_or(Modes::One(manipulator.home_mode()));
+        check_kind(kind, &manipulator, modes, limit)?;
+        let grid = match self.axes.is_empty() {
+            true => None,
+            false => Some(grid(kind, &manipulator, self.axes)?),
+        };
+        let points = self.points.choose(kind, &manipulator)?;
+        Ok(CheckedRequest {
+            manipulator,
+            kind,
+            grid,
+            modes,
+            limit,
+            length,
+            length_given: self.length.is_some(),
+            conditioning: self.conditioning,
+            shape: self.shape,
+            points,
+        })
+    }
+
+    /// Checks the request, and fits a grid where none is given.
+    ///
+    /// # Errors
+    /// What is wrong with the request, or that it was cancelled.
+    pub fn resolve(
+        self,
+        manipulator: impl Into<Arc<Manipulator>>,
+        progress: &Progress,
+    ) -> Result<Workspace, StudyError> {
+        Ok(self.check(manipulator)?.fit(progress)?)
+    }
+}
+
+/// A request that suits its manipulator. What is left to do is to fit a grid, where none was given.
+#[derive(Clone, Debug)]
+pub struct CheckedRequest {
+    manipulator: Arc<Manipulator>,
+    kind: WorkspaceKind,
+    grid: Option<Grid>,
+    modes: Modes,
+    limit: Option<ConditionLimit>,
+    length: f64,
+    length_given: bool,
+    conditioning: bool,
+    shape: bool,
+    points: PointChoice,
+}
+
+impl CheckedRequest {
+    /// What the workspace consists of.
+    pub fn kind(&self) -> WorkspaceKind {
+        self.kind
+    }
+
+    /// The grid that was given; `None` where one will be fitted.
+    pub fn grid(&self) -> Option<&Grid> {
+        self.grid.as_ref()
+    }
+
+    /// What a recording stores of every point.
+    pub fn points(&self) -> &PointChoice {
+        &self.points
+    }
+
+    /// Refuses a characteristic length that nothing uses: there is no condition number in the request.
+    ///
+    /// # Errors
+    /// [`RequestError::UnusedLength`]
+    pub fn refuse_unused_length(&self) -> Result<(), RequestError> {
+        let used = self.points.has_condition() || self.conditioning || self.limit.is_some();
+        if self.length_given && !used { Err(RequestError::UnusedLength) } else { Ok(()) }
+    }
+
+    /// Fits a grid to the workspace, where none was given: the working space of all poses is searched for
+    /// its extent.
+    ///
+    /// # Errors
+    /// That it was cancelled.
+    pub fn fit(self, progress: &Progress) -> Result<Workspace, Cancelled> {
+        let Self { manipulator, kind, modes, limit, length, conditioning, shape, .. } = self;
+        let (grid, unbounded) = match self.grid {
+            Some(grid) => (grid, None),
+            None => {
+                let (grid, extents) = default_grid(&manipulator, modes, progress)?;
+                let grid = fit::fit(kind, &manipulator, grid);
+                let varies = |name: &str| {
+                    grid.axes().iter().any(|axis| axis.name == *name && axis.count > 1)
+                };
+                let endless = extents.iter().filter(|extent| extent.unbounded);
+                let endless = endless.map(|extent| extent.name.to_string());
+                let endless = endless.filter(|name| varies(name)).collect();
+                (grid, Some(endless))
+            }
+        };
+        Ok(Workspace {
+            manipulator,
+            kind,
+            grid,
+            modes,
+            limit,
+            length,
+            conditioning,
+            shape,
+            unbounded,
+        })
+    }
+}
+
+/// The characteristic length of condition numbers, metres: the given one, or the spread of the joint axes.
+///
+/// # Errors
+/// [`RequestError::Length`]
+pub fn characteristic_length(
+    given: Option<f64>,
+    manipulator: &Manipulator,
+) -> Result<f64, RequestError> {
+    let length = given.unwrap_or_else(|| manipulator.characteristic_length());
+    if LENGTHS.contains(&length) { Ok(length) } else { Err(RequestError::Length(length)) }
+}
+
+/// A limit on the condition number with a characteristic length.
+fn condition_limit(most: f64, length: f64) -> Result<ConditionLimit, RequestError> {
+    match most {
+        1.0.. if most.is_finite() => Ok(ConditionLimit { most, length }),
+        _ => Err(RequestError::MaxCondition(most)),
+    }
+}
+
+/// Refuses what has no meaning with a kind.
+fn check_kind(
+    kind: WorkspaceKind,
+    manipulator: &Manipulator,
+    modes: Modes,
+    limit: Option<ConditionLimit>,
+) -> Result<(), RequestError> {
+    if kind.sections() != Sections::Whole && limit.is_some() {
+        return Err(RequestError::SectionCondition { kind });
+    }
+    if kind == WorkspaceKind::Imaginary && modes == Modes::Any {
+        return Err(RequestError::SeveralModes { kind });
+    }
+    if kind == WorkspaceKind::Imaginary && manipulator.imaginary().is_empty() {
+        return Err(RequestError::NoImaginaryJoints { kind });
+    }
+    Ok(())
+}
+
+/// The grid with these axes, if it is one for workspaces of this kind.
+fn grid(
+    kind: WorkspaceKind,
+    manipulator: &Manipulator,
+    axes: Vec<Axis>,
+) -> Result<Grid, RequestError> {
+    let grid = Grid::of(kind.sections(), manipulator, axes)?;
+    let held = &grid.axes()[kind.held_axes(&grid)];
+    match held.iter().find(|axis| axis.count > 1) {
+        None => Ok(grid),
+        Some(Axis { name, count, .. }) => {
+            Err(RequestError::Held { kind, axis: name.clone(), count: *count })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

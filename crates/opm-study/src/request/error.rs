@@ -1,0 +1,301 @@
+//! What is wrong with a request: typed, with the option that it is about.
+
+use crate::columns::{INVERSE_CONDITION, TIP};
+use crate::kind::WorkspaceKind;
+use crate::text::count;
+use opm_workspace::GridError;
+use std::path::PathBuf;
+
+/// An option of a request. Every front end spells it in its own way: `--kind`, or `kind=`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RequestOption {
+    /// What the workspace consists of.
+    Kind,
+    /// The axes of the grid.
+    Grid,
+    /// The working modes.
+    Mode,
+    /// The largest condition number.
+    MaxCondition,
+    /// The characteristic length of condition numbers.
+    Length,
+    /// The global conditioning index.
+    Conditioning,
+    /// The coordinates that are x, y and z of a point in a recording.
+    Axes,
+    /// The values that are stored with a point.
+    Scalars,
+    /// The value that the colour shows.
+    Color,
+    /// The file of a recording.
+    Output,
+}
+
+impl RequestOption {
+    /// The name of the option in this crate.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kind => "kind",
+            Self::Grid => "axes of the grid",
+            Self::Mode => "modes",
+            Self::MaxCondition => "max_condition",
+            Self::Length => "length",
+            Self::Conditioning => "conditioning",
+            Self::Axes => "axes",
+            Self::Scalars => "scalars",
+            Self::Color => "color",
+            Self::Output => "path",
+        }
+    }
+}
+
+/// How a front end spells an option. [`RequestOption::name`] is how this crate does.
+pub type Spelling = fn(RequestOption) -> &'static str;
+
+/// What a set has too many of for a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SetPart {
+    /// Slices, one for each value of the slowest axis.
+    Slices,
+    /// Values of the slowest axis.
+    Values,
+}
+
+/// What is wrong with a request.
+///
+/// ```
+/// use opm_study::{RequestError, RequestOption, WorkspaceKind};
+///
+/// let error = RequestError::NoImaginaryJoints { kind: WorkspaceKind::Imaginary };
+/// assert_eq!(error.option(), RequestOption::Kind);
+/// let told = error.problem(|option| match option {
+///     RequestOption::Kind => "--kind",
+///     other => other.name(),
+/// });
+/// assert_eq!(told, "with --kind imaginary: this mechanism has no imaginary joints");
+/// ```
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]
+#[non_exhaustive]
+pub enum RequestError {
+    /// A limit on the condition number that is below one, or not a number.
+    MaxCondition(f64),
+    /// A characteristic length that cannot be computed with.
+    Length(f64),
+    /// A characteristic length without a condition number that uses it.
+    UnusedLength,
+    /// A grid that is not one of the manipulator.
+    Grid(GridError),
+    /// An axis with several values of a coordinate that the kind holds at one.
+    Held {
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The name of the axis.
+        axis: String,
+        /// Its number of values.
+        count: u64,
+    },
+    /// A limit on the condition number of a section alone.
+    SectionCondition {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// More than one working mode, where the points differ from mode to mode.
+    SeveralModes {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// A workspace of imaginary joints that the mechanism does not have.
+    NoImaginaryJoints {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// A conditioning index of points that are not poses.
+    NotOfPoses {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// A name that is not one of a value of the points.
+    UnknownColumn {
+        /// The option that has the name.
+        option: RequestOption,
+        /// The name.
+        name: String,
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// A name that is not one of a task coordinate.
+    UnknownCoordinate {
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// A scalar with the name of a field that every cloud has.
+    ReservedField {
+        /// The name.
+        name: String,
+    },
+    /// A scalar that is given twice.
+    RepeatedScalar {
+        /// The name.
+        name: String,
+    },
+    /// Other than three different axes of a cloud.
+    CloudAxes {
+        /// The names that are given.
+        given: Vec<String>,
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// Standard output for a recording, which has another name until it is whole.
+    StandardOutput,
+    /// A file name whose ending is not that of a format for points.
+    FileEnding {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file name that does not end in `.mcap`, of a set of a kind that is written as MCAP only.
+    KindIsMcap {
+        /// The file.
+        path: PathBuf,
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// A file name that does not end in `.mcap`, of something else that is written as MCAP only.
+    ContentIsMcap {
+        /// The file.
+        path: PathBuf,
+        /// What is written.
+        content: &'static str,
+    },
+    /// More slices than a recording may have.
+    TooManySlices {
+        /// What there are too many of.
+        part: SetPart,
+        /// How many there are.
+        given: u64,
+        /// The slowest axis.
+        axis: String,
+        /// How many there may be.
+        most: u64,
+    },
+}
+
+impl RequestError {
+    /// The option that is wrong.
+    pub fn option(&self) -> RequestOption {
+        match self {
+            Self::MaxCondition(_) | Self::SectionCondition { .. } => RequestOption::MaxCondition,
+            Self::Length(_) | Self::UnusedLength => RequestOption::Length,
+            Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
+            Self::SeveralModes { .. } => RequestOption::Mode,
+            Self::NoImaginaryJoints { .. } => RequestOption::Kind,
+            Self::NotOfPoses { .. } => RequestOption::Conditioning,
+            Self::UnknownColumn { option, .. } => *option,
+            Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
+            Self::ReservedField { .. } | Self::RepeatedScalar { .. } => RequestOption::Scalars,
+            Self::StandardOutput
+            | Self::FileEnding { .. }
+            | Self::KindIsMcap { .. }
+            | Self::ContentIsMcap { .. } => RequestOption::Output,
+        }
+    }
+
+    /// What is wrong, without the option; other options in the text are spelled as the front end does.
+    pub fn problem(&self, spell: Spelling) -> String {
+        let with = |kind: &WorkspaceKind| format!("{} {kind}", spell(RequestOption::Kind));
+        match self {
+            Self::MaxCondition(most) => format!("{most:?}, expected a number of at least 1"),
+            Self::Length(length) => {
+                format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
+            }
+            Self::UnusedLength => format!(
+                "there is no condition number that it would be of; {}, {} or {} \
+                 {INVERSE_CONDITION} ask for one",
+                spell(RequestOption::MaxCondition),
+                spell(RequestOption::Conditioning),
+                spell(RequestOption::Scalars),
+            ),
+            Self::Grid(error) => error.to_string(),
+            Self::Held { kind, axis, count } => {
+                let section = if *kind == WorkspaceKind::Orientation { "lower" } else { "upper" };
+                format!(
+                    "{axis} has {count} values; {} holds the {section} section's coordinates: give \
+                     one value, {axis}=VALUE",
+                    with(kind)
+                )
+            }
+            Self::SectionCondition { kind } => {
+                format!("with {}: a section alone has no condition number", with(kind))
+            }
+            Self::SeveralModes { kind } => format!(
+                "with {}: the imaginary joints have other values in each mode; give one",
+                with(kind)
+            ),
+            Self::NoImaginaryJoints { kind } => {
+                format!("with {}: this mechanism has no imaginary joints", with(kind))
+            }
+            Self::NotOfPoses { kind } => format!(
+                "with {}: only poses have a condition number; ask for it of grid, \
+                 constant-orientation or orientation",
+                with(kind)
+            ),
+            Self::UnknownColumn { name, kind, known, .. } => {
+                let known = known.join(", ");
+                match kind.is_of_poses() {
+                    true => format!("{name:?} is none of {known}"),
+                    false => format!("{name:?} with {}: none of {known}", with(kind)),
+                }
+            }
+            Self::UnknownCoordinate { name, known } => {
+                format!("no task coordinate {name:?}, expected one of {}", known.join(", "))
+            }
+            Self::ReservedField { name } => {
+                format!("a cloud has a field {name} already; use {}", spell(RequestOption::Axes))
+            }
+            Self::RepeatedScalar { name } => format!("{name} is given twice"),
+            Self::CloudAxes { given, kind } => {
+                let given = given.join(",");
+                match kind.is_of_poses() {
+                    true => {
+                        format!("{given:?}, expected three different task coordinates, or {TIP}")
+                    }
+                    false => {
+                        format!("{given:?}, expected three different values of {}", with(kind))
+                    }
+                }
+            }
+            Self::StandardOutput => "a recording needs a file, not standard output".to_owned(),
+            Self::FileEnding { path } => format!(
+                "{}, expected a name that ends in .mcap (Foxglove, Lichtblick, Rerun), .npy \
+                 (NumPy) or .ply (mesh tools)",
+                path.display()
+            ),
+            Self::KindIsMcap { path, kind } => mcap_only(path, &with(kind)),
+            Self::ContentIsMcap { path, content } => mcap_only(path, content),
+            Self::TooManySlices { part: SetPart::Slices, given, axis, most } => format!(
+                "{} slices, one a value of {axis}, expected at most {}",
+                count(*given),
+                count(*most)
+            ),
+            Self::TooManySlices { part: SetPart::Values, given, axis, most } => {
+                format!("{given} values of {axis}, expected at most {most}")
+            }
+        }
+    }
+}
+
+fn mcap_only(path: &std::path::Path, content: &str) -> String {
+    let path = path.display();
+    format!("{path}: {content} is written as MCAP, expected a name that ends in .mcap")
+}
+
+impl From<GridError> for RequestError {
+    fn from(error: GridError) -> Self {
+        Self::Grid(error)
+    }
+}
