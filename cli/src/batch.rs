@@ -8,7 +8,7 @@ use crate::pose::find;
 use crate::progress::{interruptible, watch};
 use crate::text::{count, short};
 use csv::{ErrorKind, WriterBuilder};
-use opm_core::manipulator::{AllModes, Drives, Manipulator, Mode, PoseError, Solution};
+use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_mcap::{PartialFile, Sink};
 use opm_workspace::Progress;
 use serde::Serialize;
@@ -228,7 +228,7 @@ impl Batch<'_> {
 struct Rows<'a, W: Write> {
     manipulator: &'a Manipulator,
     writer: csv::Writer<W>,
-    drives: Drives,
+    drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
     /// Imaginary, then actuated joints; empty out of reach.
@@ -249,7 +249,7 @@ impl<'a, W: Write> Rows<'a, W> {
         Ok(Self {
             manipulator,
             writer,
-            drives: manipulator.drives(),
+            drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
             cells: Vec::new(),
@@ -268,31 +268,35 @@ impl<'a, W: Write> Rows<'a, W> {
         let manipulator = self.manipulator;
         match modes {
             Modes::One(mode) => {
-                let reachable =
-                    manipulator.inverse_drives(pose, mode, &mut self.drives).map_err(wrong)?;
-                let joints = self.drives.imaginary.iter().chain(&self.drives.actuated);
+                let found =
+                    manipulator.inverse_actuated(pose, mode, &mut self.drives).map_err(wrong)?;
+                let reachable = found.is_some();
+                let within = found.is_some_and(ActuatedJoints::within_limits);
+                let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
                 fill(&mut self.cells, joints.copied(), reachable);
-                let within = reachable && self.drives.within_limits;
                 self.reachable += u64::from(reachable);
                 self.within_limits += u64::from(within);
                 self.write(pose, reachable, within, &manipulator.format_mode(mode))
             }
             Modes::All => {
-                let reachable = manipulator.inverse_all(pose, &mut self.all).map_err(wrong)?;
+                let found = manipulator.inverse_all(pose, &mut self.all).map_err(wrong)?;
+                let reachable = found.is_some();
                 self.reachable += u64::from(reachable);
                 if !reachable {
-                    let joints = self.drives.imaginary.iter().chain(&self.drives.actuated);
+                    let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
                     fill(&mut self.cells, joints.copied(), false);
                     return self.write(pose, false, false, "");
                 }
                 let mut any_within = false;
                 let found: Vec<_> = self.all.modes(manipulator).collect();
                 for mode in found {
-                    manipulator.pick(&self.all, mode, &mut self.solution);
-                    let solution = &self.solution;
-                    let actuated = manipulator.actuated().iter().map(|&i| solution.joints[i]);
-                    fill(&mut self.cells, solution.imaginary.iter().copied().chain(actuated), true);
-                    let within = solution.within_limits;
+                    let solution =
+                        manipulator.solution_in_mode(&self.all, mode, &mut self.solution);
+                    let Some(solution) = solution else { continue };
+                    let actuated = manipulator.actuated().iter().map(|&i| solution.joints()[i]);
+                    let joints = solution.imaginary().iter().copied().chain(actuated);
+                    fill(&mut self.cells, joints, true);
+                    let within = solution.within_limits();
                     any_within |= within;
                     self.write(pose, true, within, &manipulator.format_mode(mode))?;
                 }

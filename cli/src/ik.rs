@@ -98,18 +98,18 @@ impl<'a> Answer<'a> {
         let mut solution = manipulator.solution();
         let (solutions, unreachable) = match modes {
             Modes::One(mode) => {
-                let reached = manipulator.inverse(&pose, mode, &mut solution).map_err(wrong)?;
-                let unreachable = solution.unreachable.clone();
-                (if reached { vec![(mode, solution)] } else { vec![] }, unreachable)
+                let found = manipulator.inverse(&pose, mode, &mut solution).map_err(wrong)?;
+                let solutions = found.into_iter().map(|found| (mode, found.clone())).collect();
+                (solutions, solution.unreachable().to_vec())
             }
             Modes::All => {
                 let mut all = manipulator.all_modes();
                 manipulator.inverse_all(&pose, &mut all).map_err(wrong)?;
                 let solutions = all
                     .modes(manipulator)
-                    .map(|mode| {
-                        manipulator.pick(&all, mode, &mut solution);
-                        (mode, solution.clone())
+                    .filter_map(|mode| {
+                        let found = manipulator.solution_in_mode(&all, mode, &mut solution)?;
+                        Some((mode, found.clone()))
                     })
                     .collect();
                 (solutions, all.unreachable().collect())
@@ -140,9 +140,9 @@ impl<'a> Answer<'a> {
             let imaginary = self.manipulator.imaginary().iter().map(|j| &*j.name);
             JsonSolution {
                 mode: self.manipulator.format_mode(*mode),
-                within_limits: solution.within_limits,
-                joints: named(joints.zip(solution.joints.iter().copied())),
-                imaginary: named(imaginary.zip(solution.imaginary.iter().copied())),
+                within_limits: solution.within_limits(),
+                joints: named(joints.zip(solution.joints().iter().copied())),
+                imaginary: named(imaginary.zip(solution.imaginary().iter().copied())),
             }
         };
         Json {
@@ -189,7 +189,7 @@ impl<'a> Answer<'a> {
                     text,
                     "{}, {}\n\n{}",
                     self.mode_name(*mode),
-                    if solution.within_limits {
+                    if solution.within_limits() {
                         "within limits"
                     } else {
                         "beyond limits (marked *)"
@@ -223,12 +223,12 @@ impl<'a> Answer<'a> {
             ]);
         };
         let mut number = 0;
-        let imaginary = || self.manipulator.imaginary().iter().zip(&solution.imaginary);
+        let imaginary = || self.manipulator.imaginary().iter().zip(solution.imaginary());
         for (leg_number, leg) in self.manipulator.mechanism().legs.iter().enumerate() {
             for joint in &leg.joints {
                 let kind = if joint.actuated { "actuated" } else { "passive" };
                 for coordinate in &joint.coordinates {
-                    let value = solution.joints[number];
+                    let value = solution.joints()[number];
                     let of = Of::Joint(coordinate, &self.manipulator.limits()[number]);
                     row(&leg.name, &coordinate.name, kind, value, of);
                     number += 1;
@@ -253,15 +253,15 @@ impl<'a> Answer<'a> {
         headers.extend(actuated().map(|(_, c)| text::header(&c.name, c.quantity, units)));
         let mut table = Table::new(headers);
         for (mode, solution) in &self.solutions {
-            let within = if solution.within_limits { "yes" } else { "no" };
+            let within = if solution.within_limits() { "yes" } else { "no" };
             let mut row = vec![manipulator.format_mode(*mode), within.to_owned()];
             row.extend(
                 imaginary()
-                    .zip(&solution.imaginary)
+                    .zip(solution.imaginary())
                     .map(|(j, &value)| text::number(value, j.quantity, units)),
             );
             row.extend(
-                actuated().map(|(i, c)| text::number(solution.joints[i], c.quantity, units)),
+                actuated().map(|(i, c)| text::number(solution.joints()[i], c.quantity, units)),
             );
             table.row(row);
         }

@@ -113,7 +113,7 @@ impl Loaded {
                 number.and_then(|number| places.legs.get(number)).copied()
             }
             CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
-            CompileError::Decompose(_) | CompileError::Choices(_) => None,
+            _ => None,
         };
         match place {
             Some((line, column)) => format!("{}:{line}:{column}", self.label),

@@ -89,9 +89,10 @@ impl Transform {
     }
 }
 
-/// Where the platform is at a pose, SI; the quaternion with its scalar first, which is not negative.
+/// The position of the platform at a pose, in metres, and its quaternion, whose scalar comes first and is not
+/// negative; null for what is no pose.
 pub fn json(manipulator: &Manipulator, pose: &[f64]) -> Value {
-    let platform = manipulator.platform_pose(pose);
+    let Ok(platform) = manipulator.platform_pose(pose) else { return Value::Null };
     let q = platform.rotation;
     let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
     let quaternion = [q.w, q.i, q.j, q.k].map(|part| sign * part + 0.0);

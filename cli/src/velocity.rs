@@ -24,8 +24,8 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let length = args.length.map(Number::characteristic_length).transpose()?;
     let length = characteristic_length(length, &manipulator)?;
     let mut at = manipulator.solution();
-    let reached = manipulator.inverse(&pose, mode, &mut at);
-    let reached = reached.map_err(|error| Failure::flag("--pose", error))?;
+    let found = manipulator.inverse(&pose, mode, &mut at);
+    let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let asked = Asked { loaded: &loaded, manipulator: &manipulator, pose, rates, mode };
     if !reached {
         return output.print(&asked.out_of_reach(&at), asked.out_of_reach_text(&at));
@@ -60,7 +60,7 @@ impl Asked<'_> {
         for key in ["joint_rates", "imaginary_rates", "jacobian", "singularity"] {
             json.insert(key.into(), Value::Null);
         }
-        let names = at.unreachable.iter().map(|u| &*legs[u.leg].name);
+        let names = at.unreachable().iter().map(|u| &*legs[u.leg].name);
         json.insert("unreachable".into(), names.collect::<Vec<_>>().into());
         json.into()
     }
@@ -68,7 +68,7 @@ impl Asked<'_> {
     fn out_of_reach_text(&self, at: &Solution) -> String {
         let mut text = self.title();
         let _ = writeln!(text, "out of reach in this mode");
-        for unreachable in &at.unreachable {
+        for unreachable in at.unreachable() {
             let leg = &self.manipulator.mechanism().legs[unreachable.leg].name;
             let _ = writeln!(text, "  {leg}: {} section out of reach", unreachable.section);
         }
@@ -273,14 +273,14 @@ impl<'a> Answer<'a> {
             for joint in &leg.joints {
                 let kind = if joint.actuated { "actuated" } else { "passive" };
                 for c in &joint.coordinates {
-                    let value = self.at.joints[number];
+                    let value = self.at.joints()[number];
                     row(&leg.name, &c.name, kind, c.quantity, value, self.joint_rate(number));
                     number += 1;
                 }
             }
             let imaginary = manipulator.imaginary().iter().enumerate();
             for (i, joint) in imaginary.filter(|(_, joint)| joint.leg == leg_number) {
-                let (value, rate) = (self.at.imaginary[i], self.imaginary_rate(i));
+                let (value, rate) = (self.at.imaginary()[i], self.imaginary_rate(i));
                 row(&leg.name, &joint.name, "imaginary", joint.quantity, value, rate);
             }
         }

@@ -434,12 +434,12 @@ impl Manipulator {
                     solved.map_err(|error| error.to_string())?;
                     *at = Some(pose);
                 }
-                if !self.inner.pick(all, mode, solution) {
+                let Some(solution) = self.inner.solution_in_mode(all, mode, solution) else {
                     return Ok([false; 2]);
-                }
-                joints.copy_from_slice(&solution.joints);
-                imaginary.copy_from_slice(&solution.imaginary);
-                Ok([true, solution.within_limits])
+                };
+                joints.copy_from_slice(solution.joints());
+                imaginary.copy_from_slice(solution.imaginary());
+                Ok([true, solution.within_limits()])
             },
         )?;
         Solutions::of_all_modes(py, Names::of(&self.inner, None), poses.count, tables)

@@ -63,11 +63,8 @@ impl Manipulator {
         let none = || ();
         let tables = Tables::fill(py, poses.count, [16], threads, none, |(), row, [out]| {
             let pose = poses.row(row);
-            if let Some(number) = pose.iter().position(|value| !value.is_finite()) {
-                let (name, value) = (self.pose_names()[number], pose[number]);
-                return Err(format!("pose {row}: {name} is {value:?}, expected a number"));
-            }
-            let place = self.inner.platform_pose(pose).to_homogeneous();
+            let place = self.inner.platform_pose(pose);
+            let place = place.map_err(|error| format!("pose {row}: {error}"))?.to_homogeneous();
             out.copy_from_slice(place.transpose().as_slice());
             Ok([true; 2])
         })?;

@@ -67,8 +67,9 @@ impl Manipulator {
             None => manipulator.task().home(),
         };
         let mut solution = manipulator.solution();
-        if !manipulator.inverse(&pose, mode, &mut solution).map_err(|error| failed(&error))? {
-            let legs = solution.unreachable.iter();
+        let found = manipulator.inverse(&pose, mode, &mut solution);
+        if found.map_err(|error| failed(&error))?.is_none() {
+            let legs = solution.unreachable().iter();
             let legs: Vec<_> = legs.map(|u| &*manipulator.mechanism().legs[u.leg].name).collect();
             return Err(wrong(format!("the pose {pose:?} is out of reach of {}", legs.join(", "))));
         }
@@ -76,8 +77,8 @@ impl Manipulator {
         let cuts = Cuts { decomposition, imaginary: manipulator.imaginary() };
         let skeleton = Skeleton::new(manipulator.mechanism(), cuts);
         let posture = Posture {
-            joints: &solution.joints,
-            imaginary: &solution.imaginary,
+            joints: solution.joints(),
+            imaginary: solution.imaginary(),
             platform: manipulator.task().displacement(&pose),
         };
         let mut places = Vec::new();

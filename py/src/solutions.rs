@@ -8,7 +8,7 @@ use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use opm_core::joint::Quantity;
 use opm_core::linkage::{Linkage, LinkageBranch};
-use opm_core::manipulator::{Answers, Batch, Manipulator, Mode, RowError};
+use opm_core::manipulator::{Batch, BatchError, BatchOutput, Manipulator, Mode};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use rayon::prelude::*;
@@ -71,7 +71,7 @@ impl Solutions {
         Part {
             first: 0,
             poses: poses.values(),
-            out: Answers {
+            out: BatchOutput {
                 joints: joints.readwrite().as_slice_mut()?,
                 imaginary: imaginary.readwrite().as_slice_mut()?,
                 reachable: reachable.readwrite().as_slice_mut()?,
@@ -168,7 +168,7 @@ struct Part<'a> {
     /// Number of the first.
     first: usize,
     poses: &'a [f64],
-    out: Answers<'a>,
+    out: BatchOutput<'a>,
 }
 
 impl Part<'_> {
@@ -185,7 +185,10 @@ impl Part<'_> {
                 return None;
             }
             let solved = manipulator.inverse_many(poses, mode, batch, &mut out);
-            solved.err().map(|RowError { row, error }| RowError { row: first + row, error })
+            solved.err().map(|error| match error {
+                BatchError::Pose { row, error } => BatchError::Pose { row: first + row, error },
+                other => other,
+            })
         };
         // Of several wrong poses, the first.
         let wrong = if self.out.reachable.len() <= PART {
@@ -194,7 +197,10 @@ impl Part<'_> {
             let parts = self.parts(manipulator);
             let all = || {
                 let parts = parts.into_par_iter().map_init(|| manipulator.batch(), work);
-                parts.flatten().min_by_key(|error| error.row)
+                parts.flatten().min_by_key(|error| match error {
+                    BatchError::Pose { row, .. } => *row,
+                    _ => 0,
+                })
             };
             interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
         };
@@ -211,7 +217,7 @@ impl Part<'_> {
         let mut parts = Vec::with_capacity(out.reachable.len().div_ceil(PART));
         for poses in poses.chunks(PART * width) {
             let rows = poses.len() / width;
-            let answers = Answers {
+            let answers = BatchOutput {
                 joints: split(&mut out.joints, rows * joints),
                 imaginary: split(&mut out.imaginary, rows * imaginary),
                 reachable: split(&mut out.reachable, rows),

@@ -295,10 +295,10 @@ impl Record {
             (&instant.pose, true),
             (&instant.velocity, true),
             (&instant.acceleration, true),
-            (&solution.joints, *reached),
+            (solution.joints(), *reached),
             (&motion.joint_rates, *reached && *regular),
             (&motion.joint_accelerations, *reached && *regular),
-            (&solution.imaginary, *reached),
+            (solution.imaginary(), *reached),
             (&motion.imaginary_rates, *reached && *regular),
             (&motion.imaginary_accelerations, *reached && *regular),
         ];

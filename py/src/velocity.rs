@@ -364,6 +364,7 @@ pub fn characteristic_length(inner: &core::Manipulator, given: Option<f64>) -> P
 
 impl Manipulator {
     fn solve(&self, pose: &[f64], mode: Mode, at: &mut Solution) -> Result<bool, String> {
-        self.inner.inverse(pose, mode, at).map_err(|error| error.to_string())
+        let found = self.inner.inverse(pose, mode, at).map_err(|error| error.to_string())?;
+        Ok(found.is_some())
     }
 }

@@ -129,7 +129,7 @@ impl From<SetError> for StudyError {
     fn from(error: SetError) -> Self {
         match error {
             SetError::Cancelled(_) => Self::Cancelled,
-            SetError::Size { .. } => Self::Set(error),
+            other => Self::Set(other),
         }
     }
 }

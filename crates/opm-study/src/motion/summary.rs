@@ -76,10 +76,15 @@ impl MotionSummary {
         }
         let (solution, motion) = (&sample.solution, &sample.motion);
         for (ranges, positions, rates, accelerations) in [
-            (&mut self.joints, &solution.joints, &motion.joint_rates, &motion.joint_accelerations),
+            (
+                &mut self.joints,
+                &solution.joints(),
+                &motion.joint_rates,
+                &motion.joint_accelerations,
+            ),
             (
                 &mut self.imaginary,
-                &solution.imaginary,
+                &solution.imaginary(),
                 &motion.imaginary_rates,
                 &motion.imaginary_accelerations,
             ),

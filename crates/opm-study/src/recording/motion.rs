@@ -107,7 +107,7 @@ impl<'a> MotionRecorder<'a> {
             imaginary: &motion.imaginary_rates,
             accelerations: &motion.joint_accelerations,
         });
-        let (joints, imaginary) = (&solution.joints, &solution.imaginary);
+        let (joints, imaginary) = (&solution.joints(), &solution.imaginary());
         let posture = if sample.reached {
             let frames = if self.recorder.shows(now) {
                 let platform = manipulator.task().displacement(&instant.pose);

@@ -4,7 +4,7 @@ use crate::columns::{Column, NamedColumn, PointColumns, is_field};
 use crate::error::StudyError;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
-use opm_core::manipulator::{AllModes, Drives, Manipulator, Solution};
+use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
 use opm_workspace::{ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
@@ -195,7 +195,7 @@ pub struct Points<'a> {
 enum Joints<'a> {
     /// No column asks for joints.
     Unused,
-    One(Drives),
+    One(ActuatedJoints),
     Any(Box<(AllModes, Solution)>),
     /// With a limit on the condition number, which decides on the mode, or with a column that asks for
     /// that number.
@@ -215,7 +215,7 @@ impl<'a> Points<'a> {
                 Joints::Limited(Box::new((conditioned, manipulator.solution())))
             }
             _ if !columns.iter().any(asked) => Joints::Unused,
-            (Modes::One(_), _) => Joints::One(manipulator.drives()),
+            (Modes::One(_), _) => Joints::One(manipulator.actuated_joints()),
             (Modes::Any, Some(limit)) => {
                 let conditioned = Conditioned::new(manipulator, limit);
                 Joints::Limited(Box::new((conditioned, manipulator.solution())))
@@ -294,12 +294,12 @@ impl<'a> Points<'a> {
         let manipulator = self.cloud.manipulator();
         let found = match (&mut self.joints, self.cloud.workspace.modes) {
             (Joints::One(drives), Modes::One(mode)) => {
-                manipulator.inverse_drives(pose, mode, drives) == Ok(true)
+                matches!(manipulator.inverse_actuated(pose, mode, drives), Ok(Some(_)))
             }
             (Joints::Any(buffers), _) => {
                 let (all, solution) = &mut **buffers;
-                manipulator.inverse_all(pose, all) == Ok(true)
-                    && manipulator.pick_within_limits(all, solution).is_some()
+                matches!(manipulator.inverse_all(pose, all), Ok(Some(_)))
+                    && manipulator.solution_within_limits(all, solution).is_some()
             }
             (Joints::Limited(buffers), modes) => {
                 let (conditioned, solution) = &mut **buffers;
@@ -324,17 +324,17 @@ impl<'a> Points<'a> {
                 (Column::Tip(i), _) => tip.get_or_insert_with(|| {
                     manipulator.task().displacement(pose) * manipulator.mechanism().platform
                 })[i],
-                (Column::Imaginary(number), Joints::One(drives)) => drives.imaginary[number],
-                (Column::Actuated(number), Joints::One(drives)) => drives.actuated[number],
-                (Column::Imaginary(number), Joints::Any(buffers)) => buffers.1.imaginary[number],
+                (Column::Imaginary(number), Joints::One(drives)) => drives.imaginary()[number],
+                (Column::Actuated(number), Joints::One(drives)) => drives.actuated()[number],
+                (Column::Imaginary(number), Joints::Any(buffers)) => buffers.1.imaginary()[number],
                 (Column::Actuated(number), Joints::Any(buffers)) => {
-                    buffers.1.joints[manipulator.actuated()[number]]
+                    buffers.1.joints()[manipulator.actuated()[number]]
                 }
                 (Column::Imaginary(number), Joints::Limited(buffers)) => {
-                    buffers.1.imaginary[number]
+                    buffers.1.imaginary()[number]
                 }
                 (Column::Actuated(number), Joints::Limited(buffers)) => {
-                    buffers.1.joints[manipulator.actuated()[number]]
+                    buffers.1.joints()[manipulator.actuated()[number]]
                 }
                 (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
                 (
