@@ -9,7 +9,7 @@
 //!   `U = exp(-I τ) · b`.
 //!
 //! Either way both sections have as many freedoms as their subspace, and each is one
-//! [`Chain`].
+//! [`Chain`](crate::chain::Chain).
 
 mod batch;
 mod breaks;
