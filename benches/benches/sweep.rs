@@ -9,7 +9,7 @@ use opm_benches::{
     Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_passive_angles,
 };
 use opm_core::chain::region::{Convex, Region};
-use opm_core::manipulator::{ActuatedJoints, Follow, Manipulator};
+use opm_core::manipulator::{ActuatedJoints, LegBranch, Manipulator};
 use opm_workspace::{Grid, Modes, Progress, Sweep};
 use rayon::ThreadPool;
 
@@ -68,20 +68,20 @@ fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
         for index in slice * in_slice..(slice + 1) * in_slice {
             grid.pose_into(index, &mut pose);
             let v = task.lower(&pose[..grid.lower()]);
-            count += u64::from(ways.iter().all(|way| manipulator.follows(way, &v)));
+            count += u64::from(ways.iter().all(|way| manipulator.reaches(way, &v)));
         }
     }
     count
 }
 
 /// How each leg depends on the slice, in the home mode; `None` if a leg has no such dependence.
-fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<Follow>> {
+fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<LegBranch>> {
     let mut pose = [0.0; 5];
     grid.pose_into(slice * (grid.poses() / grid.slices()), &mut pose);
     let b = manipulator.task().upper(&pose[grid.lower()..]);
     let mut ways = Vec::new();
     for leg in 0..manipulator.legs() {
-        manipulator.follow(leg, &b, Some(manipulator.home_mode()), &mut ways);
+        manipulator.leg_branches(leg, &b, Some(manipulator.home_mode()), &mut ways);
     }
     (ways.len() == manipulator.legs()).then_some(ways)
 }
@@ -207,7 +207,7 @@ fn print_table(title: &str, timings: &[Timing]) {
 fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
     let of = |set: &Convex| match set {
         Convex::Bands(_) => 0,
-        Convex::Disc(_) | Convex::Stadium(_) => 1,
+        Convex::Disc(_) | Convex::Capsule(_) => 1,
     };
     let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
     let v = manipulator.task().lower(&manipulator.task().home()[..grid.lower()]);

@@ -21,7 +21,7 @@ fn main() {
     }
     let rates = [0.1, -0.2, 0.5, 0.3, -0.4];
     let n = poses.len() as u64;
-    let (mut motion, mut jacobians) = (manipulator.motion(), manipulator.jacobians());
+    let (mut motion, mut jacobians) = (manipulator.joint_motion(), manipulator.jacobians());
     let (mut same, mut measured) = (manipulator.jacobians(), manipulator.singularities());
     manipulator.differentiate(&solutions[0], &mut same).expect("a pose in reach");
     let timings = compare(vec![

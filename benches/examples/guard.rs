@@ -76,7 +76,7 @@ fn solve(work: &str, manipulator: &Manipulator) {
         .iter()
         .map(|solution| manipulator.actuated().iter().map(|&i| solution.joints()[i]).collect())
         .collect();
-    let mut motion = manipulator.motion();
+    let mut motion = manipulator.joint_motion();
     let rates = [0.1, -0.2, 0.5, 0.3, -0.4];
     counted(&mut || {
         for i in 0..poses.len() {

@@ -4,7 +4,7 @@
 pub mod peers;
 pub mod square_roots;
 
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
 use opm_workspace::{Axis, Grid};

@@ -280,7 +280,7 @@ pub struct LinkageArgs {
     pub output: Option<PathBuf>,
 }
 
-/// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
+/// LegBranch a motion of the platform: every joint, its speed and acceleration, as a recording that plays
 ///
 /// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
 /// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task

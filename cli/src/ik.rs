@@ -7,9 +7,9 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::text::{self, Table};
 use crate::transform::{self, Located};
-use opm_core::chain::Amount;
-use opm_core::joint::{JointCoordinate, Quantity};
-use opm_core::limits::Limits;
+use opm_core::group::JointDisplacement;
+use opm_core::mechanism::joint::{JointCoordinate, Quantity};
+use opm_core::chain::limits::Limits;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
 use opm_core::mechanism::file::FileUnits;
 use serde::Serialize;
@@ -302,7 +302,7 @@ impl Of<'_> {
 
     fn admits(self, value: f64) -> bool {
         match self {
-            Self::Joint(c, limits) => limits.admits(Amount::Value(value - c.home)),
+            Self::Joint(c, limits) => limits.admits(JointDisplacement::Value(value - c.home)),
             Self::Imaginary(_) => true,
         }
     }
@@ -324,7 +324,7 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
 
 /// Which section of the leg does not close, and by how much.
 pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
-    let (section, gap) = (unreachable.section, unreachable.gap);
+    let (section, gap) = (unreachable.section, unreachable.deficit);
     if gap.excess.is_finite() {
         format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))
     } else {

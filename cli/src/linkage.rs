@@ -8,7 +8,7 @@ use crate::args::{LinkageArgs, Output};
 use crate::failure::Failure;
 use crate::linkage::input::InputValue;
 use crate::load;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::linkage::{Input, Linkage};
 use report::Run;
 

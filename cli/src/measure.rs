@@ -8,9 +8,9 @@ use crate::text::{self, Table, count, short};
 use crate::workspace::{modes, threads};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
-use opm_core::number::readable;
+use opm_core::numeric::number::readable;
 use opm_study::unit_product;
-use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, Over, Stop, measure, ranges};
+use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, CoordinateRange, Stop, default_ranges, measure};
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
 use serde_json::{Map, Value, json};
@@ -64,20 +64,20 @@ fn domain(
 ) -> Result<Domain, Failure> {
     let sections = args.section.sections();
     let coordinates = sections.coordinates(manipulator);
-    let given: Result<Vec<Over>, _> =
+    let given: Result<Vec<CoordinateRange>, _> =
         args.over.iter().map(|axis| axis.resolve(&coordinates)).collect();
     let given = given.map_err(|error| Failure::flag("--over", error))?;
     // The flags are wrong or right before any work is done.
-    let checked = |over: &[Over]| {
+    let checked = |over: &[CoordinateRange]| {
         Domain::new(manipulator, sections, over).map_err(|error| Failure::flag("--over", error))
     };
     checked(&given)?;
-    let find = || pool.install(|| ranges(manipulator, sections, modes, &given, progress));
+    let find = || pool.install(|| default_ranges(manipulator, sections, modes, &given, progress));
     let (over, beyond) = watch(output, "fitting ranges", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting ranges".into()))?;
     if over.len() > given.len() {
         // As flags in SI, so that the same run can be asked for again.
-        let flags = over.iter().map(|Over { name, min, max }| match min == max {
+        let flags = over.iter().map(|CoordinateRange { name, min, max }| match min == max {
             true => format!("--over {name}={min}"),
             false => format!("--over {name}={min}:{max}"),
         });

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::load;
 use opm_core::manipulator::Manipulator;
-use opm_core::motion::{Motion, examples, file, table};
+use opm_core::motion::{PlatformMotion, examples, file, table};
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,11 @@
 //! Poses and grids as they are written on the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
 
 use crate::failure::Failure;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::mechanism::file::{AngleUnit, LengthUnit};
-use opm_core::number::readable;
+use opm_core::numeric::number::readable;
 use opm_core::task::TaskCoordinate;
-use opm_workspace::measure::Over;
+use opm_workspace::measure::CoordinateRange;
 use opm_workspace::{Axis, Coordinate, Sections};
 use std::fmt;
 use std::str::FromStr;
@@ -279,7 +279,7 @@ impl FromStr for OverAxis {
 
 impl OverAxis {
     /// The range in SI, of one of these coordinates.
-    pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<Over, Misread> {
+    pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<CoordinateRange, Misread> {
         let known = coordinates.iter().find(|c| c.name == self.name);
         // A name that is not known is for others to refuse.
         let end = |number: Number| match known {
@@ -288,7 +288,7 @@ impl OverAxis {
         };
         let (name, min) = (&*self.name, end(self.min)?);
         let Some(max) = self.max.map(end).transpose()? else {
-            return Ok(Over::new(name, min, min));
+            return Ok(CoordinateRange::new(name, min, min));
         };
         // What has no width has no measure, which is never meant.
         if min == max {
@@ -297,7 +297,7 @@ impl OverAxis {
                 "{name}: {end} to {end}, expected MIN below MAX, or {name}=VALUE to hold it"
             )));
         }
-        Ok(Over::new(name, min, max))
+        Ok(CoordinateRange::new(name, min, max))
     }
 }
 

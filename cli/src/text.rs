@@ -2,7 +2,7 @@
 
 pub use opm_study::text::{chain, count};
 
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use std::fmt;
 

@@ -3,9 +3,9 @@
 
 use crate::pose::{Misread, Number};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, OutsideMotion};
-use opm_core::mobility::frame;
+use opm_core::decomposition::mobility::frame;
 use serde_json::{Value, json};
 use std::str::FromStr;
 

@@ -6,10 +6,10 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Number;
 use crate::text::{self, Table, short};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::velocity::{
-    Cause, Conditioning, Jacobians, Measures, Motion, Singularities, VelocityError,
+    Cause, Conditioning, Jacobians, Measures, JointMotion, Singularities, VelocityError,
 };
 use opm_study::characteristic_length;
 use serde_json::{Map, Value, json};
@@ -118,7 +118,7 @@ impl<'a> Answer<'a> {
     fn new(asked: &'a Asked<'a>, at: &'a Solution, length: f64) -> Result<Self, Failure> {
         let manipulator = asked.manipulator;
         let failed = |error: VelocityError| Failure::flag("--rates", error);
-        let mut motion = manipulator.motion();
+        let mut motion = manipulator.joint_motion();
         let still = vec![0.0; asked.rates.len()];
         manipulator.velocity(at, &asked.rates, &still, &mut motion).map_err(failed)?;
         let mut jacobians: Jacobians = manipulator.jacobians();

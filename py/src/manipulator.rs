@@ -7,7 +7,7 @@ use crate::html;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::solutions::{Names, Solutions};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};

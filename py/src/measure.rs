@@ -8,7 +8,7 @@ use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
 use crate::sweep::modes;
 use opm_workspace::measure::{
-    self as workspace, Asker, Bounds, Cell, Domain, Goal, Measured, Over, Search, Stop,
+    self as workspace, Evaluator, Bounds, Cell, Domain, Goal, Measured, CoordinateRange, Search, Stop,
 };
 use opm_workspace::{Modes, Progress, Sections};
 use pyo3::prelude::*;
@@ -45,7 +45,7 @@ const STOPS: [(Stop, &str); 4] = [
 ];
 
 /// A measure as it crosses processes: bounds and whole, boxes, why it stopped, units, ranges.
-type Told = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
+type ViolationReport = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// A value, or lowest and highest value.
 #[derive(FromPyObject)]
@@ -107,7 +107,7 @@ pub fn measure(
         None => Vec::new(),
     };
     let given = given.into_iter().map(|(name, range)| match range.extract() {
-        Ok(Range::Fixed(value)) => Ok(Over::new(name, value, value)),
+        Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
         // What has no width has no measure, which is never meant.
         Ok(Range::Between((min, max))) if min == max => {
             let found = range.repr()?;
@@ -115,13 +115,13 @@ pub fn measure(
                 "{name} is {found}, expected min below max, or one value to hold it"
             )))
         }
-        Ok(Range::Between((min, max))) => Ok(Over::new(name, min, max)),
+        Ok(Range::Between((min, max))) => Ok(CoordinateRange::new(name, min, max)),
         Err(_) => {
             let found = range.repr()?;
             Err(wrong(format!("{name} is {found}, expected a number or (min, max)")))
         }
     });
-    let given: Vec<Over> = given.collect::<PyResult<_>>()?;
+    let given: Vec<CoordinateRange> = given.collect::<PyResult<_>>()?;
     let modes = modes(manipulator.get(), mode)?;
     let asked = Asked { of: manipulator, sections: sections(section)?, modes, threads };
     let goal = goal(tolerance, budget)?;
@@ -131,7 +131,7 @@ pub fn measure(
     let progress = Progress::default();
     let fit = || {
         let manipulator = &asked.of.get().inner;
-        workspace::ranges(manipulator, asked.sections, asked.modes, &given, &progress)
+        workspace::default_ranges(manipulator, asked.sections, asked.modes, &given, &progress)
     };
     let fitted = interrupt::run(py, threads, fit, || progress.cancel())?;
     let (over, _) = fitted.map_err(|error| failed(&error))?;
@@ -170,7 +170,7 @@ pub struct Asked {
 }
 
 impl Asked {
-    fn domain(&self, over: &[Over]) -> PyResult<Domain> {
+    fn domain(&self, over: &[CoordinateRange]) -> PyResult<Domain> {
         let domain = Domain::new(&self.of.get().inner, self.sections, over);
         domain.map_err(|error| failed(&error))
     }
@@ -179,7 +179,7 @@ impl Asked {
     pub fn measured(
         self,
         py: Python<'_>,
-        over: &[Over],
+        over: &[CoordinateRange],
         goal: Goal,
         parts: Option<Parts<'_>>,
     ) -> PyResult<Measure> {
@@ -225,7 +225,7 @@ fn boxes_searched(
             let known = known.iter().flat_map(|part| part.as_bytes().as_chunks().0);
             known.map(Bounds::unpack).collect()
         };
-        py.detach(|| search.take(bounds));
+        py.detach(|| search.answer(bounds));
     }
     Ok(search.found())
 }
@@ -240,8 +240,8 @@ pub struct Boxes {
 impl Boxes {
     fn bounds(&self, py: Python<'_>, cells: &[Cell]) -> PyResult<Vec<Bounds>> {
         let (asked, progress) = (&self.asked, Progress::default());
-        let asker = Asker::new(&asked.of.get().inner, &self.domain, asked.modes);
-        let work = || asker.ask(cells, &progress);
+        let asker = Evaluator::new(&asked.of.get().inner, &self.domain, asked.modes);
+        let work = || asker.evaluate(cells, &progress);
         let known = interrupt::run(py, asked.threads, work, || progress.cancel())?;
         known.map_err(|error| failed(&error))
     }
@@ -273,7 +273,7 @@ impl Boxes {
     #[staticmethod]
     fn _restored(of: Py<Manipulator>, spec: Spec) -> PyResult<Self> {
         let (section, mode, over, threads) = spec;
-        let over = over.into_iter().map(|(name, min, max)| Over::new(name, min, max));
+        let over = over.into_iter().map(|(name, min, max)| CoordinateRange::new(name, min, max));
         let (sections, modes) = (sections(&section)?, modes(of.get(), &mode)?);
         let asked = Asked { of, sections, modes, threads };
         let domain = asked.domain(&over.collect::<Vec<_>>())?;
@@ -362,7 +362,7 @@ impl Measure {
         html::of(slf, "measure")
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, Told>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, ViolationReport>> {
         let this = slf.get();
         let Measured { lower, upper, whole, boxes, .. } = this.found;
         let (stop, units) = (this.stop().to_owned(), this.units.clone());

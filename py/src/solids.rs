@@ -6,7 +6,7 @@ use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use nalgebra::{Isometry3, Point3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
-use opm_core::skeleton::{self, Cuts, Material, Posture, Skeleton};
+use opm_core::skeleton::{self, Configuration, ImaginaryJoints, Material, Skeleton};
 use pyo3::prelude::*;
 
 /// A simple body to draw, in base coordinates.
@@ -74,9 +74,9 @@ impl Manipulator {
             return Err(wrong(format!("the pose {pose:?} is out of reach of {}", legs.join(", "))));
         }
         let decomposition = manipulator.decomposition();
-        let cuts = Cuts { decomposition, imaginary: manipulator.imaginary() };
+        let cuts = ImaginaryJoints { decomposition, imaginary: manipulator.imaginary() };
         let skeleton = Skeleton::new(manipulator.mechanism(), cuts);
-        let posture = Posture {
+        let posture = Configuration {
             joints: solution.joints(),
             imaginary: solution.imaginary(),
             platform: manipulator.task().displacement(&pose),

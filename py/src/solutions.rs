@@ -6,7 +6,7 @@ use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::{Batch, BatchError, BatchOutput, Manipulator, Mode};
 use pyo3::prelude::*;

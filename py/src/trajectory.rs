@@ -12,8 +12,8 @@ use crate::rows::{Rows, no_memory};
 use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_core::manipulator::{self as core, Mode};
-use opm_core::motion::{Motion, examples, file, table};
-use opm_core::trajectory::{self as core_trajectory, Change, Sample, Told};
+use opm_core::motion::{PlatformMotion, examples, file, table};
+use opm_core::trajectory::{self as core_trajectory, Change, Sample, ViolationReport};
 use opm_study::recording::{Attachment, MotionRecorder};
 use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
@@ -133,7 +133,7 @@ pub struct Violation {
     message: String,
 }
 
-/// Follow a motion of the platform.
+/// LegBranch a motion of the platform.
 ///
 /// Parameters
 /// ----------
@@ -180,7 +180,7 @@ pub fn trajectory(
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
     let stop = AtomicBool::new(false);
-    let work = || Record::follow(inner, followed, &stop);
+    let work = || Record::leg_branches(inner, followed, &stop);
     let record =
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
     let manipulator = owner.clone().unbind();
@@ -260,7 +260,7 @@ struct Record {
 }
 
 impl Record {
-    fn follow(
+    fn leg_branches(
         manipulator: &core::Manipulator,
         mut followed: core_trajectory::Trajectory<'_>,
         stop: &AtomicBool,
@@ -355,7 +355,7 @@ impl Record {
 
 impl Violation {
     fn new(violation: &core_trajectory::Violation, manipulator: &core::Manipulator) -> Self {
-        let told = Told::new(violation, manipulator);
+        let told = ViolationReport::new(violation, manipulator);
         Self {
             kind: told.kind.to_owned(),
             start: violation.start,
@@ -504,7 +504,7 @@ impl Trajectory {
         let work = || {
             let trajectory = request.trajectory()?;
             let recorder = MotionRecorder::create(&path, request, files)?;
-            recorder.follow(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
+            recorder.leg_branches(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
         };
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
             .map_err(study)

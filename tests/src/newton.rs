@@ -4,8 +4,8 @@
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix6xX, Point3, Vector3, Vector6};
-use opm_core::joint::{JointKind, Quantity};
-use opm_core::leg::Leg;
+use opm_core::mechanism::joint::{JointKind, Quantity};
+use opm_core::mechanism::leg::Leg;
 use std::f64::consts::PI;
 
 /// Residual of a solution, in radians and in metres for mechanisms of a few metres: rounding.
@@ -126,7 +126,7 @@ impl Closure<'_> {
 }
 
 /// The displacement of a joint by amounts from home.
-pub fn displacement(joint: &opm_core::joint::Joint, amounts: &[f64]) -> Isometry3<f64> {
+pub fn displacement(joint: &opm_core::mechanism::joint::Joint, amounts: &[f64]) -> Isometry3<f64> {
     let values: Vec<f64> =
         joint.coordinates.iter().zip(amounts).map(|(c, amount)| c.home + amount).collect();
     joint.displacement(&values)

@@ -4,7 +4,7 @@
 use crate::random::displace;
 use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{Mechanism, examples, file};
 use std::f64::consts::PI;

@@ -54,7 +54,7 @@ fn velocities_do_not_allocate() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mode = manipulator.home_mode();
-            let (mut solution, mut motion) = (manipulator.solution(), manipulator.motion());
+            let (mut solution, mut motion) = (manipulator.solution(), manipulator.joint_motion());
             let (mut jacobians, length) =
                 (manipulator.jacobians(), manipulator.characteristic_length());
             let mut singularities = manipulator.singularities();

@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
-use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
 use opm_core::task::euler;
 use opm_tests::by_inverse::by_inverse;
@@ -39,22 +39,22 @@ fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
 fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
     let task = manipulator.task();
     let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
-    let mut ways: Vec<Follow> = vec![];
+    let mut ways: Vec<LegBranch> = vec![];
     if !manipulator.upper_closes(&b, mode, &mut ways) {
         return false;
     }
     // No two legs share an imaginary joint or a choice.
     (0..manipulator.legs()).all(|leg| {
         ways.clear();
-        manipulator.follow(leg, &b, mode, &mut ways);
-        let mut taus: Vec<f64> = ways.iter().filter_map(Follow::cut).collect();
+        manipulator.leg_branches(leg, &b, mode, &mut ways);
+        let mut taus: Vec<f64> = ways.iter().filter_map(LegBranch::cut).collect();
         if taus.is_empty() {
             taus.push(0.0);
         }
         taus.into_iter().any(|tau| {
             ways.clear();
-            manipulator.follow_lower(leg, tau, mode, &mut ways);
-            ways.iter().any(|way| manipulator.follows(way, &v))
+            manipulator.lower_leg_branches(leg, tau, mode, &mut ways);
+            ways.iter().any(|way| manipulator.reaches(way, &v))
         })
     })
 }
@@ -86,7 +86,7 @@ fn the_whole_is_what_both_sections_reach() {
                     let meet = sections_meet(&manipulator, &pose, Some(mode));
                     any |= reached;
                     assert!(meet || !reached, "{pair:?} {pose:?} {mode:?}");
-                    if manipulator.sections_decide() {
+                    if manipulator.workspace_factorises() {
                         assert_eq!(meet, reached, "{pair:?} {pose:?} {mode:?}");
                     } else {
                         undecided += u32::from(meet && !reached);
@@ -96,7 +96,7 @@ fn the_whole_is_what_both_sections_reach() {
                     poses += 1;
                 }
                 let meet = sections_meet(&manipulator, &pose, None);
-                if manipulator.sections_decide() {
+                if manipulator.workspace_factorises() {
                     assert_eq!(meet, any, "{pair:?} {pose:?}");
                 } else {
                     assert!(meet || !any, "{pair:?} {pose:?}");
@@ -139,8 +139,8 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
                     let cut = cuts.iter().position(|cut| cut.leg == leg);
                     let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
                     let mut ways = vec![];
-                    manipulator.follow_lower(leg, tau, modes.one(), &mut ways);
-                    ways.iter().any(|way| manipulator.follows(way, &v))
+                    manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
+                    ways.iter().any(|way| manipulator.reaches(way, &v))
                 });
                 assert_eq!(set.contains(number), expected, "{pair:?} {pose:?}");
             }

@@ -2,12 +2,12 @@
 //! poses, and with Monte-Carlo estimates.
 
 use fastrand::Rng;
-use opm_core::joint::Quantity;
-use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::Quantity;
+use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
 use opm_core::task::Task;
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::measure::{Asker, Domain, Goal, Measured, Over, Search, Stop, measure};
+use opm_workspace::measure::{Evaluator, Domain, Goal, Measured, CoordinateRange, Search, Stop, measure};
 use opm_workspace::{Cancelled, Modes, Progress, Sections};
 use std::f64::consts::PI;
 
@@ -22,7 +22,7 @@ fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measu
 
 /// Whether a pose of a domain counts, decided by the chains themselves.
 fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
-    let mut ways: Vec<Follow> = Vec::new();
+    let mut ways: Vec<LegBranch> = Vec::new();
     let lower = m.task().lower_count;
     if domain.sections() == Sections::Upper {
         return m.upper_closes(&m.task().upper(pose), mode, &mut ways);
@@ -32,13 +32,13 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
     (0..m.legs()).all(|leg| {
         ways.clear();
         if domain.sections() == Sections::Whole {
-            m.follow(leg, &m.task().upper(others), mode, &mut ways);
+            m.leg_branches(leg, &m.task().upper(others), mode, &mut ways);
         } else {
             let cut = cuts.iter().zip(others).find(|(cut, _)| cut.leg == leg);
             let tau = cut.map_or(0.0, |(cut, value)| cut.displacement(*value));
-            m.follow_lower(leg, tau, mode, &mut ways);
+            m.lower_leg_branches(leg, tau, mode, &mut ways);
         }
-        ways.iter().any(|way| m.follows(way, &v))
+        ways.iter().any(|way| m.reaches(way, &v))
     })
 }
 
@@ -65,7 +65,7 @@ fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
 #[test]
 fn all_orientations_of_the_paper() {
     let m = example("plano-spherical-5dof");
-    let over = [Over::new("zeta", -PI, PI), Over::new("xi", 0.0, PI), Over::new("psi", -PI, PI)];
+    let over = [CoordinateRange::new("zeta", -PI, PI), CoordinateRange::new("xi", 0.0, PI), CoordinateRange::new("psi", -PI, PI)];
     let domain = Domain::new(&m, Sections::Upper, &over).unwrap();
     let share = 1.0 - 1.5 * (1.0 - (PI / 6.0).cos());
     for tolerance in [1e-1, 1e-3, 1e-5] {
@@ -107,7 +107,7 @@ fn the_polygon_of_the_helical_manipulator() {
                 })
                 .sum::<f64>();
         let over =
-            [Over::new("x", -1.0, 1.1), Over::new("y", -1.0, 1.2), Over::new("phi", phi, phi)];
+            [CoordinateRange::new("x", -1.0, 1.1), CoordinateRange::new("y", -1.0, 1.2), CoordinateRange::new("phi", phi, phi)];
         let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
         let goal = Goal { tolerance: 1e-9, ..Goal::default() };
         let found = measured(&m, &domain, Modes::Any, goal);
@@ -153,14 +153,14 @@ fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) 
 /// A box about a pose near home: its widths are `size` times a scale along each coordinate, and
 /// zero along some.
 fn domain_of(rng: &mut Rng, m: &Manipulator, sections: Sections, size: f64) -> Domain {
-    let over: Vec<Over> = sections
+    let over: Vec<CoordinateRange> = sections
         .coordinates(m)
         .into_iter()
         .map(|c| {
             let reach = if c.quantity == Quantity::Angle { PI } else { 1.5 };
             let middle = c.home + (2.0 * rng.f64() - 1.0) * reach;
             let half = if rng.u8(..6) == 0 { 0.0 } else { size * rng.f64() };
-            Over::new(c.name, middle - half, middle + half)
+            CoordinateRange::new(c.name, middle - half, middle + half)
         })
         .collect();
     Domain::new(m, sections, &over).unwrap()
@@ -188,12 +188,12 @@ fn at_the_boundary(
         if counts(m, domain, mode, &middle) { within = middle } else { out = middle }
     }
     let axes = domain.axes().iter().zip(within);
-    let over: Vec<Over> = axes
+    let over: Vec<CoordinateRange> = axes
         .map(|(axis, at)| {
             let half = if axis.min < axis.max { size * rng.f64() } else { 0.0 };
             // The pose is not always in the middle.
             let off = half * (2.0 * rng.f64() - 1.0);
-            Over::new(&*axis.name, at - half + off, at + half + off)
+            CoordinateRange::new(&*axis.name, at - half + off, at + half + off)
         })
         .collect();
     Domain::new(m, domain.sections(), &over).ok()
@@ -246,8 +246,8 @@ fn cuts_of_half_a_turn_are_no_exception() {
         let mut ways = Vec::new();
         let mut cut = |pose: &[f64]| {
             ways.clear();
-            m.follow(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
-            ways.first().and_then(Follow::cut).unwrap_or(0.0)
+            m.leg_branches(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
+            ways.first().and_then(LegBranch::cut).unwrap_or(0.0)
         };
         let mut draw = || -> Vec<f64> {
             let home = m.task().home().into_iter();
@@ -266,7 +266,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
                 // The position along the axis is free.
                 let at = if i < lower { c.home + 2.0 * rng.f64() - 1.0 } else { at };
                 let half = size * rng.f64();
-                Over::new(c.name, at - half, at + half)
+                CoordinateRange::new(c.name, at - half, at + half)
             });
             let domain = Domain::new(&m, Sections::Whole, &over.collect::<Vec<_>>()).unwrap();
             let mode = [None, Some(mode)][rng.usize(..2)];
@@ -372,20 +372,20 @@ fn domain_pieces(found: &Measured) -> u64 {
 #[test]
 fn what_was_found_before_a_stop_is_kept() {
     let m = example("plano-spherical-5dof");
-    let over = [Over::new("x", -0.4, 0.4), Over::new("xi", 0.0, 0.5), Over::new("psi", 0.0, 0.5)];
+    let over = [CoordinateRange::new("x", -0.4, 0.4), CoordinateRange::new("xi", 0.0, 0.5), CoordinateRange::new("psi", 0.0, 0.5)];
     let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
     let (goal, progress) = (Goal { tolerance: 0.0, ..Goal::default() }, Progress::default());
-    let asker = Asker::new(&m, &domain, Modes::Any);
+    let asker = Evaluator::new(&m, &domain, Modes::Any);
     let mut search = Search::new(&domain, goal);
     for _ in 0..10 {
-        let bounds = asker.ask(search.round().unwrap(), &progress).unwrap();
-        search.take(bounds);
+        let bounds = asker.evaluate(search.round().unwrap(), &progress).unwrap();
+        search.answer(bounds);
     }
     let before = search.found();
     assert_eq!((before.stop, before.boxes), (Stop::Cancelled, progress.done()));
     assert!(0.0 < before.lower && before.lower < before.upper && before.upper < before.whole);
     progress.cancel();
-    assert_eq!(asker.ask(search.round().unwrap(), &progress), Err(Cancelled));
+    assert_eq!(asker.evaluate(search.round().unwrap(), &progress), Err(Cancelled));
     assert_eq!(search.found(), before);
     // If it is interrupted at once, nothing is known.
     let none = measure(&m, &domain, Modes::Any, &goal, &progress);

@@ -189,7 +189,7 @@ fn the_papers_formulas_on_random_geometries() {
             let reached = manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some();
             let Some(expected) = oracle.inverse(&pose, &signs) else {
                 outside += 1;
-                let gap = |u: &opm_core::manipulator::Unreachable| u.gap.excess < REACH_MARGIN;
+                let gap = |u: &opm_core::manipulator::Unreachable| u.deficit.excess < REACH_MARGIN;
                 assert!(!reached || solution.unreachable().iter().all(gap));
                 continue;
             };

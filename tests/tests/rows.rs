@@ -4,8 +4,8 @@
 
 use fastrand::Rng;
 use opm_core::decomposition::Decomposition;
-use opm_core::joint::Quantity;
-use opm_core::manipulator::{Follow, Manipulator};
+use opm_core::Quantity;
+use opm_core::manipulator::{LegBranch, Manipulator};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
 use opm_tests::random::{Options, PAIRS, mechanism, order};
@@ -27,10 +27,10 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
     let mut count = 0;
     for slice in 0..grid.slices() {
         let b = manipulator.task().upper(&grid.pose(slice * in_slice)[lower..]);
-        let legs: Vec<Vec<Follow>> = (0..manipulator.legs())
+        let legs: Vec<Vec<LegBranch>> = (0..manipulator.legs())
             .map(|leg| {
                 let mut ways = Vec::new();
-                manipulator.follow(leg, &b, mode, &mut ways);
+                manipulator.leg_branches(leg, &b, mode, &mut ways);
                 ways
             })
             .collect();
@@ -38,7 +38,7 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
             .into_par_iter()
             .filter(|i| {
                 let v = manipulator.task().lower(&grid.pose(slice * in_slice + i)[..lower]);
-                legs.iter().all(|ways| ways.iter().any(|way| manipulator.follows(way, &v)))
+                legs.iter().all(|ways| ways.iter().any(|way| manipulator.reaches(way, &v)))
             })
             .count() as u64;
     }
@@ -236,10 +236,10 @@ fn legs_independent_of_the_slice_are_joined() {
             [manipulator.task().lower(&home[..lower]), manipulator.task().upper(&home[lower..])];
         let differ = (0..manipulator.legs()).any(|leg| {
             let mut ways = Vec::new();
-            manipulator.follow(leg, &b, None, &mut ways);
+            manipulator.leg_branches(leg, &b, None, &mut ways);
             let regions: Vec<_> =
                 ways.iter().filter_map(|way| manipulator.region(way, &v, 1.0)).collect();
-            ways[0].is_alike() && regions.iter().any(|region| region != &regions[0])
+            ways[0].is_independent_of_slice() && regions.iter().any(|region| region != &regions[0])
         });
         if !differ {
             continue;
@@ -337,12 +337,12 @@ fn rows_that_touch_a_boundary_are_no_exception() {
         let b = manipulator.task().upper(&pose[lower..]);
         for leg in rings {
             let mut ways = Vec::new();
-            manipulator.follow(leg, &b, Some(mode), &mut ways);
+            manipulator.leg_branches(leg, &b, Some(mode), &mut ways);
             let [way] = &ways[..] else { continue };
             let closes = |[x, y]: [f64; 2]| -> bool {
                 let mut v = pose[..lower].to_vec();
                 [v[0], v[1]] = [x, y];
-                manipulator.follows(way, &manipulator.task().lower(&v))
+                manipulator.reaches(way, &manipulator.task().lower(&v))
             };
             let Some([middle, high]) = top(closes, [pose[0], pose[1]]) else { continue };
             // At a pose above the centre, or beside it by less than a step.
@@ -364,7 +364,7 @@ fn rows_that_touch_a_boundary_are_no_exception() {
             judged += 1;
             let part = 0 < expected && expected < grid.poses();
             parted += u32::from(part);
-            independent += u32::from(part && way.is_alike());
+            independent += u32::from(part && way.is_independent_of_slice());
         }
     }
     println!(
@@ -426,9 +426,9 @@ fn rows_along_an_edge_are_no_exception() {
         let modes = Modes::One(manipulator.home_mode());
         let b = manipulator.task().upper(&pose[2..]);
         let mut ways = Vec::new();
-        manipulator.follow(2, &b, modes.one(), &mut ways);
+        manipulator.leg_branches(2, &b, modes.one(), &mut ways);
         let [way] = &ways[..] else { continue };
-        let within = |at: [f64; 2]| manipulator.follows(way, &manipulator.task().lower(&at));
+        let within = |at: [f64; 2]| manipulator.reaches(way, &manipulator.task().lower(&at));
         let [x, y] = [pose[0], pose[1]];
         for beyond in [y - 5.0, y + 5.0] {
             if !within([x, y]) || within([x, beyond]) {

@@ -4,11 +4,11 @@
 use fastrand::Rng;
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 use opm_core::decomposition::{Decomposition, Freedom};
-use opm_core::joint::{JointKind, Quantity};
+use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::plano_spherical::Home;
-use opm_core::subspace::SubspaceClass;
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, SINGULAR, SingularCause, SingularLeg, Singularities,
 };
@@ -302,7 +302,7 @@ fn measures_vanish_where_geometry_says_so() {
 /// At a serial singularity the other legs move as they do next to it, and no value is NaN.
 fn only_that_leg_stands_still(manipulator: &Manipulator, found: &Found, beside: &Found) {
     let rates = [0.3, -0.2, 0.5, 0.4, -0.6];
-    let (mut motion, mut near) = (manipulator.motion(), manipulator.motion());
+    let (mut motion, mut near) = (manipulator.joint_motion(), manipulator.joint_motion());
     assert!(!manipulator.velocity(&found.at, &rates, &rates, &mut motion).unwrap());
     assert!(manipulator.velocity(&beside.at, &rates, &rates, &mut near).unwrap());
     let lost: Vec<usize> = manipulator.rateless(&motion.singular[0]).collect();
@@ -524,7 +524,7 @@ fn measures_do_not_depend_on_place_and_size() {
             there.inverse_all(&other, &mut all).unwrap();
             let off = |at: &Solution| -> f64 {
                 let each = here.coordinates().iter().zip(found.at.joints()).zip(at.joints());
-                let off = |((c, a), b): ((&opm_core::joint::JointCoordinate, &f64), &f64)| {
+                let off = |((c, a), b): ((&opm_core::mechanism::joint::JointCoordinate, &f64), &f64)| {
                     match c.quantity {
                         Quantity::Length => (a - b / size).abs(),
                         // The components of a rotation vector are in base coordinates.

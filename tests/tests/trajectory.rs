@@ -1,10 +1,10 @@
 //! Motions: what is reported about them, compared with inverse kinematics at far more times.
 
 use fastrand::Rng;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::{examples, file};
-use opm_core::motion::{self, Harmonics, Motion, Path, Sinusoid};
+use opm_core::motion::{self, Harmonics, PlatformMotion, Path, Sinusoid};
 use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::{PI, TAU};
@@ -95,7 +95,7 @@ fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
         for (leg, lost) in lost.iter_mut().enumerate() {
             known.push(Gauge::Reach { leg });
             if let Some(u) = solution.unreachable().iter().find(|u| u.leg == leg) {
-                violated.push((Gauge::Reach { leg }, u.gap.excess));
+                violated.push((Gauge::Reach { leg }, u.deficit.excess));
                 *lost = true;
             }
         }

@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::mechanism::{examples, file};
 use opm_core::velocity::{SingularCause, SingularLeg, VelocityError};
@@ -65,7 +65,7 @@ fn rates_and_accelerations_are_the_derivatives_of_inverse_kinematics() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let (mut all, mut at) = (manipulator.all_modes(), manipulator.solution());
-            let mut motion = manipulator.motion();
+            let mut motion = manipulator.joint_motion();
             for _ in 0..4 {
                 let path = Path::random(&mut rng, &manipulator);
                 manipulator.inverse_all(&path.pose, &mut all).unwrap();
@@ -128,7 +128,7 @@ fn jacobians_compose_to_the_rates() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let (mut all, mut at) = (manipulator.all_modes(), manipulator.solution());
-            let (mut motion, mut jacobians) = (manipulator.motion(), manipulator.jacobians());
+            let (mut motion, mut jacobians) = (manipulator.joint_motion(), manipulator.jacobians());
             let path = Path::random(&mut rng, &manipulator);
             let task = manipulator.task();
             manipulator.inverse_all(&path.pose, &mut all).unwrap();
@@ -190,7 +190,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     let ball: Vec<usize> = (manipulator.coordinates().iter().enumerate())
         .filter_map(|(i, c)| c.name.starts_with("s4.").then_some(i))
         .collect();
-    let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+    let (mut at, mut motion) = (manipulator.solution(), manipulator.joint_motion());
     let mut jacobians = manipulator.jacobians();
     let mut path = |zeta: f64| {
         let pose = [0.01, 0.0, zeta, 0.0, 0.0];
@@ -222,7 +222,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     let conditioning = manipulator.conditioning(&jacobians, 0.1);
     assert!(conditioning.condition < 20.0, "{conditioning:?}");
     // All other joints move as they do in a solution without the revolution.
-    let (mut fresh, mut known) = (manipulator.solution(), manipulator.motion());
+    let (mut fresh, mut known) = (manipulator.solution(), manipulator.joint_motion());
     let pose = [0.01, 0.0, zeta, 0.0, 0.0];
     assert!(manipulator.inverse(&pose, manipulator.home_mode(), &mut fresh).unwrap().is_some());
     manipulator.velocity(&fresh, &rates, &rates, &mut known).unwrap();
@@ -243,7 +243,7 @@ fn enormous_poses_and_rates_give_numbers_or_are_refused() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let (mut all, mut at) = (manipulator.all_modes(), manipulator.solution());
-            let (mut motion, mut jacobians) = (manipulator.motion(), manipulator.jacobians());
+            let (mut motion, mut jacobians) = (manipulator.joint_motion(), manipulator.jacobians());
             let mut measured = manipulator.singularities();
             let mut any =
                 || 10.0_f64.powf(rng.f64() * 150.0 - 75.0) * if rng.bool() { 1.0 } else { -1.0 };
@@ -289,7 +289,7 @@ fn enormous_poses_and_rates_give_numbers_or_are_refused() {
 fn what_is_no_rate_is_refused() {
     let text = examples::find("translational-helical-3dof").unwrap().text;
     let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
-    let (mut at, mut motion) = (manipulator.solution(), manipulator.motion());
+    let (mut at, mut motion) = (manipulator.solution(), manipulator.joint_motion());
     let still = [0.0; 3];
     for (rates, message) in [
         (&[0.0; 2][..], "2 rates, expected 3"),
@@ -308,7 +308,7 @@ fn what_is_no_rate_is_refused() {
     assert!(manipulator.velocity(&at, &still, &still, &mut motion).unwrap());
     let text = examples::find("plano-spherical-5dof").unwrap().text;
     let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
-    (at, motion) = (manipulator.solution(), manipulator.motion());
+    (at, motion) = (manipulator.solution(), manipulator.joint_motion());
     assert!(manipulator.inverse(&[9.0; 5], manipulator.home_mode(), &mut at).unwrap().is_none());
     let refused = manipulator.velocity(&at, &[0.0; 5], &[0.0; 5], &mut motion);
     assert_eq!(refused, Err(VelocityError::OutOfReach));

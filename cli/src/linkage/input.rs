@@ -27,7 +27,7 @@ impl FromStr for InputValue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use opm_core::joint::Quantity;
+    use opm_core::Quantity;
     use std::f64::consts::PI;
 
     #[test]

@@ -3,9 +3,9 @@
 use crate::load::Loaded;
 use crate::output::named;
 use crate::text::{self, Table};
-use opm_core::chain::Amount;
-use opm_core::joint::{JointCoordinate, Quantity};
-use opm_core::limits::Limits;
+use opm_core::group::JointDisplacement;
+use opm_core::mechanism::joint::{JointCoordinate, Quantity};
+use opm_core::chain::limits::Limits;
 use opm_core::linkage::{Input, Linkage, Position};
 use opm_study::input_intervals;
 use serde_json::{Value, json};
@@ -119,5 +119,5 @@ impl Run<'_> {
 
 /// Whether a value is within the limits of its joint.
 fn within(limits: &Limits, coordinate: &JointCoordinate, value: f64) -> bool {
-    limits.admits(Amount::Value(value - coordinate.home))
+    limits.admits(JointDisplacement::Value(value - coordinate.home))
 }

@@ -3,7 +3,7 @@
 use super::layout::{Coordinate, Layout};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_workspace::Axis;
 
 /// Most slices that --slice may ask for.

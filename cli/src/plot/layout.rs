@@ -2,7 +2,7 @@
 
 use super::choice::{is_home, nearest};
 use super::source::Source;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_mcap::cloud::POSITION_FIELDS;
 use opm_mcap::workspace::BOUNDARY_TOPIC;

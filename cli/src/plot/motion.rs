@@ -9,7 +9,7 @@ use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::VALID;
 use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};

@@ -4,7 +4,7 @@ use crate::args::Output;
 use crate::failure::Failure;
 use crate::progress::watch_reading;
 use crate::text::count;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::file::{AngleUnit, FileUnits, MechanismFile, read as read_mechanism};

@@ -1,7 +1,7 @@
 //! The topics of a motion, and what each of their values is.
 
 use super::source::{Kind, Rate, Source, quantity};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::{
     ACCELERATIONS_TOPIC, CONDITION_TOPIC, IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC,

@@ -9,7 +9,7 @@ use super::source::{Rate, Source, Stop};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::text::{count, short};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::{Drawing, Heading, TileFigure};
 use opm_study::WorkspaceKind;

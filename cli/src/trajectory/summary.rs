@@ -1,9 +1,9 @@
 //! What is printed of a motion when it is over.
 
 use crate::text::{self, Table, count, short};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
-use opm_core::trajectory::{Told, Violation};
+use opm_core::trajectory::{ViolationReport, Violation};
 use opm_study::recording::violation_fields;
 use opm_study::{CoordinateRanges, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
@@ -39,7 +39,7 @@ impl Report<'_> {
                 .map(|(joint, r)| (joint.name.clone(), ranges(r)))
                 .collect();
         let violations: Vec<Value> =
-            summary.violations.iter().map(|v| json(&Told::new(v, manipulator))).collect();
+            summary.violations.iter().map(|v| json(&ViolationReport::new(v, manipulator))).collect();
         json!({
             "name": manipulator.mechanism().name,
             "motion": request.motion.name,
@@ -126,7 +126,7 @@ impl Report<'_> {
     /// One line for people, in the units of the mechanism file.
     fn line(&self, violation: &Violation) -> String {
         let Violation { start, end, worst, amount, quantity, .. } = *violation;
-        let (what, units) = (Told::new(violation, self.request.manipulator).what(), self.units);
+        let (what, units) = (ViolationReport::new(violation, self.request.manipulator).what(), self.units);
         match quantity {
             Some(quantity) => format!(
                 "t = {start:.6} .. {end:.6} s: {what} by {} {} at {worst:.6} s",
@@ -138,6 +138,6 @@ impl Report<'_> {
     }
 }
 
-fn json(told: &Told<'_>) -> Value {
+fn json(told: &ViolationReport<'_>) -> Value {
     violation_fields(told).into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

@@ -2,8 +2,8 @@
 
 use crate::args::Output;
 use crate::text::count;
-use opm_core::joint::Quantity;
-use opm_core::number::readable;
+use opm_core::Quantity;
+use opm_core::numeric::number::readable;
 use opm_study::{Analysis, Workspace, WorkspaceKind};
 use opm_workspace::{Axis, Grid, Sections};
 
@@ -20,7 +20,7 @@ pub fn of_fitted(workspace: &Workspace, output: &Output) {
 /// Warns of what may not be meant, before the sweep.
 pub fn before(workspace: &Workspace, output: &Output) {
     let (kind, manipulator) = (workspace.kind(), workspace.manipulator());
-    if kind.sections() != Sections::Whole && !manipulator.sections_decide() {
+    if kind.sections() != Sections::Whole && !manipulator.workspace_factorises() {
         output.note(
             "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
              be out of reach, which no section alone is asked for: the whole reaches less than both",

@@ -1,7 +1,7 @@
 //! What is printed of a workspace: text for people, and JSON.
 
 use crate::text::{self, Table, count, plural, short};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_study::{Analysis, Shape, Workspace, WorkspaceKind};
 use opm_workspace::{Axis, ConditionLimit, GridSet, Outline, Sections, Shard};

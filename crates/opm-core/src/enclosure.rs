@@ -37,20 +37,20 @@ pub struct Side {
     pub middle: f64,
     /// How far it is from the middle to either end; zero where the coordinate has one value.
     pub half: f64,
-    /// The coordinate is an angle of which the box is even in the cosine: see [`Piece`].
-    pub piece: Option<Piece>,
+    /// The coordinate is an angle of which the box is even in the cosine: see [`HalfTurn`].
+    pub piece: Option<HalfTurn>,
 }
 
 /// Half a turn of an angle `α`, from `number` times π to the next multiple, over which `-cos α` or `cos α`
 /// rises from -1 to 1: what rises stands for the angle. `α` is `xi`, or `nu` less its home value plus a
 /// quarter of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Piece {
+pub struct HalfTurn {
     /// Multiples of π at its beginning.
     pub number: i64,
 }
 
-impl Piece {
+impl HalfTurn {
     /// The piece that holds an angle.
     pub fn of(angle: f64) -> Self {
         Self { number: (angle / PI).floor() as i64 }
@@ -76,9 +76,9 @@ impl Piece {
     }
 }
 
-/// What is asked of a box.
+/// What is asked of the poses of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum BoxQuery {
     /// That poses are in reach and within all limits: a side for every task coordinate.
     Whole,
     /// That the upper section alone is: a side for every task coordinate of `b`.
@@ -92,7 +92,7 @@ pub enum Asked {
 /// What is known of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
-    /// At least this share of the box meets what was asked; 1 where all of it does.
+    /// At least this share of the box meets the query; 1 where all of it does.
     pub lower: f64,
     /// At most this share does; 0 where nothing does.
     pub upper: f64,
@@ -101,23 +101,23 @@ pub struct Verdict {
 }
 
 impl Manipulator {
-    /// How much of a box of poses meets what is asked, in one working mode, or (`None`) in any.
+    /// How much of a box of poses meets a query, in one working mode, or (`None`) in any.
     ///
     /// # Panics
     /// If there is another number of sides than coordinates, or more than [`MOST`] have a width.
-    pub fn enclose(&self, asked: Asked, mode: Option<Mode>, sides: &[Side]) -> Verdict {
+    pub fn enclose(&self, query: BoxQuery, mode: Option<Mode>, sides: &[Side]) -> Verdict {
         let wide = sides.iter().filter(|side| side.half > 0.0).count();
         match wide {
-            0..=2 => self.enclose_in::<2>(asked, mode, sides),
-            3 => self.enclose_in::<3>(asked, mode, sides),
-            4..=5 => self.enclose_in::<5>(asked, mode, sides),
-            _ => self.enclose_in::<MOST>(asked, mode, sides),
+            0..=2 => self.enclose_in::<2>(query, mode, sides),
+            3 => self.enclose_in::<3>(query, mode, sides),
+            4..=5 => self.enclose_in::<5>(query, mode, sides),
+            _ => self.enclose_in::<MOST>(query, mode, sides),
         }
     }
 
     fn enclose_in<const N: usize>(
         &self,
-        asked: Asked,
+        query: BoxQuery,
         mode: Option<Mode>,
         sides: &[Side],
     ) -> Verdict {
@@ -132,7 +132,7 @@ impl Manipulator {
             } else {
                 Affine::constant(side.middle)
             };
-            let of_upper = asked == Asked::Upper || number >= lower_count;
+            let of_upper = query == BoxQuery::Upper || number >= lower_count;
             match side.piece {
                 None => Coordinate::Linear(value),
                 Some(piece) => Coordinate::Polar(polar(piece, value, of_upper)),
@@ -140,19 +140,19 @@ impl Manipulator {
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
         let task = self.task();
-        let query = Query { manipulator: self, mode };
+        let conditions = LegConditions { manipulator: self, mode };
         let legs = 0..self.legs.len();
-        let share = match asked {
-            Asked::Whole => {
+        let share = match query {
+            BoxQuery::Whole => {
                 let v = target::task::lower(task, &coordinates[..lower_count]);
                 let b = target::task::upper(task, &coordinates[lower_count..]);
-                all(legs, |leg| query.whole(leg, &v, &b))
+                all(legs, |leg| conditions.whole(leg, &v, &b))
             }
-            Asked::Upper => {
+            BoxQuery::Upper => {
                 let b = target::task::upper(task, &coordinates);
-                all(legs, |leg| query.upper(leg, &b))
+                all(legs, |leg| conditions.upper(leg, &b))
             }
-            Asked::Lower => {
+            BoxQuery::Lower => {
                 let v = target::task::lower(task, &coordinates[..lower_count]);
                 let mut cuts = coordinates[lower_count..].iter();
                 all(legs, |leg| {
@@ -163,7 +163,7 @@ impl Manipulator {
                         },
                         Section::Lower => Affine::constant(0.0),
                     };
-                    query.lower(leg, &v, tau)
+                    conditions.lower(leg, &v, tau)
                 })
             }
         };
@@ -186,7 +186,7 @@ impl Manipulator {
 }
 
 /// The unit vector at the angle that `at` stands for, of `nu` less its home value.
-fn polar<const N: usize>(piece: Piece, at: Affine<N>, of_upper: bool) -> Plane<N> {
+fn polar<const N: usize>(piece: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
     let sign = piece.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
     let alpha = Plane { re: cosine, im: sine };
@@ -194,7 +194,7 @@ fn polar<const N: usize>(piece: Piece, at: Affine<N>, of_upper: bool) -> Plane<N
     if of_upper { alpha } else { Plane { re: alpha.im, im: -alpha.re } }
 }
 
-/// The share that all legs have in common; those after one that reaches nothing are not asked.
+/// The share that all legs have in common; those after one that reaches nothing are not looked at.
 fn all<const N: usize>(
     legs: impl Iterator<Item = usize>,
     mut of_leg: impl FnMut(usize) -> Share<N>,
@@ -218,12 +218,12 @@ fn any<T, const N: usize>(
 }
 
 /// A leg's conditions over a box.
-struct Query<'a> {
+struct LegConditions<'a> {
     manipulator: &'a Manipulator,
     mode: Option<Mode>,
 }
 
-impl Query<'_> {
+impl LegConditions<'_> {
     fn leg(&self, number: usize) -> &CompiledLeg {
         &self.manipulator.legs[number]
     }
@@ -241,7 +241,7 @@ impl Query<'_> {
         [Some(first), both.then_some(Branch::Minus)].into_iter().flatten()
     }
 
-    /// The share for which a section closes within its limits; `then` is asked of its joints'
+    /// The share for which a section closes within its limits; `then` is asked about its joints'
     /// displacements.
     fn section<const N: usize>(
         &self,
@@ -271,7 +271,7 @@ impl Query<'_> {
 
     fn lower<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
         match self.leg(leg).cut {
-            Section::Upper => self.follows(leg, v, Enclosed::Value(tau)),
+            Section::Upper => self.reaches(leg, v, Enclosed::Value(tau)),
             Section::Lower => self.section(leg, Section::Lower, v, |_| Share::ALL),
         }
     }
@@ -280,7 +280,7 @@ impl Query<'_> {
         let compiled = self.leg(leg);
         match compiled.cut {
             Section::Upper => self.section(leg, Section::Upper, b, |amounts| {
-                self.unwound(compiled, amounts[0], |tau| self.follows(leg, v, tau))
+                self.unwound(compiled, amounts[0], |tau| self.reaches(leg, v, tau))
             }),
             Section::Lower => self.section(leg, Section::Lower, v, |amounts| {
                 if !compiled.upper_decides {
@@ -296,7 +296,7 @@ impl Query<'_> {
     }
 
     /// The share for which the lower section follows to `v · exp(I τ)`.
-    fn follows<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
+    fn reaches<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
         let target = target::after(self.manipulator.task().lower_intersection, v, tau);
         self.section(leg, Section::Lower, &target, |_| Share::ALL)
     }

@@ -58,16 +58,19 @@ pub mod task;
 pub mod trajectory;
 pub mod velocity;
 
+pub use decomposition::{DecomposeError, Decomposition, decompose};
+pub use linkage::Linkage;
 pub use manipulator::{
     ActuatedJoints, AllModes, Batch, BatchError, BatchOutput, CompileError, Manipulator, Mode,
     PoseError, ReadError, Solution, Unreachable,
 };
 pub use mechanism::Mechanism;
+pub use mechanism::joint::{Joint, JointCoordinate, JointKind};
+pub use mechanism::leg::{Leg, Section};
+pub use motion::PlatformMotion;
 pub use nalgebra;
-
-// Paths as they were before the modules were layered.
-pub use chain::limits;
-pub use decomposition::mobility;
-pub use group::{screw, subspace};
-pub use mechanism::{joint, leg};
-pub use numeric::number;
+pub use numeric::Quantity;
+pub use skeleton::Skeleton;
+pub use task::TaskCoordinate;
+pub use trajectory::Trajectory;
+pub use velocity::{Jacobians, JointMotion};

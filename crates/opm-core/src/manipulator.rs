@@ -12,7 +12,7 @@
 //! [`Chain`](crate::chain::Chain).
 
 mod batch;
-mod breaks;
+mod transitions;
 mod closure;
 mod inverse;
 mod leg;
@@ -23,13 +23,13 @@ mod reach;
 mod read;
 
 pub use batch::{Batch, BatchError, BatchOutput};
-pub use breaks::Breaks;
+pub use transitions::Transitions;
 pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
-pub use reach::Follow;
+pub use reach::LegBranch;
 pub use read::ReadError;
 
 use crate::chain::limits::Limits;
@@ -42,8 +42,8 @@ use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
-use leg::Surroundings;
-pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, Slot};
+use leg::CompileContext;
+pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, ChainCoordinate};
 use mode::ModeLayout;
 use plan::Plan;
 
@@ -296,7 +296,7 @@ impl Compiled {
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
             let around =
-                Surroundings { task: &task, drives: &drives, limits: &limits, size: length };
+                CompileContext { task: &task, drives: &drives, limits: &limits, size: length };
             let mut compiled = CompiledLeg::new(leg, split, first, around)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {

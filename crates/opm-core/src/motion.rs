@@ -44,7 +44,7 @@ pub enum Path {
 
 /// A motion of the platform, in the task coordinates of one manipulator.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct PlatformMotion {
     /// The motion's name. For a table of poses it is given by the caller.
     pub name: String,
     /// Start time, seconds.
@@ -80,7 +80,7 @@ impl Instant {
     }
 }
 
-impl Motion {
+impl PlatformMotion {
     /// Writes the pose and its derivatives at time `t`, in seconds, into `out`. Times beyond the
     /// ends of a spline give the values at its end.
     ///

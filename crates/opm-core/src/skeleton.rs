@@ -21,8 +21,6 @@ mod centre;
 mod solid;
 
 pub use solid::{Material, Part, Solid};
-// Old names, for the crates above.
-pub use self::{Configuration as Posture, ImaginaryJoints as Cuts};
 
 use crate::decomposition::{Decomposition, Freedom};
 use crate::group::screw::Screw;

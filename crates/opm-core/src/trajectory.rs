@@ -36,13 +36,10 @@ pub use gauge::{Bound, Gauge, Part, Violation};
 pub use report::ViolationReport;
 pub use violations::Change;
 
-// Old names, for the crates above.
-#[doc(hidden)]
-pub use report::ViolationReport as Told;
 
 use crate::chain::limits::Limits;
 use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
-use crate::motion::{Instant, Motion};
+use crate::motion::{Instant, PlatformMotion};
 use crate::numeric::Quantity;
 use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
 
@@ -102,7 +99,7 @@ pub struct Sample {
     /// Whether no leg is singular, so that the joints have rates.
     pub regular: bool,
     /// The rates and accelerations of the joints; they have a meaning where `regular` is true.
-    pub motion: velocity::Motion,
+    pub motion: velocity::JointMotion,
     /// The condition number of the actuated joints' Jacobian; infinite at a singularity and out of reach.
     pub condition: f64,
     /// The singularity measures of the upper section.
@@ -124,7 +121,7 @@ impl Sample {
             reached: false,
             solution: manipulator.solution(),
             regular: false,
-            motion: manipulator.motion(),
+            motion: manipulator.joint_motion(),
             condition: f64::INFINITY,
             upper: Measures::default(),
             lower: Measures::default(),
@@ -178,7 +175,7 @@ pub struct Trajectory<'a> {
 /// Solves one instant of the motion.
 struct Solver<'a> {
     manipulator: &'a Manipulator,
-    motion: &'a Motion,
+    motion: &'a PlatformMotion,
     mode: Mode,
     rate: f64,
     gauges: Vec<Gauge>,
@@ -219,7 +216,7 @@ impl<'a> Trajectory<'a> {
     /// The motion is for another number of task coordinates.
     pub fn new(
         manipulator: &'a Manipulator,
-        motion: &'a Motion,
+        motion: &'a PlatformMotion,
         mode: Mode,
         rate: f64,
     ) -> Result<Self, TrajectoryError> {
@@ -402,11 +399,11 @@ impl Solver<'_> {
 
     /// A gap without a unit: lengths are divided by the characteristic length.
     fn depth(&self, unreachable: &Unreachable) -> f64 {
-        let scale = match unreachable.gap.quantity {
+        let scale = match unreachable.deficit.quantity {
             Quantity::Angle => 1.0,
             Quantity::Length => self.length,
         };
-        unreachable.gap.excess / scale
+        unreachable.deficit.excess / scale
     }
 
     /// Finds the slopes of the gauges of a sample.

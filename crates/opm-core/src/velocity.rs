@@ -31,7 +31,7 @@
 //! use opm_core::Manipulator;
 //!
 //! let manipulator = Manipulator::example("plano-spherical-5dof")?;
-//! let (mut buffer, mut motion) = (manipulator.solution(), manipulator.motion());
+//! let (mut buffer, mut motion) = (manipulator.solution(), manipulator.joint_motion());
 //! let pose = [0.01, 0.0, 0.0, 0.26, 0.0]; // x y zeta xi psi
 //! let mode = manipulator.home_mode();
 //! let at = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
@@ -126,9 +126,9 @@ pub enum SingularCause {
     RotationVector,
 }
 
-/// Rates and accelerations of every joint; made by [`Manipulator::motion`].
+/// Rates and accelerations of every joint; made by [`Manipulator::joint_motion`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct JointMotion {
     /// Rate of every joint coordinate, in the order of [`Manipulator::coordinates`]; rad/s and m/s.
     pub joint_rates: Vec<f64>,
     /// Acceleration of every joint coordinate, in the same order; rad/s² and m/s².
@@ -143,7 +143,7 @@ pub struct Motion {
 
 /// What the task coordinates do: the twists of `v` and of `b`, and their derivatives.
 #[derive(Clone, Copy)]
-struct Drive {
+struct SectionTwists {
     v: [LocalTwist; 2],
     b: [LocalTwist; 2],
 }
@@ -174,9 +174,9 @@ impl LegDifferential {
 
 impl Manipulator {
     /// A buffer for [`Manipulator::velocity`].
-    pub fn motion(&self) -> Motion {
+    pub fn joint_motion(&self) -> JointMotion {
         let (joints, imaginary) = (self.coordinates().len(), self.imaginary().len());
-        Motion {
+        JointMotion {
             joint_rates: vec![0.0; joints],
             joint_accelerations: vec![0.0; joints],
             imaginary_rates: vec![0.0; imaginary],
@@ -200,7 +200,7 @@ impl Manipulator {
         at: &Solution,
         rates: &[f64],
         accelerations: &[f64],
-        out: &mut Motion,
+        out: &mut JointMotion,
     ) -> Result<bool, VelocityError> {
         self.check_rates(rates)?;
         self.check_rates(accelerations)?;
@@ -239,7 +239,7 @@ impl Manipulator {
     }
 
     /// The twists of `v` and `b` for rates of the task coordinates.
-    fn drive(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> Drive {
+    fn drive(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> SectionTwists {
         let task = self.task();
         let count = task.lower_count;
         let of = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
@@ -247,7 +247,7 @@ impl Manipulator {
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]
         };
-        Drive {
+        SectionTwists {
             v: of(&task.lower_screws(pose), |all, count| &all[..count]),
             b: of(&task.upper_screws(pose), |all, count| &all[count..]),
         }
@@ -312,7 +312,7 @@ impl Manipulator {
         at: &Solution,
         number: usize,
         LegDifferential { lower, upper }: &LegDifferential,
-        drive: &Drive,
+        drive: &SectionTwists,
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
@@ -349,7 +349,7 @@ impl Manipulator {
     }
 
     #[inline]
-    fn write_motion(&self, number: usize, motion: &LegMotion, out: &mut Motion) {
+    fn write_motion(&self, number: usize, motion: &LegMotion, out: &mut JointMotion) {
         let leg = &self.legs[number];
         for (section, [rates, accelerations]) in
             [(&leg.lower, &motion.lower), (&leg.upper, &motion.upper)]

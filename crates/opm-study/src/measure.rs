@@ -1,6 +1,6 @@
 //! Measures of counted sets, and the units of products.
 
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::Axis;
 

@@ -6,7 +6,7 @@ pub use summary::{CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
 use crate::error::StudyError;
 use opm_core::manipulator::{Manipulator, Mode};
-use opm_core::motion::Motion;
+use opm_core::motion::PlatformMotion;
 use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError, Violation};
 use std::panic::resume_unwind;
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -83,7 +83,7 @@ impl<'a> MotionRequest<'a> {
     ///
     /// # Errors
     /// A pose that cannot be computed with; what `take` gives; that it was told to stop.
-    pub fn follow(
+    pub fn leg_branches(
         &self,
         trajectory: Trajectory<'_>,
         mut take: impl FnMut(u64, &Sample, &[Change]) -> Result<(), StudyError>,
@@ -125,7 +125,7 @@ impl<'a> MotionRequest<'a> {
 type Batch = Vec<(Sample, Vec<Change>)>;
 
 /// Sends all samples, batch by batch, in batches that come back; the violations that last to the end.
-fn follow(
+fn leg_branches(
     mut trajectory: Trajectory<'_>,
     ahead: &SyncSender<Batch>,
     used: &Receiver<Batch>,

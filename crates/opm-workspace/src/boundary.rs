@@ -104,16 +104,6 @@ pub fn mask_boundary(x: &Axis, y: &Axis, inside: &[bool]) -> Result<Vec<Ring>, M
     Ok(trace(x, y, |row| &rows[row]))
 }
 
-// Old names, for the crates above.
-/// [`mask_boundary`], which panics.
-///
-/// # Panics
-/// If `inside` has another number of points than the grid.
-#[doc(hidden)]
-pub fn rings(x: &Axis, y: &Axis, inside: &[bool]) -> Vec<Ring> {
-    mask_boundary(x, y, inside).expect("one value for each point")
-}
-
 /// The boundary of a set that has these runs in each row. It takes time and memory for runs, not for points.
 fn trace<'a>(x: &Axis, y: &Axis, runs: impl Fn(usize) -> &'a [Run]) -> Vec<Ring> {
     let [width, height] = [x, y].map(|axis| axis.count as i64);

@@ -114,22 +114,3 @@ impl ConditioningIndex {
         self.sum += (local * UNIT).round() as u128;
     }
 }
-
-// Old names, for the crates above.
-#[doc(hidden)]
-impl ConditioningIndex {
-    /// [`ConditioningIndex::of`], which panics.
-    ///
-    /// # Errors
-    /// A sweep that was cancelled.
-    ///
-    /// # Panics
-    /// On a grid of one section alone.
-    pub fn new(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
-        match Self::of(sweep, length, progress) {
-            Ok(index) => Ok(index),
-            Err(ConditionError::Cancelled(cancelled)) => Err(cancelled),
-            Err(error) => panic!("{error}"),
-        }
-    }
-}

@@ -9,7 +9,7 @@
 use crate::grid::{Axis, Grid};
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Modes, Sweep};
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -246,7 +246,7 @@ impl<'a> Search<'a> {
                 for (side, end) in ends.iter_mut().enumerate() {
                     let pose = hits[number].poses[side].clone();
                     let outward = if side == 0 { -1.0 } else { 1.0 };
-                    *end = self.follow(pose, (number, outward), &ranges, &within)?;
+                    *end = self.leg_branches(pose, (number, outward), &ranges, &within)?;
                 }
                 let Extent { min, max, .. } = &mut range.extent;
                 farther |= ends[0] < *min - least || ends[1] > *max + least;
@@ -262,7 +262,7 @@ impl<'a> Search<'a> {
     /// How far the workspace reaches along one coordinate, to one side, from a pose of it. Grids about the
     /// farthest pose so far are one step of the coarse grid wide to every side, and half as wide each
     /// time that they gain little. They stay `within` a box.
-    fn follow(
+    fn leg_branches(
         &self,
         mut pose: Vec<f64>,
         (number, outward): (usize, f64),

@@ -1,9 +1,9 @@
 //! Grids of poses, or of the coordinates of one section alone: one axis for each coordinate, with both ends on
 //! the grid.
 
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
-use opm_core::number::readable;
+use opm_core::numeric::number::readable;
 use std::f64::consts::TAU;
 
 /// Most poses of a grid: larger numbers are not exact in double precision, which JSON readers use.

@@ -74,10 +74,6 @@ pub use set::{GridSet, SetAxis, SetError};
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};
 pub use visits::{OtherGrid, Visits};
 
-// Old names, for the crates above.
-#[doc(hidden)]
-pub use boundary::rings;
-
 /// The most threads that front ends accept: a larger number is a mistake, and takes minutes to begin and to
 /// stop.
 pub const MOST_THREADS: u16 = 1024;

@@ -34,14 +34,6 @@ pub use cell::{Bounds, Cell};
 pub use domain::{CoordinateRange, Domain, DomainAxis, DomainError};
 pub use ranges::default_ranges;
 
-// Old names, for the crates above.
-#[doc(hidden)]
-pub use Evaluator as Asker;
-#[doc(hidden)]
-pub use domain::CoordinateRange as Over;
-#[doc(hidden)]
-pub use ranges::default_ranges as ranges;
-
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::Modes;
 use opm_core::manipulator::{Manipulator, Mode};
@@ -383,28 +375,5 @@ impl<'a> Search<'a> {
         let [lower, upper] = self.bounds;
         let (whole, stop) = (self.domain.whole(), self.stop.unwrap_or(Stop::Cancelled));
         Measured { lower, upper, whole, boxes: self.boxes, stop }
-    }
-}
-
-// Old names, for the crates above.
-#[doc(hidden)]
-impl Evaluator<'_> {
-    /// [`Evaluator::evaluate`].
-    ///
-    /// # Errors
-    /// A measure that was cancelled.
-    pub fn ask(&self, cells: &[Cell], progress: &Progress) -> Result<Vec<Bounds>, Cancelled> {
-        self.evaluate(cells, progress)
-    }
-}
-
-#[doc(hidden)]
-impl Search<'_> {
-    /// [`Search::answer`], which panics.
-    ///
-    /// # Panics
-    /// If there are more or fewer bounds than boxes.
-    pub fn take(&mut self, bounds: Vec<Bounds>) {
-        self.answer(bounds).expect("bounds for every box of the round");
     }
 }

@@ -23,7 +23,7 @@ use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use clip::ROWS;
 use known_range::KnownRanges;
-use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use rayon::prelude::*;
 use sheet::SheetKind;
 use std::ops::Range;
@@ -90,7 +90,7 @@ impl Count {
 
     /// Widens the range of an imaginary joint to its value in a leg branch, unless that lies between
     /// known values.
-    fn used(&mut self, manipulator: &Manipulator, branch: &Follow, known: &mut KnownRanges) {
+    fn used(&mut self, manipulator: &Manipulator, branch: &LegBranch, known: &mut KnownRanges) {
         if known.contain_or_widen(branch) {
             return;
         }
@@ -357,24 +357,6 @@ impl<'a> Sweep<'a> {
             if worker.sheet.kind != SheetKind::Unreachable {
                 worker.decide(start..start + together, window, count, &mut hit);
             }
-        }
-    }
-}
-
-// Old names, for the crates above.
-#[doc(hidden)]
-impl Sweep<'_> {
-    /// [`Sweep::with_limit`], which panics.
-    ///
-    /// # Panics
-    /// With a limit, on a grid of one section alone.
-    #[must_use]
-    pub fn limited(self, limit: Option<ConditionLimit>) -> Self {
-        match limit {
-            Some(limit) => {
-                self.with_limit(limit).expect("a condition limit for the whole mechanism")
-            }
-            None => Self { limit: None, ..self },
         }
     }
 }

@@ -137,15 +137,3 @@ impl Visits {
         GridSet::of(self.axes.clone(), |place| self.counts[place as usize] == self.slices)
     }
 }
-
-// Old names, for the crates above.
-#[doc(hidden)]
-impl Visits {
-    /// [`Visits::merge`], which panics.
-    ///
-    /// # Panics
-    /// On visits of another grid.
-    pub fn add(&mut self, other: &Self) {
-        self.merge(other).expect("visits of one grid");
-    }
-}

@@ -5,7 +5,7 @@ use crate::arguments;
 use crate::error::wrong;
 use crate::measure::{Asked, Measure, goal};
 use crate::parts::Parts;
-use opm_workspace::measure::Over;
+use opm_workspace::measure::CoordinateRange;
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
@@ -47,7 +47,7 @@ impl Sweep {
             return Err(wrong("a measure knows no max_condition: sweep without it"));
         }
         let axes = self.workspace.grid().axes().iter();
-        let over: Vec<_> = axes.map(|a| Over::new(a.name.as_str(), a.min, a.max)).collect();
+        let over: Vec<_> = axes.map(|a| CoordinateRange::new(a.name.as_str(), a.min, a.max)).collect();
         let (of, sections) = (self.of.clone_ref(py), self.workspace.grid().sections());
         let asked = Asked { of, sections, modes: self.workspace.modes(), threads: self.threads };
         asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)

@@ -2,7 +2,7 @@
 
 use crate::{ROUNDING, wrapped};
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use opm_core::manipulator::{Follow, Manipulator, Mode};
+use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
 use opm_core::task::Displacement;
 use opm_tests::paper::PlanoSpherical;
@@ -37,10 +37,10 @@ fn theta(
     leg: usize,
     rotation: Matrix3<f64>,
     mode: Mode,
-    ways: &mut Vec<Follow>,
+    ways: &mut Vec<LegBranch>,
 ) -> f64 {
     ways.clear();
-    manipulator.follow(leg, &Displacement::Spherical(rotation), Some(mode), ways);
+    manipulator.leg_branches(leg, &Displacement::Spherical(rotation), Some(mode), ways);
     let (number, value) = manipulator.imaginary_value(&ways[0]).unwrap();
     assert_eq!(number, leg);
     let geometry = PlanoSpherical::printed().legs[leg];
@@ -150,7 +150,7 @@ fn the_reachable_share_of_all_orientations() {
             let mut whole = true;
             for (leg, axis) in axes.iter().enumerate() {
                 ways.clear();
-                manipulator.follow(leg, &b, None, &mut ways);
+                manipulator.leg_branches(leg, &b, None, &mut ways);
                 let above = (rotation * axis).z + cap.cos();
                 // The boundary of reach is left to rounding.
                 assert!(above.abs() < 1e-9 || ways.is_empty() == (above < 0.0), "{rotation} {leg}");

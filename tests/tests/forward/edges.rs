@@ -5,8 +5,8 @@ use crate::{Reached, apart, check_all, example, unlimited};
 use fastrand::Rng;
 use nalgebra::DMatrix;
 use opm_core::forward::{ForwardError, Unmet};
-use opm_core::joint::{Joint, JointKind};
-use opm_core::leg::Leg;
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::{Mechanism, examples, file};
 
@@ -162,7 +162,7 @@ fn out_of_reach_says_by_how_much() {
     let expected = 0.12_f64.hypot(0.9) - 0.26;
     let [Unmet::Leg(unreachable)] = &found.unmet[..] else { panic!("{:?}", found.unmet) };
     assert_eq!((unreachable.leg, unreachable.section), (0, Section::Lower));
-    assert!((unreachable.gap.excess - expected).abs() < 1e-12, "{}", unreachable.gap.excess);
+    assert!((unreachable.deficit.excess - expected).abs() < 1e-12, "{}", unreachable.deficit.excess);
 }
 
 #[test]

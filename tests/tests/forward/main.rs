@@ -10,7 +10,7 @@ mod pairs;
 use closure::Closure;
 use fastrand::Rng;
 use opm_core::forward::{Assembly, RESIDUAL};
-use opm_core::joint::{JointKind, Quantity};
+use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::plano_spherical::Home;
 use opm_core::mechanism::{Mechanism, examples, file};

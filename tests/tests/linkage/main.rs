@@ -8,8 +8,8 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Vector3};
 use numeric::{Closure, distance};
 use opm_core::chain::Branch;
-use opm_core::joint::{Joint, JointKind};
-use opm_core::leg::Leg;
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 use opm_core::linkage::{
     Input, InputRange, Linkage, LinkageBranch, LinkageError, Obstacle, Position,
 };
@@ -30,7 +30,7 @@ fn compiled(mechanism: &Mechanism) -> Linkage {
 
 /// The linkage driven by each of its six joint coordinates.
 fn inputs(linkage: &Linkage) -> impl Iterator<Item = (usize, Input<'_>)> {
-    let input = |(i, c): (usize, &opm_core::joint::JointCoordinate)| {
+    let input = |(i, c): (usize, &opm_core::mechanism::joint::JointCoordinate)| {
         (i, linkage.input(&c.name).expect("every coordinate is one"))
     };
     linkage.coordinates().iter().enumerate().map(input)
@@ -62,11 +62,11 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
     let turn = lower[1 - owner].inverse() * lower[owner];
     let label = linkage.mechanism().legs[owner].imaginary.as_ref();
     let class = &decomposition.intersection;
-    let opm_core::subspace::SubspaceClass::Rotation { axis, .. } = class else {
+    let opm_core::group::subspace::SubspaceClass::Rotation { axis, .. } = class else {
         panic!("{class:?}");
     };
     // Without a label, the direction that points up is positive.
-    let up = |v: &Vector3<f64>| v.dot(&Vector3::from(opm_core::subspace::UP));
+    let up = |v: &Vector3<f64>| v.dot(&Vector3::from(opm_core::group::subspace::UP));
     let positive = match label {
         Some(label) => label.positive.dot(axis).signum(),
         None => up(&axis.into_inner()).signum(),

@@ -2,8 +2,8 @@
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
-use opm_core::joint::{Joint, JointKind};
-use opm_core::leg::{ImaginaryLabel, Leg};
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::{ImaginaryLabel, Leg};
 use opm_core::mechanism::{Mechanism, TaskHints};
 use std::f64::consts::PI;
 

@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix4, Point3, Unit, Vector3};
 use opm_core::chain::spherical::Ball;
-use opm_core::joint::{Joint, JointKind};
-use opm_core::screw::Screw;
-use opm_core::subspace::{Frame, MotionSubspace, SubspaceClass};
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::group::screw::Screw;
+use opm_core::group::subspace::{Frame, MotionSubspace, SubspaceClass};
 use opm_tests::structured::{angles, axes, matrix, quaternion};
 use std::f64::consts::PI;
 
@@ -45,7 +45,7 @@ fn balls_measure_rotation_vectors() {
             for angle in angles() {
                 let turn = matrix(&axis, angle);
                 let amounts = ball.inverse(&turn);
-                let vector = amounts.map(opm_core::chain::Amount::value);
+                let vector = amounts.map(opm_core::group::JointDisplacement::value);
                 let length = Vector3::from(vector).norm();
                 assert!(length <= PI + ROUNDING, "{axis}{angle}: {vector:?}");
                 let (expected, found) = (frame * turn * frame.transpose(), Vector3::from(vector));

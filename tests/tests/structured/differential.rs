@@ -21,7 +21,7 @@ fn compare(m: &Manipulator, pose: &[f64], mode: Mode, rates: &[f64]) -> usize {
         reached.then(|| [moved.joints(), moved.imaginary()].concat())
     };
     let Some(differences) = derivatives(1e-2, through) else { return 0 };
-    let mut motion = m.motion();
+    let mut motion = m.joint_motion();
     // At a singularity there is nothing to compare, and it says so.
     if !m.velocity(&at, rates, &vec![0.0; rates.len()], &mut motion).unwrap() {
         return 0;

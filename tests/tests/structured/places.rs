@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use nalgebra::Isometry3;
 use opm_core::manipulator::Manipulator;
-use opm_core::skeleton::{Cuts, Posture, SeatMotion, Skeleton};
+use opm_core::skeleton::{ImaginaryJoints, Configuration, SeatMotion, Skeleton};
 use opm_tests::structured::{apart, gap, mechanisms, placed, pose};
 
 #[test]
@@ -32,7 +32,7 @@ fn mechanisms_are_the_same_anywhere() {
                 assert!((c.home - q).abs() < 1e-6, "{name} at {g}, {}: {q}", c.name);
             }
             let (decomposition, imaginary) = (there.decomposition(), there.imaginary());
-            let drawn = Skeleton::new(there.mechanism(), Cuts { decomposition, imaginary });
+            let drawn = Skeleton::new(there.mechanism(), ImaginaryJoints { decomposition, imaginary });
             for _ in 0..12 {
                 let pose = pose(&mut rng, &there);
                 let target = there.task().displacement(&pose);
@@ -43,7 +43,7 @@ fn mechanisms_are_the_same_anywhere() {
                     let off = gap(&there, at.joints(), &target);
                     assert!(off < 1e-7, "{name} at {g} {pose:?}: {off:e}");
                     let (joints, imaginary) = (&at.joints(), &at.imaginary());
-                    let off = torn(&drawn, &Posture { joints, imaginary, platform: target });
+                    let off = torn(&drawn, &Configuration { joints, imaginary, platform: target });
                     let size = there.characteristic_length();
                     assert!(off < 1e-7 * size, "{name} at {g} {pose:?}: {off:e}");
                 }
@@ -53,7 +53,7 @@ fn mechanisms_are_the_same_anywhere() {
 }
 
 /// How far what two bodies hold of a joint is apart, at worst: metres.
-fn torn(skeleton: &Skeleton, posture: &Posture<'_>) -> f64 {
+fn torn(skeleton: &Skeleton, posture: &Configuration<'_>) -> f64 {
     let mut placed = Vec::new();
     skeleton.place(posture, &mut placed);
     let mut frames: Vec<Isometry3<f64>> = Vec::new();

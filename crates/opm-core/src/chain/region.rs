@@ -38,7 +38,7 @@ pub enum Convex {
     /// A circle and its inside.
     Disc(Disc),
     /// The points that are no farther than a radius from a ray.
-    Stadium(Stadium),
+    Capsule(Capsule),
 }
 
 /// The points whose coordinate along a direction lies in a range.
@@ -63,7 +63,7 @@ pub struct Disc {
 
 /// The points no farther than a radius from a ray: half a band, and the disc about its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stadium {
+pub struct Capsule {
     band: Band,
     half: Band,
     tip: Disc,
@@ -131,7 +131,7 @@ impl Region {
         let suits = |set: &Convex| match set {
             Convex::Bands(bands) => bands.iter().all(|band| band.suits(precision)),
             Convex::Disc(_) => true,
-            Convex::Stadium(stadium) => stadium.band.suits(precision),
+            Convex::Capsule(capsule) => capsule.band.suits(precision),
         };
         suits(&self.whole) && self.hole.as_ref().is_none_or(suits)
     }
@@ -141,7 +141,7 @@ impl Region {
         let size = |set: &Convex| match set {
             Convex::Bands(bands) => bands[0].size().max(bands[1].size()),
             Convex::Disc(disc) => disc.size(),
-            Convex::Stadium(stadium) => stadium.tip.size().max(stadium.band.size()),
+            Convex::Capsule(capsule) => capsule.tip.size().max(capsule.band.size()),
         };
         size(&self.whole).max(self.hole.as_ref().map_or(0.0, size))
     }
@@ -155,7 +155,7 @@ impl Convex {
         match self {
             Self::Bands([a, b]) => common(a.rows(first), b.rows(first)),
             Self::Disc(disc) => disc.rows(first),
-            Self::Stadium(Stadium { band, half, tip }) => {
+            Self::Capsule(Capsule { band, half, tip }) => {
                 let (straight, round) =
                     (common(band.rows(first), half.rows(first)), tip.rows(first));
                 if straight[1] < straight[0] {
@@ -183,7 +183,7 @@ impl Convex {
         match self {
             Self::Bands(bands) => Self::Bands(bands.map(|band| band.turned(turn))),
             Self::Disc(disc) => Self::Disc(disc.turned(turn)),
-            Self::Stadium(Stadium { band, half, tip }) => Self::Stadium(Stadium {
+            Self::Capsule(Capsule { band, half, tip }) => Self::Capsule(Capsule {
                 band: band.turned(turn),
                 half: half.turned(turn),
                 tip: tip.turned(turn),
@@ -196,7 +196,7 @@ impl Convex {
         match self {
             Self::Bands(bands) => Self::Bands(bands.map(|band| band.placed(shift, scale))),
             Self::Disc(disc) => Self::Disc(disc.placed(shift, scale)),
-            Self::Stadium(Stadium { band, half, tip }) => Self::Stadium(Stadium {
+            Self::Capsule(Capsule { band, half, tip }) => Self::Capsule(Capsule {
                 band: band.placed(shift, scale),
                 half: half.placed(shift, scale),
                 tip: tip.placed(shift, scale),
@@ -324,7 +324,7 @@ impl Disc {
     }
 }
 
-impl Stadium {
+impl Capsule {
     /// The points no farther than the root of `square` from the ray from `tip` in the direction
     /// `along`; the band on both sides of the ray is `rim` wider, as a share.
     pub fn new(tip: Complex<f64>, along: Complex<f64>, square: f64, rim: f64) -> Self {

@@ -14,13 +14,13 @@ use nalgebra::Complex;
 /// The region in which a chain closes, before the target's rotation is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    motion: Motion,
+    motion: ShapeMotion,
     /// The rotation is a joint's, within limits.
     turn: Option<Turn>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Motion {
+enum ShapeMotion {
     /// `R - r p`.
     Carried(Region, Complex<f64>),
     /// `p + r R`.
@@ -39,21 +39,21 @@ struct Turn {
 impl Shape {
     /// Of a chain that ends in a pivot at `pivot`, the places of which are `places`.
     pub fn of_places(places: Region, pivot: Complex<f64>) -> Self {
-        Self { motion: Motion::Carried(places, pivot), turn: None }
+        Self { motion: ShapeMotion::Carried(places, pivot), turn: None }
     }
 
     /// Of a slider, a pivot and a slider, the displacements of the sliders in these ranges.
     pub(super) fn sheared(chain: Prp, ranges: [[f64; 2]; 2]) -> Self {
-        Self { motion: Motion::Sheared(chain, ranges), turn: None }
+        Self { motion: ShapeMotion::Sheared(chain, ranges), turn: None }
     }
 
     /// Of a chain seen from its end, given that of its targets backwards: `-r · region(conj r)`.
     #[must_use]
     pub(super) fn backwards(self) -> Self {
         let motion = match self.motion {
-            Motion::Carried(region, at) => Motion::Turned(region.turned((-1.0).into()), at),
-            Motion::Turned(region, at) => Motion::Carried(region.turned((-1.0).into()), at),
-            sheared @ Motion::Sheared(..) => sheared,
+            ShapeMotion::Carried(region, at) => ShapeMotion::Turned(region.turned((-1.0).into()), at),
+            ShapeMotion::Turned(region, at) => ShapeMotion::Carried(region.turned((-1.0).into()), at),
+            sheared @ ShapeMotion::Sheared(..) => sheared,
         };
         Self { motion, ..self }
     }
@@ -77,9 +77,9 @@ impl Shape {
             }
         }
         Some(match &self.motion {
-            Motion::Carried(places, pivot) => places.placed(shift - rotation * pivot, scale),
-            Motion::Turned(region, pivot) => region.turned(rotation).placed(shift + pivot, scale),
-            Motion::Sheared(chain, ranges) => chain.region(rotation, *ranges)?.placed(shift, scale),
+            ShapeMotion::Carried(places, pivot) => places.placed(shift - rotation * pivot, scale),
+            ShapeMotion::Turned(region, pivot) => region.turned(rotation).placed(shift + pivot, scale),
+            ShapeMotion::Sheared(chain, ranges) => chain.region(rotation, *ranges)?.placed(shift, scale),
         })
     }
 }

@@ -7,7 +7,7 @@ use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::{
-    CompiledSection, LegSolution, Manipulator, Mode, Section, Slot, Solution, Unreachable,
+    CompiledSection, LegSolution, Manipulator, Mode, Section, ChainCoordinate, Solution, Unreachable,
 };
 use crate::numeric::Quantity;
 use nalgebra::{Complex, Isometry3};
@@ -156,7 +156,7 @@ impl Search<'_> {
     fn section_off(&self, section: &CompiledSection, amounts: &[JointDisplacement; 3]) -> f64 {
         let mut off = 0.0_f64;
         for (slot, &amount) in section.slots.iter().zip(amounts) {
-            if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
+            if let Some(ChainCoordinate { coordinate, drive: Some(drive) }) = *slot {
                 let (value, turn) = (self.amounts[drive], self.turns[drive]);
                 off = off.max(self.apart(coordinate, amount, value, turn));
             }
@@ -228,10 +228,10 @@ impl Search<'_> {
     }
 
     pub(super) fn finish(mut self) -> Assemblies {
-        for (leg, gap) in self.gaps.iter().enumerate() {
-            if let Some(gap) = *gap {
+        for (leg, deficit) in self.deficits.iter().enumerate() {
+            if let Some(deficit) = *deficit {
                 let section = Section::Lower;
-                self.out.unmet.push(Unmet::Leg(Unreachable { leg, section, gap }));
+                self.out.unmet.push(Unmet::Leg(Unreachable { leg, section, deficit }));
             }
         }
         if self.upper_failed {

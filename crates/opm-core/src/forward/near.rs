@@ -78,8 +78,8 @@ impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfReach(unreachable) => {
-                let Unreachable { leg, section, gap } = unreachable;
-                let (leg, excess, unit) = (leg + 1, gap.excess, gap.quantity.unit());
+                let Unreachable { leg, section, deficit } = unreachable;
+                let (leg, excess, unit) = (leg + 1, deficit.excess, deficit.quantity.unit());
                 write!(
                     f,
                     "leg number {leg} is out of reach in its {section} section by {excess:.3e} {unit}"

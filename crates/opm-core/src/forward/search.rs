@@ -39,7 +39,7 @@ pub(super) struct Search<'a> {
     /// A combination of lower sections that the upper one does not close.
     pub upper_failed: bool,
     /// Of each leg, by how little it failed.
-    pub gaps: Vec<Option<ReachDeficit>>,
+    pub deficits: Vec<Option<ReachDeficit>>,
 }
 
 impl<'a> Search<'a> {
@@ -53,7 +53,7 @@ impl<'a> Search<'a> {
             out: Assemblies::default(),
             least: None,
             upper_failed: false,
-            gaps: vec![None; manipulator.legs()],
+            deficits: vec![None; manipulator.legs()],
         }
     }
 
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
                 let v = m.task().lower.kind.of_sum([a * share, b * share]);
                 self.with_lower(&v, &none);
             }
-            Anchor::Together { functional, legs } => {
+            Anchor::CoupledLegs { functional, legs } => {
                 let mut known = none;
                 let mut conditions = Vec::new();
                 for (number, (leg, held)) in m.legs.iter().zip(&plan.legs).enumerate() {
@@ -191,9 +191,9 @@ impl<'a> Search<'a> {
                     Taus::These(taus) => taus,
                     Taus::Free => [None; 2],
                     Taus::Never(gap) => {
-                        let least = self.gaps[leg].map_or(f64::INFINITY, |gap| gap.excess);
+                        let least = self.deficits[leg].map_or(f64::INFINITY, |deficit| deficit.excess);
                         if gap.excess < least {
-                            self.gaps[leg] = Some(gap);
+                            self.deficits[leg] = Some(deficit);
                         }
                         closes = false;
                         continue;
@@ -262,7 +262,7 @@ impl<'a> Search<'a> {
         let m = self.manipulator;
         let upper = m.task().upper.kind;
         let mut conditions = Vec::with_capacity(2 * taus.len());
-        let splined = self.splined(taus);
+        let slider_angle = self.slider_angle(taus);
         for (number, (leg, tau)) in m.legs.iter().zip(taus).enumerate() {
             let chain = &leg.upper.chain;
             let own = self.plan.legs[number].upper.iter().filter_map(|&slot| {
@@ -272,8 +272,8 @@ impl<'a> Search<'a> {
                 (Section::Upper, Some(tau)) => {
                     let tau = match tau {
                         JointDisplacement::Direction(_) if upper.commutes() => {
-                            let counted = tau.nearest(splined) + self.whole_turns(number);
-                            JointDisplacement::Value(if slides(chain) { splined } else { counted })
+                            let counted = tau.nearest(slider_angle) + self.whole_turns(number);
+                            JointDisplacement::Value(if slides(chain) { slider_angle } else { counted })
                         }
                         JointDisplacement::Direction(_) | JointDisplacement::Value(_) => *tau,
                     };
@@ -301,13 +301,13 @@ impl<'a> Search<'a> {
 
     /// The angle that a leg whose upper joint only slides gives a platform on a cylinder: screws are then
     /// taken within half a turn. Zero where there is no such leg.
-    fn splined(&self, taus: &[Option<JointDisplacement>]) -> f64 {
+    fn slider_angle(&self, taus: &[Option<JointDisplacement>]) -> f64 {
         let legs = self.manipulator.legs.iter().zip(taus);
-        let splined = legs.filter_map(|(leg, tau)| match (leg.cut, tau) {
+        let slider_angle = legs.filter_map(|(leg, tau)| match (leg.cut, tau) {
             (Section::Upper, Some(tau)) if slides(&leg.upper.chain) => Some(tau.value()),
             _ => None,
         });
-        splined.take(1).sum()
+        slider_angle.take(1).sum()
     }
 
     /// The whole turns, as an angle, that the actuated revolutes of a planar section hand on to a screw.

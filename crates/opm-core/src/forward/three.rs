@@ -150,7 +150,7 @@ fn on_cone(
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
         from * turn(theta) * tilt * turn(phi) * to.transpose()
     };
-    torus(&rest, conditions, place, found)
+    eliminate_angle(&rest, conditions, place, found)
 }
 
 fn turn(e: Complex<f64>) -> Matrix3<f64> {
@@ -199,7 +199,7 @@ fn from_circle(
         rotation: phi,
         translation: centre + theta * radius - phi * point,
     };
-    torus(&rest, conditions, place, found)
+    eliminate_angle(&rest, conditions, place, found)
 }
 
 /// A condition on a body whose `point` is at `centre + radius e(θ)` and that is turned by `e(φ)`.
@@ -293,7 +293,7 @@ fn solve<G: Group>(
 }
 
 /// Two equations in two angles.
-fn torus<G: Group>(
+fn eliminate_angle<G: Group>(
     rest: &[Bilinear; 2],
     conditions: &[Condition; 3],
     place: impl Fn(Complex<f64>, Complex<f64>) -> G,

@@ -30,7 +30,7 @@ pub enum CylindricalMotion {
 
 impl Subgroup for Cylindrical {
     type Displacement = CylindricalDisplacement;
-    type Motion = CylindricalMotion;
+    type Intersection = CylindricalMotion;
 
     const KIND: SubspaceKind = SubspaceKind::Cylindrical;
     const DIMENSION: usize = 2;

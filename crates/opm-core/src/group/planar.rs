@@ -108,7 +108,7 @@ fn translation_factor(omega: f64) -> Complex<f64> {
 
 impl Subgroup for Planar {
     type Displacement = PlanarDisplacement;
-    type Motion = PlanarMotion;
+    type Intersection = PlanarMotion;
 
     const KIND: SubspaceKind = SubspaceKind::Planar;
     const DIMENSION: usize = 3;

@@ -58,7 +58,7 @@ pub(crate) fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
 
 impl Subgroup for Spherical {
     type Displacement = Matrix3<f64>;
-    type Motion = SphericalMotion;
+    type Intersection = SphericalMotion;
 
     const KIND: SubspaceKind = SubspaceKind::Spherical;
     const DIMENSION: usize = 3;

@@ -12,7 +12,7 @@ pub(crate) trait Subgroup {
     /// One displacement of the subgroup.
     type Displacement: Copy;
     /// A one-parameter motion inside the subgroup that two subspaces may share.
-    type Motion: Copy;
+    type Intersection: Copy;
 
     /// Which subgroup it is.
     const KIND: SubspaceKind;
@@ -72,28 +72,28 @@ pub(crate) trait Subgroup {
     ///
     /// # Panics
     /// If the subgroup does not hold such a motion.
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> Self::Motion;
+    fn motion(direction: &Vector3<f64>, rotation: bool) -> Self::Intersection;
 
     /// The unit twist of a motion.
-    fn unit_twist(motion: &Self::Motion) -> LocalTwist;
+    fn unit_twist(motion: &Self::Intersection) -> LocalTwist;
 
     /// The subgroup's directions beside a motion: with its unit twist they are a basis of the twists.
-    fn complement(motion: &Self::Motion) -> Vec<LocalTwist>;
+    fn complement(motion: &Self::Intersection) -> Vec<LocalTwist>;
 
     /// `v · exp(I τ)`.
     fn after(
-        motion: &Self::Motion,
+        motion: &Self::Intersection,
         v: &Self::Displacement,
         tau: JointDisplacement,
     ) -> Self::Displacement;
 
     /// `exp(I τ) · b`.
     fn before(
-        motion: &Self::Motion,
+        motion: &Self::Intersection,
         b: &Self::Displacement,
         tau: JointDisplacement,
     ) -> Self::Displacement;
 
     /// `exp(I τ) · b` for every τ.
-    fn path(motion: &Self::Motion, b: &Self::Displacement) -> Path;
+    fn path(motion: &Self::Intersection, b: &Self::Displacement) -> Path;
 }

@@ -18,7 +18,7 @@ pub enum TranslationalMotion {
 
 impl Subgroup for TranslationalPlane {
     type Displacement = Complex<f64>;
-    type Motion = TranslationalMotion;
+    type Intersection = TranslationalMotion;
 
     const KIND: SubspaceKind = SubspaceKind::TranslationalPlane;
     const DIMENSION: usize = 2;

@@ -12,7 +12,7 @@ use nalgebra::{
 /// The legs, ready to be multiplied.
 #[derive(Clone, Debug)]
 pub struct Closure {
-    legs: Vec<Vec<Motion>>,
+    legs: Vec<Vec<LegJoint>>,
     platform: Point3<f64>,
     /// The mechanism's, metres.
     pub size: f64,
@@ -20,7 +20,7 @@ pub struct Closure {
 
 /// One joint, and its values at home.
 #[derive(Clone, Debug)]
-enum Motion {
+enum LegJoint {
     Screw {
         screw: Screw,
         home: f64,
@@ -34,7 +34,7 @@ enum Motion {
     },
 }
 
-impl Motion {
+impl LegJoint {
     fn values(&self) -> usize {
         match self {
             Self::Screw { .. } => 1,
@@ -65,10 +65,10 @@ impl Closure {
                     let (actuated, c) = (joint.actuated, &joint.coordinates);
                     if joint.kind == JointKind::Spherical {
                         let home = Vector3::from_fn(|i, _| c[i].home);
-                        motions.push(Motion::Ball { point: joint.point.coords, home, actuated });
+                        motions.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
                     } else {
                         motions.extend(
-                            joint.screws().into_iter().zip(c).map(|(screw, c)| Motion::Screw {
+                            joint.screws().into_iter().zip(c).map(|(screw, c)| LegJoint::Screw {
                                 screw,
                                 home: c.home,
                                 actuated,
@@ -92,7 +92,7 @@ impl Closure {
         })
     }
 
-    fn end(&self, leg: &[Motion], joints: &[f64], first: &mut usize) -> Isometry3<f64> {
+    fn end(&self, leg: &[LegJoint], joints: &[f64], first: &mut usize) -> Isometry3<f64> {
         leg.iter().fold(Isometry3::identity(), |g, motion| {
             let g = g * motion.displacement(&joints[*first..]);
             *first += motion.values();
@@ -119,7 +119,7 @@ impl Closure {
         for _ in 0..STEPS {
             let mut first = 0;
             for leg in &self.legs {
-                let values: usize = leg.iter().map(Motion::values).sum();
+                let values: usize = leg.iter().map(LegJoint::values).sum();
                 self.step(leg, &mut tried[first..first + values], target);
                 first += values;
             }
@@ -133,7 +133,7 @@ impl Closure {
         residual
     }
 
-    fn step(&self, leg: &[Motion], joints: &mut [f64], target: &Isometry3<f64>) {
+    fn step(&self, leg: &[LegJoint], joints: &mut [f64], target: &Isometry3<f64>) {
         /// What is damped is below the rounding of what is solved for.
         const DAMPING: f64 = 1e-12;
         let mut g = Isometry3::identity();
@@ -149,17 +149,17 @@ impl Closure {
         for motion in leg {
             let moved = g * motion.displacement(&joints[at..]);
             match motion {
-                Motion::Screw { screw, actuated: false, .. } => {
+                LegJoint::Screw { screw, actuated: false, .. } => {
                     columns.push(unit(screw.transformed(&g)));
                     passive.push((at, motion, g.rotation));
                 }
-                Motion::Ball { point, actuated: false, .. } => {
+                LegJoint::Ball { point, actuated: false, .. } => {
                     let point = g * Point3::from(*point);
                     let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
                     columns.extend(axes.map(|axis| unit(Screw::rotation(axis, point))));
                     passive.push((at, motion, g.rotation));
                 }
-                Motion::Screw { .. } | Motion::Ball { .. } => {}
+                LegJoint::Screw { .. } | LegJoint::Ball { .. } => {}
             }
             g = moved;
             at += motion.values();
@@ -183,8 +183,8 @@ impl Closure {
         let mut next = || step.next().copied().unwrap_or(0.0);
         for (at, motion, before) in passive {
             match motion {
-                Motion::Screw { .. } => joints[at] += next(),
-                Motion::Ball { home, .. } => {
+                LegJoint::Screw { .. } => joints[at] += next(),
+                LegJoint::Ball { home, .. } => {
                     let turn = Vector3::from_fn(|_, _| next());
                     let turn = UnitQuaternion::from_scaled_axis(before.inverse() * turn);
                     let held = Vector3::from_column_slice(&joints[at..at + 3]) - home;

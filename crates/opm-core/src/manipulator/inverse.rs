@@ -4,7 +4,7 @@
 //! and returns what it wrote there: `Ok(Some(solution))`. A pose out of reach is an answer, `Ok(None)`;
 //! the buffer then says which legs are. An error means that the pose is no pose. Nothing allocates.
 
-use super::leg::{CompiledSection, LegSolution, Section, Slot};
+use super::leg::{CompiledSection, LegSolution, Section, ChainCoordinate};
 use super::{Manipulator, Mode};
 use crate::chain::{Chain, ReachDeficit};
 use crate::group::{Displacement, JointDisplacement};
@@ -52,8 +52,8 @@ pub struct Unreachable {
     pub leg: usize,
     /// Which of its sections does not close.
     pub section: Section,
-    /// By how much.
-    pub gap: ReachDeficit,
+    /// By how much the section fails to reach.
+    pub deficit: ReachDeficit,
 }
 
 /// Every joint in one working mode at one pose. [`Manipulator::solution`] makes one, to be written to.
@@ -66,7 +66,7 @@ pub struct Solution {
     /// Every leg's displacement along the intersection motion, reported or not.
     cuts: Vec<f64>,
     /// Where it is a solution: what velocities start from.
-    pub(crate) place: Place,
+    pub(crate) place: SolvedPose,
     /// Every leg's displacements from home, as its chains find them.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
@@ -75,7 +75,7 @@ pub struct Solution {
 
 /// A pose, and its two displacements `g = v · b`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct SolvedPose {
     pub pose: Vec<f64>,
     pub v: Displacement,
     pub b: Displacement,
@@ -165,7 +165,7 @@ impl ActuatedJoints {
 /// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
 #[derive(Clone, Debug)]
 pub struct AllModes {
-    place: Place,
+    place: SolvedPose,
     legs: Vec<LegModes>,
 }
 
@@ -202,10 +202,10 @@ impl Manipulator {
         AllModes { place: self.place_at_home(), legs: vec![[None; 4]; self.legs.len()] }
     }
 
-    fn place_at_home(&self) -> Place {
+    fn place_at_home(&self) -> SolvedPose {
         let pose = self.task.home();
         let (v, b) = (self.task.lower(&pose), self.task.upper(&pose[self.task.lower_count..]));
-        Place { pose, v, b }
+        SolvedPose { pose, v, b }
     }
 
     /// The pose with these values of task coordinates by name (radians and metres); the others have
@@ -340,16 +340,16 @@ impl Manipulator {
         buffer: &'a mut AllModes,
     ) -> Result<Option<&'a AllModes>, PoseError> {
         self.displace(pose, &mut buffer.place)?;
-        let Place { v, b, .. } = buffer.place;
+        let SolvedPose { v, b, .. } = buffer.place;
         for (number, (leg, modes)) in self.legs.iter().zip(&mut buffer.legs).enumerate() {
             *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
                 let branches = self.modes.branches(mode, number);
                 let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
-                modes[part] = Some(solution.map_err(|(section, gap)| Unreachable {
+                modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
                     leg: number,
                     section,
-                    gap,
+                    deficit,
                 }));
             }
         }
@@ -374,7 +374,7 @@ impl Manipulator {
                 None => return None,
             }
         }
-        let Place { pose, v, b } = &all.place;
+        let SolvedPose { pose, v, b } = &all.place;
         buffer.place.pose.copy_from_slice(pose);
         (buffer.place.v, buffer.place.b) = (*v, *b);
         buffer.reached()
@@ -428,7 +428,7 @@ impl Manipulator {
 
     /// Keeps a pose and its displacements, which must have finite coordinates.
     #[inline]
-    fn displace(&self, pose: &[f64], place: &mut Place) -> Result<(), PoseError> {
+    fn displace(&self, pose: &[f64], place: &mut SolvedPose) -> Result<(), PoseError> {
         (place.v, place.b) = self.displacements(pose)?;
         place.pose.copy_from_slice(pose);
         Ok(())
@@ -446,7 +446,7 @@ impl Manipulator {
             return;
         }
         for (slot, &amount) in section.slots.iter().zip(amounts) {
-            if let Some(Slot { coordinate, drive: Some(drive) }) = *slot {
+            if let Some(ChainCoordinate { coordinate, drive: Some(drive) }) = *slot {
                 let home = self.coordinates[coordinate].home;
                 out.actuated[drive] = home + self.limits[coordinate].report(amount);
             }
@@ -454,7 +454,7 @@ impl Manipulator {
     }
 
     fn solve_legs(&self, mode: Mode, out: &mut Solution, turns: Turns) {
-        let Place { v, b, .. } = out.place;
+        let SolvedPose { v, b, .. } = out.place;
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
@@ -462,8 +462,8 @@ impl Manipulator {
             let near = turns.near(out.cuts[number], 0.0);
             match leg.solve(&self.task, [&v, &b], branches, near) {
                 Ok(solution) => self.write(number, &solution, out, turns),
-                Err((section, gap)) => {
-                    out.unreachable.push(Unreachable { leg: number, section, gap });
+                Err((section, deficit)) => {
+                    out.unreachable.push(Unreachable { leg: number, section, deficit });
                 }
             }
         }
@@ -511,7 +511,7 @@ impl Manipulator {
             return;
         }
         for (slot, &amount) in section.slots.iter().zip(amounts) {
-            let Some(Slot { coordinate, .. }) = *slot else { continue };
+            let Some(ChainCoordinate { coordinate, .. }) = *slot else { continue };
             let home = home(coordinate);
             let held = (turns == Turns::NearHeld).then(|| out.joints[coordinate] - home);
             let (value, within) = self.limits[coordinate].place(amount, held);

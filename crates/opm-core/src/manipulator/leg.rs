@@ -42,7 +42,7 @@ pub enum RefusedLeg {
 
 /// Where a chain's amount goes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slot {
+pub(crate) struct ChainCoordinate {
     /// Number of the joint coordinate in the mechanism.
     pub coordinate: usize,
     /// Its number among the actuated ones.
@@ -57,7 +57,7 @@ pub(crate) struct CompiledSection {
     pub screws: [Vector3<f64>; 3],
     /// What the determinant of the screws is measured in.
     pub scale: f64,
-    pub slots: [Option<Slot>; 3],
+    pub slots: [Option<ChainCoordinate>; 3],
     /// Any of its coordinates has limits.
     pub limited: bool,
     /// Any of its coordinates is actuated.
@@ -83,7 +83,7 @@ pub(crate) struct CompiledLeg {
 
 /// What a leg is compiled in.
 #[derive(Clone, Copy)]
-pub(crate) struct Surroundings<'a> {
+pub(crate) struct CompileContext<'a> {
     pub task: &'a Task,
     /// Each coordinate's number among the actuated ones.
     pub drives: &'a [Option<usize>],
@@ -115,7 +115,7 @@ impl CompiledLeg {
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        Surroundings { task, drives, limits, size }: Surroundings<'_>,
+        CompileContext { task, drives, limits, size }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
@@ -136,7 +136,7 @@ impl CompiledLeg {
             let shift = usize::from(section == Section::Upper && cut == Section::Upper);
             for (slot, freedom) in slots[shift..].iter_mut().zip(freedoms) {
                 let coordinate = first + coordinate_number(leg, *freedom);
-                *slot = Some(Slot { coordinate, drive: drives[coordinate] });
+                *slot = Some(ChainCoordinate { coordinate, drive: drives[coordinate] });
             }
             if section == cut {
                 joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);

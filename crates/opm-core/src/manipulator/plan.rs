@@ -55,7 +55,7 @@ pub enum Anchor {
     Level { leg: usize, slot: usize },
     /// Legs whose imaginary joints move as one, `functional · b`: taken as the origin of the intersection
     /// motion, it leaves as many conditions on `v` as there are freedoms.
-    Together { functional: [f64; 2], legs: Vec<usize> },
+    CoupledLegs { functional: [f64; 2], legs: Vec<usize> },
     /// All displacements add up: a linear system.
     Flat(Flat),
 }
@@ -222,7 +222,7 @@ fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Ancho
     let best = functionals.iter().flatten().max_by_key(|wanted| conditions(&group(wanted)))?;
     let members = group(best);
     (conditions(&members) >= task.lower.dimension())
-        .then_some(Anchor::Together { functional: *best, legs: members })
+        .then_some(Anchor::CoupledLegs { functional: *best, legs: members })
 }
 
 /// Whether the legs' conditions on `b` are enough once `v` is known.
@@ -232,7 +232,7 @@ fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anc
     for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
         let known = match anchor {
             Anchor::Leg(anchor) if *anchor == number => true,
-            Anchor::Together { legs, .. } if legs.contains(&number) => true,
+            Anchor::CoupledLegs { legs, .. } if legs.contains(&number) => true,
             _ => !held.lower.is_empty(),
         };
         let cut = (leg.cut == Section::Upper && known).then_some(0);

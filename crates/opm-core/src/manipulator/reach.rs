@@ -6,10 +6,10 @@
 //!
 //! One section alone is asked in the same way: the upper one whether `b` leaves every leg that is cut
 //! there a way ([`Manipulator::upper_closes`]), the lower one with the displacements τ of its cuts given
-//! ([`Manipulator::follow_lower`]). A pose is in reach where `b` is in that of the upper section and
+//! ([`Manipulator::lower_leg_branches`]). A pose is in reach where `b` is in that of the upper section and
 //! `v` with `τ(b)` in that of the lower one. A leg that is cut in its lower section is the lower
 //! section's alone, if its upper joints always close and neither drive nor limit it
-//! ([`Manipulator::sections_decide`]); if they do, too, the whole reaches less than its two sections
+//! ([`Manipulator::workspace_factorises`]); if they do, too, the whole reaches less than its two sections
 //! have in common.
 
 use super::leg::{CompiledLeg, LegBranches, Section};
@@ -20,7 +20,7 @@ use nalgebra::Complex;
 
 /// One way in which a leg can follow a slice of poses that share `b`.
 #[derive(Clone, Copy, Debug)]
-pub struct Follow {
+pub struct LegBranch {
     pub(super) leg: usize,
     pub(super) branches: LegBranches,
     /// Found from `b`, where the leg's upper section takes the cut.
@@ -29,7 +29,7 @@ pub struct Follow {
     pub(super) with_upper: Option<Displacement>,
 }
 
-impl Follow {
+impl LegBranch {
     /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where whole turns
     /// do not matter) or metres; `None` of a leg that is cut in its lower section.
     pub fn cut(&self) -> Option<f64> {
@@ -37,7 +37,7 @@ impl Follow {
     }
 
     /// Whether the leg follows alike in every slice: `b` makes no difference to it.
-    pub fn is_alike(&self) -> bool {
+    pub fn is_independent_of_slice(&self) -> bool {
         self.tau.is_none() && self.with_upper.is_none()
     }
 
@@ -63,7 +63,7 @@ impl Manipulator {
 
     /// The ways in which a leg can follow the slice of poses with this `b`: in one working mode, or
     /// (`None`) in any. At most four; none where its upper section does not close.
-    pub fn follow(&self, leg: usize, b: &Displacement, mode: Option<Mode>, ways: &mut Vec<Follow>) {
+    pub fn leg_branches(&self, leg: usize, b: &Displacement, mode: Option<Mode>, ways: &mut Vec<LegBranch>) {
         let compiled = &self.legs[leg];
         let mut solve = |branches: LegBranches| {
             let tau = match compiled.cut {
@@ -85,7 +85,7 @@ impl Manipulator {
                 }
             };
             let with_upper = (tau.is_none() && compiled.upper_decides).then_some(*b);
-            ways.push(Follow { leg, branches, tau, with_upper });
+            ways.push(LegBranch { leg, branches, tau, with_upper });
         };
         match mode {
             Some(mode) => solve(self.modes.branches(mode, leg)),
@@ -117,13 +117,13 @@ impl Manipulator {
     /// The ways in which a leg's lower section alone can follow where its cut is at the displacement
     /// `tau` along the intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in
     /// one working mode, or (`None`) in any. A leg that is cut in its lower section has no use for it.
-    pub fn follow_lower(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<Follow>) {
+    pub fn lower_leg_branches(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<LegBranch>) {
         let compiled = &self.legs[leg];
         let tau = (compiled.cut == Section::Upper).then_some(JointDisplacement::Value(tau));
         let mut push = |branches: LegBranches| {
             // Choices of the upper section make no difference.
             if ways.iter().all(|way| way.branches.lower != branches.lower) {
-                ways.push(Follow { leg, branches, tau, with_upper: None });
+                ways.push(LegBranch { leg, branches, tau, with_upper: None });
             }
         };
         match mode {
@@ -142,23 +142,23 @@ impl Manipulator {
         &self,
         b: &Displacement,
         mode: Option<Mode>,
-        ways: &mut Vec<Follow>,
+        ways: &mut Vec<LegBranch>,
     ) -> bool {
         (0..self.legs.len()).all(|leg| {
             ways.clear();
-            self.follow(leg, b, mode, ways);
+            self.leg_branches(leg, b, mode, ways);
             !ways.is_empty()
         })
     }
 
     /// Whether the two sections alone decide on every pose: no leg that is cut in its lower section
     /// has upper joints that are limited, actuated, or may be out of reach.
-    pub fn sections_decide(&self) -> bool {
+    pub fn workspace_factorises(&self) -> bool {
         self.legs.iter().all(|leg| leg.cut == Section::Upper || !leg.upper_decides)
     }
 
     /// The imaginary joint's number and value, for a leg that has one.
-    pub fn imaginary_value(&self, way: &Follow) -> Option<(usize, f64)> {
+    pub fn imaginary_value(&self, way: &LegBranch) -> Option<(usize, f64)> {
         let number = self.legs[way.leg].imaginary?;
         let joint = &self.imaginary[number];
         Some((number, joint.value(way.tau?, joint.home)))
@@ -166,7 +166,7 @@ impl Manipulator {
 
     /// Whether a leg follows to `v`, within its limits.
     #[inline]
-    pub fn follows(&self, way: &Follow, v: &Displacement) -> bool {
+    pub fn reaches(&self, way: &LegBranch, v: &Displacement) -> bool {
         let leg = &self.legs[way.leg];
         match (way.tau, &way.with_upper) {
             (Some(tau), _) => leg
@@ -187,11 +187,11 @@ impl Manipulator {
     }
 
     /// Where the leg follows to, as a region of the plane: of the translations that may be added to the
-    /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::follows`] gives,
+    /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::reaches`] gives,
     /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
     /// shape.
     #[inline(always)]
-    pub fn region(&self, way: &Follow, v: &Displacement, scale: f64) -> Option<Region> {
+    pub fn region(&self, way: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
         if way.with_upper.is_some() {
             return None;
         }

@@ -56,8 +56,6 @@ mod units;
 mod writer;
 
 pub use problem::{FileErrors, Location, Locations, Problem};
-// Old names, for the crates above.
-pub use problem::{Location as Place, Locations as Places};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 pub use writer::{Digits, write};
 

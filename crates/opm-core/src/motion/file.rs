@@ -1,4 +1,4 @@
-//! Motion files: TOML text is read into a [`Motion`], or every problem is reported with its
+//! PlatformMotion files: TOML text is read into a [`PlatformMotion`], or every problem is reported with its
 //! location.
 //!
 //! ```toml
@@ -27,7 +27,7 @@
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
-use super::{Harmonics, Motion, Path, Sinusoid};
+use super::{Harmonics, PlatformMotion, Path, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
 use crate::numeric::Quantity;
@@ -37,11 +37,11 @@ use crate::numeric::Quantity;
 /// # Errors
 /// [`FileErrors`] lists every problem of the file; if the text is not TOML, only the parser's
 /// problems.
-pub fn read(text: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
+pub fn read(text: &str, manipulator: &Manipulator) -> Result<PlatformMotion, FileErrors> {
     document(text, "motion", |root| read_document(root, manipulator))
 }
 
-fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Motion> {
+fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<PlatformMotion> {
     let name = head(root, "motion")?;
     root.allow(&["format", "name", "units", "duration", "rate", "mode", "coordinates"]);
     let positive = |key: &str, expected: &str| {
@@ -60,7 +60,7 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Motion> 
         .require("coordinates", "a table [coordinates] of the coordinates that move")
         .and_then(|value| value.open_table())
         .map(|table| read_coordinates(&table, manipulator));
-    Some(Motion {
+    Some(PlatformMotion {
         name: name.to_owned(),
         start: 0.0,
         duration: duration?,

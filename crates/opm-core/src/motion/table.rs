@@ -12,7 +12,7 @@
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
 
-use super::{Motion, Path, Spline};
+use super::{PlatformMotion, Path, Spline};
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
 use crate::numeric::Quantity;
@@ -29,7 +29,7 @@ const MOST_PROBLEMS: usize = 100;
 /// # Errors
 /// [`FileErrors`] lists every problem of the table with its location; beyond the first hundred,
 /// only their number.
-pub fn read(text: &str, name: &str, manipulator: &Manipulator) -> Result<Motion, FileErrors> {
+pub fn read(text: &str, name: &str, manipulator: &Manipulator) -> Result<PlatformMotion, FileErrors> {
     let mut problems = Problems::default();
     let motion = read_table(text, name, manipulator, &mut problems);
     match motion {
@@ -82,7 +82,7 @@ fn read_table(
     name: &str,
     manipulator: &Manipulator,
     problems: &mut Problems,
-) -> Option<Motion> {
+) -> Option<PlatformMotion> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line));
     let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
@@ -118,7 +118,7 @@ fn read_table(
     }
     let (start, end) = (*times.first().unwrap_or(&0.0), *times.last().unwrap_or(&0.0));
     match Spline::new(times, values) {
-        Ok(spline) => Some(Motion {
+        Ok(spline) => Some(PlatformMotion {
             name: name.to_owned(),
             start,
             duration: end - start,

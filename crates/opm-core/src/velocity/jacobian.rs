@@ -26,7 +26,7 @@ pub struct Jacobians {
     /// is cut in its upper section ([`Jacobians::bridged`]), with the sign of its imaginary joint
     /// where it has one. They are relative to a lower section that does not move along the intersection
     /// motion; where the coordinates of the pose make it do so (`mu nu` of a tilt, `w phi` of an upper
-    /// plane), the rate as it is reported, [`Motion::imaginary_rates`](super::Motion), has that in
+    /// plane), the rate as it is reported, [`JointMotion::imaginary_rates`](super::JointMotion), has that in
     /// it too.
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`])

@@ -5,8 +5,8 @@ use super::{Attachment, record};
 use crate::error::StudyError;
 use crate::linkage::{LinkageRound, RoundSummary, input_intervals};
 use opm_core::linkage::Position;
-use opm_core::skeleton::{self as core, Cuts};
-use opm_mcap::trajectory::{Posture, Sample};
+use opm_core::skeleton::{self as core, ImaginaryJoints};
+use opm_mcap::trajectory::{Configuration, Sample};
 use opm_mcap::{RecordError, Trajectory, TrajectoryRecorder};
 use serde_json::json;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn record_linkage(
     let failed = |error: RecordError| StudyError::record(path.display(), error);
     let steps = u64::from(count - 1);
     let mechanism = linkage.mechanism();
-    let cuts = Cuts {
+    let cuts = ImaginaryJoints {
         decomposition: linkage.decomposition(),
         imaginary: std::slice::from_ref(linkage.imaginary()),
     };
@@ -56,11 +56,11 @@ pub fn record_linkage(
         let (joints, imaginary) = (&position.joints, &[position.imaginary]);
         let frames = if recorder.shows(time) {
             let platform = mechanism.legs[0].displacement(joints);
-            scene.frames(&core::Posture { joints, imaginary, platform })
+            scene.frames(&core::Configuration { joints, imaginary, platform })
         } else {
             &[]
         };
-        let posture = Posture { joints, imaginary, rates: None, frames };
+        let posture = Configuration { joints, imaginary, rates: None, frames };
         let sample =
             Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };
         recorder.push(time, &sample).map_err(failed)

@@ -6,8 +6,8 @@ use crate::error::StudyError;
 use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
 use opm_core::manipulator::Manipulator;
 use opm_core::skeleton;
-use opm_core::trajectory::{Change, Sample, Told, Trajectory, Violation};
-use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
+use opm_core::trajectory::{Change, Sample, ViolationReport, Trajectory, Violation};
+use opm_mcap::trajectory::{Coordinate, Configuration, Rates, Role, Sample as Recorded};
 use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -47,11 +47,11 @@ impl<'a> MotionRecorder<'a> {
         Ok(Self { request, recorder, scene, place, last: 0, parallel, measures: Vec::new() })
     }
 
-    /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::follow`].
+    /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::leg_branches`].
     ///
     /// # Errors
     /// A pose that cannot be computed with, or a file that cannot be written; that it was told to stop.
-    pub fn follow(
+    pub fn leg_branches(
         mut self,
         trajectory: Trajectory<'_>,
         go_on: impl Fn(u64) -> bool,
@@ -59,7 +59,7 @@ impl<'a> MotionRecorder<'a> {
         let request = self.request;
         let take =
             |number, sample: &Sample, changes: &[Change]| self.sample(number, sample, changes);
-        let summary = request.follow(trajectory, take, go_on)?;
+        let summary = request.leg_branches(trajectory, take, go_on)?;
         self.finish(&summary)?;
         Ok(summary)
     }
@@ -92,11 +92,11 @@ impl<'a> MotionRecorder<'a> {
         let manipulator = self.request.manipulator;
         for change in changes {
             let line = match change {
-                Change::Begins(violation) => Told::new(violation, manipulator).what(),
+                Change::Begins(violation) => ViolationReport::new(violation, manipulator).what(),
                 // A singularity has been told when it began.
                 Change::Ends(violation) if violation.is_singularity() => continue,
                 Change::Ends(violation) => {
-                    format!("no longer: {}", Told::new(violation, manipulator).si())
+                    format!("no longer: {}", ViolationReport::new(violation, manipulator).si())
                 }
             };
             self.recorder.mark(clock(change.time()).clamp(self.last, now), &line)?;
@@ -111,11 +111,11 @@ impl<'a> MotionRecorder<'a> {
         let posture = if sample.reached {
             let frames = if self.recorder.shows(now) {
                 let platform = manipulator.task().displacement(&instant.pose);
-                self.scene.frames(&skeleton::Posture { joints, imaginary, platform })
+                self.scene.frames(&skeleton::Configuration { joints, imaginary, platform })
             } else {
                 &[]
             };
-            Some(Posture { joints, imaginary, rates, frames })
+            Some(Configuration { joints, imaginary, rates, frames })
         } else {
             None
         };
@@ -144,7 +144,7 @@ impl<'a> MotionRecorder<'a> {
         let manipulator = self.request.manipulator;
         let mut complete = || {
             for (number, violation) in summary.violations.iter().enumerate() {
-                let fields = violation_fields(&Told::new(violation, manipulator)).into_iter();
+                let fields = violation_fields(&ViolationReport::new(violation, manipulator)).into_iter();
                 let record: Metadata = fields
                     .map(|(key, value)| {
                         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
@@ -200,7 +200,7 @@ fn recorded<'a>(
 }
 
 /// Keys and values of a violation, the same in JSON and in a recording.
-pub fn violation_fields(told: &Told<'_>) -> Vec<(&'static str, Value)> {
+pub fn violation_fields(told: &ViolationReport<'_>) -> Vec<(&'static str, Value)> {
     let Violation { start, end, worst, amount, .. } = *told.violation;
     let mut fields = vec![
         ("kind", json!(told.kind)),

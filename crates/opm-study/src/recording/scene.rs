@@ -1,10 +1,10 @@
 //! The bodies of a mechanism as a recording wants them: plain numbers, and colours.
 
 use nalgebra::{Isometry3, Point3, Vector3};
-use opm_core::joint::{Joint, JointCoordinate};
+use opm_core::mechanism::joint::{Joint, JointCoordinate};
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::Mechanism;
-use opm_core::skeleton::{Body, Cuts, Material, Posture, Seat, Skeleton, Solid};
+use opm_core::skeleton::{Body, Configuration, ImaginaryJoints, Material, Seat, Skeleton, Solid};
 use opm_mcap::scene::{self, Shape};
 use opm_mcap::trajectory::{Coordinate, Frame, Role};
 
@@ -16,14 +16,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub fn new(mechanism: &Mechanism, cuts: Cuts<'_>) -> Self {
+    pub fn new(mechanism: &Mechanism, cuts: ImaginaryJoints<'_>) -> Self {
         let skeleton = Skeleton::new(mechanism, cuts);
         Self { skeleton, placed: Vec::new(), frames: Vec::new() }
     }
 
     pub fn of(manipulator: &Manipulator) -> Self {
         let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
-        Self::new(manipulator.mechanism(), Cuts { decomposition, imaginary })
+        Self::new(manipulator.mechanism(), ImaginaryJoints { decomposition, imaginary })
     }
 
     /// What the bodies look like.
@@ -42,7 +42,7 @@ impl Scene {
     }
 
     /// Where the bodies are, but for the base.
-    pub fn frames(&mut self, posture: &Posture<'_>) -> &[Frame] {
+    pub fn frames(&mut self, posture: &Configuration<'_>) -> &[Frame] {
         self.skeleton.place(posture, &mut self.placed);
         self.frames.clear();
         self.frames.extend(self.placed.iter().skip(1).map(|g| {

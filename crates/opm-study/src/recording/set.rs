@@ -6,7 +6,7 @@ use crate::columns::{Column, PointChoice, PointColumns};
 use crate::error::StudyError;
 use crate::request::{RequestError, SetPart};
 use crate::workspace::Workspace;
-use opm_core::manipulator::Follow;
+use opm_core::manipulator::LegBranch;
 use opm_mcap::{ClosedLine, CloudLayout, MAX_SLICES};
 use opm_workspace::{Grid, GridSet, Outline, Visits};
 
@@ -105,12 +105,12 @@ impl<'a> SetCloud<'a> {
     }
 
     /// Every imaginary joint at the upper section's coordinates, in the first mode that closes.
-    fn imaginary(&self, upper: &[f64], branches: &mut Vec<Follow>) -> Vec<f64> {
+    fn imaginary(&self, upper: &[f64], branches: &mut Vec<LegBranch>) -> Vec<f64> {
         let manipulator = &self.workspace.manipulator;
         let upper = manipulator.task().upper(upper);
         let value = |leg: usize| {
             branches.clear();
-            manipulator.follow(leg, &upper, self.workspace.modes.one(), branches);
+            manipulator.leg_branches(leg, &upper, self.workspace.modes.one(), branches);
             let first = branches.first();
             first.and_then(|branch| manipulator.imaginary_value(branch)).map_or(0.0, |v| v.1)
         };

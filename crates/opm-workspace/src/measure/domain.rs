@@ -2,10 +2,10 @@
 
 use super::cell::Cell;
 use crate::grid::Sections;
-use opm_core::enclosure::{Asked, MOST, Piece, Side};
-use opm_core::joint::Quantity;
+use opm_core::enclosure::{BoxQuery, MOST, HalfTurn, Side};
+use opm_core::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
-use opm_core::number::readable;
+use opm_core::numeric::number::readable;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
@@ -91,10 +91,10 @@ impl DomainAxis {
             }
         };
         let [from, to] = [min + shift, max + shift];
-        let [first, last] = [from, to].map(|end| Piece::of(end).number);
+        let [first, last] = [from, to].map(|end| HalfTurn::of(end).number);
         (first..=last)
             .map(|number| {
-                let piece = Piece { number };
+                let piece = HalfTurn { number };
                 let low = if number == first { piece.within(from) } else { 0.0 };
                 let high = if number == last { piece.within(to) } else { PI };
                 // The middle and half the width of -cos, which a narrow range would lose its digits in.
@@ -244,11 +244,11 @@ impl Domain {
     }
 
     /// The question about each box.
-    pub(super) fn query(&self) -> Asked {
+    pub(super) fn query(&self) -> BoxQuery {
         match self.sections {
-            Sections::Whole => Asked::Whole,
-            Sections::Upper => Asked::Upper,
-            Sections::Lower => Asked::Lower,
+            Sections::Whole => BoxQuery::Whole,
+            Sections::Upper => BoxQuery::Upper,
+            Sections::Lower => BoxQuery::Lower,
         }
     }
 

@@ -5,7 +5,7 @@ use crate::extent::{default_grid, one_turn};
 use crate::grid::Sections;
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::Modes;
-use opm_core::joint::Quantity;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 
 /// Completes the ranges that are given, which may be none. Returns the ranges to measure over, and the names of

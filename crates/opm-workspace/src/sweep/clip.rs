@@ -395,7 +395,7 @@ impl ConvexClip<'_> {
                 intersect(rows, from, to, doubts, |y| region::common(bands, y, precision));
             }
             Convex::Disc(disc) => intersect(rows, from, to, doubts, |y| disc.section(y, precision)),
-            Convex::Stadium(capsule) => {
+            Convex::Capsule(capsule) => {
                 intersect(rows, from, to, doubts, |y| capsule.section(y, precision));
             }
         }
@@ -420,7 +420,7 @@ impl ConvexClip<'_> {
             Convex::Disc(disc) => {
                 subtract(rows, from, to, counts, is_tie, doubts, |y| disc.section(y, precision));
             }
-            Convex::Stadium(capsule) => {
+            Convex::Capsule(capsule) => {
                 subtract(rows, from, to, counts, is_tie, doubts, |y| capsule.section(y, precision));
             }
         }

@@ -2,7 +2,7 @@
 //! that its angle need not be computed.
 
 use nalgebra::Complex;
-use opm_core::manipulator::Follow;
+use opm_core::manipulator::LegBranch;
 
 /// How far inside a range a direction has to lie, radians: far more than an angle is rounded.
 const MARGIN: f64 = 1e-12;
@@ -27,7 +27,7 @@ impl KnownRanges {
     }
 
     /// Whether the angle of a leg branch lies between known ones. If not, the leg's range is widened to it.
-    pub fn contain_or_widen(&mut self, branch: &Follow) -> bool {
+    pub fn contain_or_widen(&mut self, branch: &LegBranch) -> bool {
         let (Some(direction), Some(known)) = (branch.direction(), self.0.get_mut(branch.leg()))
         else {
             return false;

@@ -105,7 +105,7 @@ impl Row {
         // A pose alone is asked for.
         let several = window.to - window.from > 1;
         let known =
-            several.then(|| transitions.get_or_init(|| manipulator.breaks(follow)).as_ref());
+            several.then(|| transitions.get_or_init(|| manipulator.transitions(follow)).as_ref());
         match known.flatten() {
             Some(known) => {
                 let step = sheet.scale.step;
@@ -122,7 +122,7 @@ impl Row {
         pose[1..lower].copy_from_slice(others);
         let feasible = |i: u64| {
             pose[0] = axis.value(i);
-            manipulator.follows(follow, &manipulator.task().lower(&pose[..lower]))
+            manipulator.reaches(follow, &manipulator.task().lower(&pose[..lower]))
         };
         self.transitions.decide(&self.reached, feasible, &mut self.feasible[number]);
     }

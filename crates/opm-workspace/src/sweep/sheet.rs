@@ -4,25 +4,25 @@ use super::Sweep;
 use super::clip::ClipPlan;
 use crate::grid::{Axis, Sections, fill};
 use opm_core::chain::region::Region;
-use opm_core::manipulator::{Breaks, Follow};
+use opm_core::manipulator::{Transitions, LegBranch};
 use std::cell::OnceCell;
 
 /// One branch of a leg in the present sheet: one way in which it can follow.
 #[derive(Clone, Debug)]
 pub struct LegBranch {
-    pub follow: Follow,
+    pub follow: LegBranch,
     /// The poses that it reaches, if they are a region of the plane.
     region: Option<Region>,
     /// How rows are clipped to the region, if they can be.
     plan: Option<ClipPlan>,
     /// Where along rows its feasibility changes, if that has a closed form; found when first needed.
-    pub transitions: OnceCell<Option<Breaks>>,
+    pub transitions: OnceCell<Option<Transitions>>,
     /// No reachable pose has used it yet.
     pub unused: bool,
 }
 
 impl LegBranch {
-    fn new(follow: Follow) -> Self {
+    fn new(follow: LegBranch) -> Self {
         Self { follow, region: None, plan: None, transitions: OnceCell::new(), unused: true }
     }
 
@@ -96,7 +96,7 @@ pub struct Sheet<'a> {
     /// The number, in any slice, of the sheet for which regions were found that are the same in every slice.
     fixed_regions_of: Option<u64>,
     /// Working memory for branches.
-    found: Vec<Follow>,
+    found: Vec<LegBranch>,
 }
 
 impl<'a> Sheet<'a> {
@@ -160,15 +160,15 @@ impl<'a> Sheet<'a> {
         };
         self.kind = SheetKind::Branches;
         for (leg, branches) in self.legs.iter_mut().enumerate() {
-            if branches.first().is_some_and(|branch| branch.follow.is_alike()) {
+            if branches.first().is_some_and(|branch| branch.follow.is_independent_of_slice()) {
                 continue;
             }
             self.found.clear();
             match &b {
-                Some(b) => manipulator.follow(leg, b, mode, &mut self.found),
+                Some(b) => manipulator.leg_branches(leg, b, mode, &mut self.found),
                 None => {
                     let tau = sweep.grid.cut(leg, upper);
-                    manipulator.follow_lower(leg, tau, mode, &mut self.found);
+                    manipulator.lower_leg_branches(leg, tau, mode, &mut self.found);
                 }
             }
             branches.clear();
@@ -199,7 +199,7 @@ impl<'a> Sheet<'a> {
         self.kind = SheetKind::Regions;
         for branches in &mut self.legs {
             for branch in branches.iter_mut() {
-                if !(fixed_are_known && branch.follow.is_alike()) {
+                if !(fixed_are_known && branch.follow.is_independent_of_slice()) {
                     branch.region = sweep.manipulator.region(&branch.follow, &v, scale);
                     // Steps may be too small to count in.
                     let region = branch.region.as_ref().filter(|_| scale.is_finite());

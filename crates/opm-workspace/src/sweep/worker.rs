@@ -76,7 +76,7 @@ impl Clipping {
             let row_step = sheet.scale.row_step;
             let (first, count) = (row_step * numbers.start as f64, numbers.end - numbers.start);
             self.rows = Rows::new(first, row_step, count as usize, window);
-            let fixed = sheet.branches().filter(|branch| regions && branch.follow.is_alike());
+            let fixed = sheet.branches().filter(|branch| regions && branch.follow.is_independent_of_slice());
             let (rows, intersection) = (&self.rows, &mut self.shared);
             let regions = fixed.filter_map(LegBranch::clipped_to);
             self.arch.dispatch(Intersect { regions, rows, intersection });
@@ -85,7 +85,7 @@ impl Clipping {
         self.clipped.resize_with(branches, ClippedRows::new);
         let (rows, begun) = (&self.rows, &self.shared);
         if regions {
-            let moving = sheet.branches().filter(|branch| !branch.follow.is_alike());
+            let moving = sheet.branches().filter(|branch| !branch.follow.is_independent_of_slice());
             let regions = moving.filter_map(LegBranch::clipped_to);
             let with_holes = sheet.branches().filter_map(LegBranch::clipped_to);
             let clipped = &mut self.clipped[0];

@@ -2,7 +2,7 @@
 //! Eq. 16 lacks).
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, ReachDeficit};
-use crate::chain::region::{Band, Convex, Region, Stadium};
+use crate::chain::region::{Band, Convex, Region, Capsule};
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
 use crate::group::{JointDisplacement, PlanarDisplacement};
@@ -62,17 +62,17 @@ impl Prr {
             Branch::Plus => (self.slide, low, high),
             Branch::Minus => (-self.slide, -high, -low),
         };
-        let stadium =
-            |at: f64| Stadium::new(home + along * at, along, self.link_square, REACH_TOLERANCE);
+        let capsule =
+            |at: f64| Capsule::new(home + along * at, along, self.link_square, REACH_TOLERANCE);
         let whole = if start == f64::NEG_INFINITY {
             let (across, radius) =
                 (along * Complex::i(), self.link_square.sqrt() * (1.0 + REACH_TOLERANCE));
             let middle = across.re * home.re + across.im * home.im;
             Convex::Bands([Band::new(across, [middle - radius, middle + radius]); 2])
         } else {
-            Convex::Stadium(stadium(start))
+            Convex::Capsule(capsule(start))
         };
-        let hole = (end < f64::INFINITY).then(|| Convex::Stadium(stadium(end)));
+        let hole = (end < f64::INFINITY).then(|| Convex::Capsule(capsule(end)));
         Shape::of_places(Region { whole, hole }, self.outer())
     }
 }

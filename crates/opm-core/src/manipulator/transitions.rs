@@ -8,7 +8,7 @@
 //! the last joint of the lower chain.
 
 use super::leg::CompiledSection;
-use super::{Follow, Manipulator};
+use super::{LegBranch, Manipulator};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
 use crate::chain::surface::Surface;
@@ -23,7 +23,7 @@ const FAR: f64 = 1e4;
 
 /// What can change a leg's mind within a slice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Breaks {
+pub struct Transitions {
     surfaces: Vec<Surface>,
     /// Ends of what the upper section allows, each known to within a share.
     cuts: Vec<(Surface, f64)>,
@@ -62,10 +62,10 @@ impl CompiledSection {
 impl Manipulator {
     /// What can change a leg's mind within the slice. `None` where no closed form tells: limits on
     /// the rotation vector of a spherical joint.
-    pub fn breaks(&self, way: &Follow) -> Option<Breaks> {
+    pub fn transitions(&self, way: &LegBranch) -> Option<Transitions> {
         let leg = &self.legs[way.leg];
         let size = self.length + leg.lower.size(self);
-        let mut breaks = Breaks {
+        let mut breaks = Transitions {
             surfaces: leg.lower.surfaces(&self.limits)?,
             cuts: Vec::new(),
             size,
@@ -78,7 +78,7 @@ impl Manipulator {
     }
 
     /// What the upper section allows, as limits of the cut.
-    fn add_cuts(&self, way: &Follow, b: &Displacement, breaks: &mut Breaks) -> Option<()> {
+    fn add_cuts(&self, way: &LegBranch, b: &Displacement, breaks: &mut Transitions) -> Option<()> {
         let leg = &self.legs[way.leg];
         let last = leg.lower.chain.freedoms() - 1;
         breaks.size += leg.upper.size(self) + b.size();
@@ -113,10 +113,10 @@ impl Manipulator {
 
     /// Gives the intervals of a span of the first coordinate in which the leg may change its mind, when
     /// the other coordinates of `v` are `others`: outside of them, it follows everywhere between two or
-    /// nowhere, as [`Manipulator::follows`] says.
+    /// nowhere, as [`Manipulator::reaches`] says.
     pub fn changes(
         &self,
-        (way, breaks): (&Follow, &Breaks),
+        (way, breaks): (&LegBranch, &Transitions),
         others: &[f64],
         span: &Span,
         found: &mut impl FnMut([f64; 2]),
