@@ -1,8 +1,7 @@
 //! How a command ends when it does not end well.
 
-use opm_study::recording::{ShardError, ShardProblem};
 use opm_study::text::located;
-use opm_study::{RequestError, RequestOption, StudyError};
+use opm_study::{RequestError, RequestOption, ShardError, ShardProblem, StudyError};
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write as _};

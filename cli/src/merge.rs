@@ -5,10 +5,8 @@ use crate::failure::Failure;
 use crate::load;
 use crate::progress::{interruptible, watch_reading};
 use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, threads};
-use opm_study::recording::{
-    Attachment, Findings, MissingShards, Shards, StoredShard, WorkspaceRecording,
-};
-use opm_study::{StudyError, Workspace, WorkspaceKind};
+use opm_study::recording::{Attachment, Findings, Shards, StoredShard, WorkspaceRecording};
+use opm_study::{MissingShards, StudyError, Workspace, WorkspaceKind};
 use opm_workspace::{ConditionLimit, Progress};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};

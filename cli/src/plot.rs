@@ -2,6 +2,8 @@
 
 mod choice;
 mod cloud;
+mod grid;
+mod label;
 mod layout;
 mod motion;
 pub mod options;

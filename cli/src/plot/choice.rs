@@ -1,15 +1,13 @@
 //! Which slices are shown: what is seen, what is held, what differs from tile to tile.
 
+use super::grid::nearest;
 use super::layout::{Coordinate, Layout};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_core::Quantity;
-use opm_workspace::Axis;
 
 /// Most slices that --slice may ask for.
 const MOST: usize = 36;
-/// Values of the grid and of home that differ by less are the same.
-const ROUNDING: f64 = 1e-9;
 
 /// Whether a coordinate has several values on its grid.
 pub fn several(coordinate: &Coordinate) -> bool {
@@ -29,13 +27,6 @@ pub fn fast(layout: &Layout) -> [usize; 2] {
     [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
 }
 
-/// The number of the grid value that is nearest to an SI value.
-pub fn nearest(axis: &Axis, value: f64) -> u64 {
-    let share = (value - axis.min) / (axis.max - axis.min).max(f64::MIN_POSITIVE);
-    // A cast saturates.
-    ((share * (axis.count - 1) as f64).round() as u64).min(axis.count - 1)
-}
-
 /// The value nearest to home; of what has none, the middle.
 pub fn home(coordinate: &Coordinate) -> u64 {
     match (&coordinate.axis, coordinate.home) {
@@ -43,13 +34,6 @@ pub fn home(coordinate: &Coordinate) -> u64 {
         (Some(axis), None) => axis.count / 2,
         (None, _) => 0,
     }
-}
-
-/// Whether a value of the grid is as near to home as any could be.
-pub fn is_home(axis: &Axis, home: f64, value: u64) -> bool {
-    let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
-    let slack = ROUNDING * axis.max.abs().max(axis.min.abs()).max(1.0);
-    (axis.value(value) - home).abs() <= 0.5 * step + slack
 }
 
 /// What `--slice` asks for: coordinates with numbers of their grids' values.

@@ -1,6 +1,6 @@
 //! What is known of the points of a recorded workspace.
 
-use super::choice::{is_home, nearest};
+use super::grid::{is_home, nearest};
 use super::source::Source;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;

@@ -1,11 +1,11 @@
 //! The picture of a motion: everything over time.
 
+use super::label::value_label;
 use super::options::PanelName;
 use super::sized::drawn;
 use super::source::{Rate, Source, Stop};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
 use super::violations::{listed, told, violations};
-use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;

@@ -1,9 +1,10 @@
 //! Slices of a workspace: what is reachable while all but two coordinates are held.
 
-use super::choice::{asked, columns, fast, home, is_home, nearest, several, varied};
+use super::choice::{asked, columns, fast, home, several, varied};
+use super::grid::{is_home, nearest};
+use super::label::value_label;
 use super::layout::{Coordinate, Layout, Place};
 use super::source::{Rate, Source, Stop};
-use super::workspace::value_label;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_mcap::Cloud as Points;

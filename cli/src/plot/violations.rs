@@ -1,7 +1,7 @@
 //! Where a motion could not be followed, as its recording tells.
 
+use super::label::value_label;
 use super::source::{Rate, Source, quantity};
-use super::workspace::value_label;
 use crate::text::count;
 use opm_mcap::Metadata;
 use opm_plot::axis::label;

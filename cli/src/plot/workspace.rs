@@ -1,6 +1,7 @@
 //! The picture of a workspace: slices of it, and what the imaginary joints do in it.
 
 use super::cloud::JointCloud;
+use super::label::value_label;
 use super::layout::Layout;
 use super::options::PanelName;
 use super::sized::drawn;
@@ -8,7 +9,7 @@ use super::slices::Slices;
 use super::source::{Rate, Source, Stop};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
-use crate::text::{count, short};
+use crate::text::count;
 use opm_core::Quantity;
 use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::{Drawing, Heading, TileFigure};
@@ -174,14 +175,4 @@ fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
         1 => format!("{} = {min} {symbol}", axis.name),
         count => format!("{} {min} to {max} {symbol} ({count})", axis.name),
     }
-}
-
-/// A number to four digits at most, without trailing zeros, with a minus sign.
-pub fn value_label(value: f64) -> String {
-    let text = short(value);
-    let text = match text.contains('.') && !text.contains('e') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
-    };
-    text.replace('-', "−")
 }

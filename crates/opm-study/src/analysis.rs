@@ -36,6 +36,20 @@ pub struct Shape {
     pub boundary: Option<Vec<Outline>>,
 }
 
+impl Workspace {
+    /// Counts the poses, and finds all that is asked of the workspace.
+    ///
+    /// # Errors
+    /// A set that does not fit in memory; that it was cancelled.
+    pub fn analyse(&self, progress: &Progress) -> Result<Analysis, StudyError> {
+        let count = self.sweep().count(progress)?;
+        let conditioning = self.index(&self.sweep(), progress)?;
+        let mut analysis = Analysis::of_points(self, count, &self.poses(), progress)?;
+        analysis.conditioning = conditioning;
+        Ok(analysis)
+    }
+}
+
 impl Analysis {
     /// An analysis that has counted, and no more.
     pub fn of_count(kind: WorkspaceKind, count: Count) -> Self {

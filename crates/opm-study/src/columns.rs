@@ -1,19 +1,11 @@
 //! The values that a recording stores of every point: which there are, which are asked for, which suit the
 //! workspace.
 
+use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
-use crate::request::{RequestError, RequestOption};
+use crate::names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 use opm_core::manipulator::Manipulator;
 use opm_workspace::{Axis, Grid, GridSet};
-
-/// The name of the platform's point among the axes of a cloud.
-pub const TIP: &str = "tip";
-/// The name of one over the condition number, the local conditioning index.
-pub const INVERSE_CONDITION: &str = "inverse_condition";
-/// The name of the share of the orientations that reach a place.
-pub const SHARE: &str = "share";
-/// The name of an axis of a cloud along which all points have zero: the set has fewer than three.
-pub const NO_AXIS: &str = "0";
 
 /// The position of a point in every cloud.
 const POSITION_FIELDS: [&str; 3] = ["x", "y", "z"];

@@ -1,11 +1,16 @@
 //! Why a study ends early.
 
-use crate::request::RequestError;
+mod request;
+#[cfg(feature = "recording")]
+mod shard;
+
+pub use request::{RequestError, RequestOption, SetPart, Spelling};
+#[cfg(feature = "recording")]
+pub use shard::{MissingShards, ShardError, ShardProblem};
+
 use opm_core::trajectory::TrajectoryError;
 use opm_workspace::{Cancelled, SetError};
 
-#[cfg(feature = "recording")]
-use crate::recording::{MissingShards, ShardError};
 #[cfg(feature = "recording")]
 use crate::text::located;
 #[cfg(feature = "recording")]

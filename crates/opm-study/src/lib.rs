@@ -72,6 +72,7 @@ mod kind;
 mod linkage;
 mod measure;
 mod motion;
+mod names;
 mod poses;
 #[cfg(feature = "recording")]
 pub mod recording;
@@ -80,20 +81,19 @@ pub mod text;
 mod workspace;
 
 pub use analysis::{Analysis, Shape};
-pub use columns::{
-    Column, INVERSE_CONDITION, NO_AXIS, NamedColumn, PointChoice, PointColumns, PointOptions,
-    SHARE, TIP,
-};
-pub use error::StudyError;
+pub use columns::{Column, NamedColumn, PointChoice, PointColumns, PointOptions};
+#[cfg(feature = "recording")]
+pub use error::{MissingShards, ShardError, ShardProblem};
+pub use error::{RequestError, RequestOption, SetPart, Spelling, StudyError};
 pub use kind::{UnknownKind, WorkspaceKind};
 pub use linkage::{LinkageRound, RoundSummary, input_intervals};
 pub use measure::{Measure, unit_product};
 pub use motion::{CoordinateRanges, DEFAULT_RATE, MotionRequest, MotionSummary, Range};
+pub use names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 pub use poses::PoseSource;
-pub use request::{
-    CheckedRequest, RequestError, RequestOption, SetPart, Spelling, WorkspaceRequest,
-    characteristic_length,
-};
+#[cfg(feature = "recording")]
+pub use poses::ShardPoses;
+pub use request::{CheckedRequest, WorkspaceRequest, characteristic_length};
 pub use workspace::Workspace;
 
 /// A shipped mechanism, for the tests.

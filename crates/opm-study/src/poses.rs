@@ -1,5 +1,13 @@
 //! Where the poses of a workspace come from: a sweep, or the files in which sweeps of its shards left them.
 
+#[cfg(feature = "recording")]
+mod shards;
+
+#[cfg(feature = "recording")]
+pub use shards::ShardPoses;
+#[cfg(feature = "recording")]
+pub(crate) use shards::runs_of;
+
 use crate::error::StudyError;
 use opm_workspace::{Grid, Hits, Poses, Progress, Sweep};
 
@@ -10,7 +18,7 @@ pub enum PoseSource<'a> {
     Sweep(Sweep<'a>),
     /// From the files of all shards.
     #[cfg(feature = "recording")]
-    Shards(crate::recording::ShardPoses<'a>),
+    Shards(ShardPoses<'a>),
 }
 
 impl Poses for PoseSource<'_> {

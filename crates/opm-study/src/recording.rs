@@ -15,12 +15,11 @@ mod workspace;
 
 pub use linkage::record_linkage;
 pub use motion::{MotionRecorder, violation_fields};
-pub use shard::{ShardCount, ShardFindings, ShardPoses, ShardRecording, StoredShard};
-pub use shards::{MissingShards, ShardError, ShardProblem, Shards};
+pub use shard::{ShardCount, ShardFindings, ShardRecording, StoredShard};
+pub use shards::Shards;
 pub use workspace::{Findings, WorkspaceRecording, slices_together};
 
-use crate::error::StudyError;
-use crate::request::RequestError;
+use crate::error::{RequestError, StudyError};
 use opm_mcap::{Metadata, PartialFile};
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,9 @@
 //! Requests of a workspace: what is asked for, before anything is computed.
 
-mod error;
 mod fit;
 
-pub use error::{RequestError, RequestOption, SetPart, Spelling};
-
 use crate::columns::{PointChoice, PointOptions};
-use crate::error::StudyError;
+use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::workspace::Workspace;
 use opm_core::manipulator::Manipulator;

@@ -1,6 +1,5 @@
 //! Workspaces that are fully defined: what there is to be swept and analysed.
 
-use crate::analysis::Analysis;
 use crate::error::StudyError;
 use crate::kind::WorkspaceKind;
 use crate::measure::{Measure, grid_measure};
@@ -110,18 +109,6 @@ impl Workspace {
     /// Whether the boundary and the components are asked for.
     pub(crate) fn wants_shape(&self) -> bool {
         self.shape || self.kind != WorkspaceKind::Grid
-    }
-
-    /// Counts the poses, and finds all that is asked of the workspace.
-    ///
-    /// # Errors
-    /// A set that does not fit in memory; that it was cancelled.
-    pub fn analyse(&self, progress: &Progress) -> Result<Analysis, StudyError> {
-        let count = self.sweep().count(progress)?;
-        let conditioning = self.index(&self.sweep(), progress)?;
-        let mut analysis = Analysis::of_points(self, count, &self.poses(), progress)?;
-        analysis.conditioning = conditioning;
-        Ok(analysis)
     }
 
     /// Sums up the conditioning of the poses of its sweep, or of a shard of that, if it is asked for.

@@ -190,9 +190,9 @@ impl<'a> Search<'a> {
                 None => match self.taus(leg, v) {
                     Taus::These(taus) => taus,
                     Taus::Free => [None; 2],
-                    Taus::Never(gap) => {
-                        let least = self.deficits[leg].map_or(f64::INFINITY, |deficit| deficit.excess);
-                        if gap.excess < least {
+                    Taus::Never(deficit) => {
+                        let least = self.deficits[leg].map_or(f64::INFINITY, |least| least.excess);
+                        if deficit.excess < least {
                             self.deficits[leg] = Some(deficit);
                         }
                         closes = false;

@@ -3,8 +3,7 @@
 use super::points::layout;
 use crate::analysis::Analysis;
 use crate::columns::{Column, PointChoice, PointColumns};
-use crate::error::StudyError;
-use crate::request::{RequestError, SetPart};
+use crate::error::{RequestError, SetPart, StudyError};
 use crate::workspace::Workspace;
 use opm_core::manipulator::LegBranch;
 use opm_mcap::{ClosedLine, CloudLayout, MAX_SLICES};

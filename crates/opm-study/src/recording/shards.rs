@@ -1,173 +1,16 @@
 //! All shards of a workspace: checked, and joined to what one sweep would have found.
 
 use super::describe::described;
-use super::shard::{ShardCount, ShardPoses, StoredShard};
+use super::shard::{ShardCount, StoredShard};
 use super::{Attachment, PROGRAM};
-use crate::error::StudyError;
-use crate::poses::PoseSource;
+use crate::error::{MissingShards, ShardError, ShardProblem, StudyError};
+use crate::poses::{PoseSource, ShardPoses};
 use crate::workspace::Workspace;
 use opm_core::manipulator::Manipulator;
-use opm_workspace::{ConditioningIndex, Count, Shard};
+use opm_workspace::{ConditioningIndex, Count};
 use std::collections::BTreeSet;
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-
-/// A file that is not the shard that it should be.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {problem}")]
-pub struct ShardError {
-    /// The file.
-    pub file: String,
-    /// What is wrong with it.
-    pub problem: ShardProblem,
-}
-
-/// What is wrong with the file of a shard.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShardProblem {
-    /// It is the recording of something else.
-    #[error("not a shard of a workspace")]
-    NoShard,
-    /// It ends before it says what it is.
-    #[error("cut short, before it says which shard it is: sweep that one again")]
-    CutShortEarly,
-    /// It is not whole.
-    #[error("cut short: sweep this shard again")]
-    CutShort,
-    /// It lacks what a shard has.
-    #[error("not a shard that this program knows")]
-    UnknownShard,
-    /// It describes no workspace of its mechanism.
-    #[error("not a run that this program knows")]
-    UnknownRun,
-    /// Another program wrote it, and may count otherwise.
-    #[error("written by {by}, but this is {PROGRAM}")]
-    Program {
-        /// The program.
-        by: String,
-    },
-    /// Poses that are out of order.
-    #[error("pose {pose} comes after {end}")]
-    Order {
-        /// The pose.
-        pose: u64,
-        /// The end of the poses before it.
-        end: u64,
-    },
-    /// Nothing tells which mechanism it is of.
-    #[error("no mechanism file is attached")]
-    NoMechanism,
-    /// It is another part.
-    #[error("shard {found}, expected {expected}")]
-    OtherShard {
-        /// The part that it is.
-        found: Shard,
-        /// The part that it should be.
-        expected: Shard,
-    },
-    /// It is a part of another workspace.
-    #[error("a shard of another run: {}", difference(key, found.as_deref(), expected.as_deref()))]
-    OtherRun {
-        /// What the workspaces differ in.
-        key: String,
-        /// What the file says of it.
-        found: Option<String>,
-        /// What it should say.
-        expected: Option<String>,
-    },
-    /// It is a part of a workspace of another mechanism.
-    #[error("a shard of another run: its mechanism file differs")]
-    OtherMechanism,
-    /// A range of an imaginary joint that is not one.
-    #[error("a range of {text:?}")]
-    Range {
-        /// The range.
-        text: String,
-    },
-    /// A conditioning index that is not that of its poses.
-    #[error("its conditioning index is not that of its poses")]
-    Conditioning,
-    /// Poses that are not those that it says it has.
-    #[error("its poses are not those that it says")]
-    Poses,
-    /// It is one of another number of parts than the first file.
-    #[error("shard {shard}, but {} is {first}", file.display())]
-    OtherNumber {
-        /// The part.
-        shard: Shard,
-        /// The file before it.
-        file: PathBuf,
-        /// Its part.
-        first: Shard,
-    },
-    /// Another file is the same part.
-    #[error("shard {shard} a second time, after {}", file.display())]
-    Repeated {
-        /// The part.
-        shard: Shard,
-        /// The other file.
-        file: PathBuf,
-    },
-}
-
-fn difference(key: &str, found: Option<&str>, expected: Option<&str>) -> String {
-    match (found, expected) {
-        (Some(found), Some(expected)) => format!("{key} is {found:?}, not {expected:?}"),
-        (Some(found), None) => format!("it has {key}, {found:?}"),
-        (None, _) => format!("it has no {key}"),
-    }
-}
-
-/// Shards that there is no file of.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MissingShards {
-    /// Their numbers, as ranges with both ends.
-    pub ranges: Vec<[u64; 2]>,
-    /// How many shards there should be.
-    pub of: u64,
-}
-
-impl std::error::Error for MissingShards {}
-
-impl MissingShards {
-    /// The numbers that are not among those from 1 to `of`.
-    fn new(there: &BTreeSet<u64>, of: u64) -> Self {
-        let mut ranges = Vec::new();
-        let mut next = 1;
-        for &number in there.iter().chain([&(of + 1)]) {
-            if next < number {
-                ranges.push([next, number - 1]);
-            }
-            next = number + 1;
-        }
-        Self { ranges, of }
-    }
-
-    /// How many are missing.
-    pub fn count(&self) -> u64 {
-        self.ranges.iter().map(|[from, to]| to - from + 1).sum()
-    }
-
-    /// Their numbers.
-    pub fn numbers(&self) -> impl Iterator<Item = u64> + '_ {
-        self.ranges.iter().flat_map(|&[from, to]| from..=to)
-    }
-}
-
-impl fmt::Display for MissingShards {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let range = |&[from, to]: &[u64; 2]| match from == to {
-            true => from.to_string(),
-            false => format!("{from}-{to}"),
-        };
-        let ranges: Vec<String> = self.ranges.iter().map(range).collect();
-        let (number, of) = (self.count(), self.of);
-        let verb = if number == 1 { "is" } else { "are" };
-        write!(f, "{number} of {of} shards {verb} missing: {}", ranges.join(","))
-    }
-}
 
 /// The shards of one workspace.
 pub struct Shards {
@@ -188,7 +31,7 @@ impl Shards {
             // Another program may count or record otherwise.
             other => {
                 let by = other.map_or("nobody", |program| program).to_owned();
-                Err(first.wrong(ShardProblem::Program { by }).into())
+                Err(first.wrong(ShardProblem::Program { by, this: PROGRAM }).into())
             }
         }
     }
@@ -266,21 +109,5 @@ impl Shards {
     pub fn poses<'a>(&self, workspace: &'a Workspace) -> PoseSource<'a> {
         let files = self.paths().map(Path::to_owned).collect();
         PoseSource::Shards(ShardPoses::new(workspace.grid(), files))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_missing_is_what_is_not_there() {
-        let missing =
-            |numbers: &[u64], of| MissingShards::new(&numbers.iter().copied().collect(), of).ranges;
-        assert_eq!(missing(&[2, 3, 7], 8), [[1, 1], [4, 6], [8, 8]]);
-        assert_eq!(missing(&[1], 1_000_000), [[2, 1_000_000]]);
-        assert_eq!(missing(&[1, 2], 2), [[0; 2]; 0]);
-        let told = MissingShards::new(&[2, 3, 7].into(), 8).to_string();
-        assert_eq!(told, "5 of 8 shards are missing: 1,4-6,8");
     }
 }

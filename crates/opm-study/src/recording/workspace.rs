@@ -6,10 +6,10 @@ use super::set::{SetCloud, pose_boundary};
 use super::{Attachment, check_mcap, create, partial, refuse_standard_output};
 use crate::analysis::Analysis;
 use crate::columns::{PointChoice, PointColumns};
-use crate::error::StudyError;
+use crate::error::{RequestError, SetPart, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::poses::PoseSource;
-use crate::request::{CheckedRequest, RequestError, SetPart};
+use crate::request::CheckedRequest;
 use crate::workspace::Workspace;
 use opm_mcap::{
     CloudLayout, MAX_SLICES, PartialFile, RecordError, TableFormat, TableRecorder,

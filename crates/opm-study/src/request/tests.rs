@@ -1,6 +1,7 @@
 //! Every wrong request names the option that is wrong, and says why.
 
 use super::*;
+use crate::error::RequestOption;
 use crate::example;
 use crate::kind::WorkspaceKind as Kind;
 

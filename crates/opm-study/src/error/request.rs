@@ -1,7 +1,7 @@
 //! What is wrong with a request: typed, with the option that it is about.
 
-use crate::columns::{INVERSE_CONDITION, TIP};
 use crate::kind::WorkspaceKind;
+use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
 use opm_workspace::GridError;
 use std::path::PathBuf;
