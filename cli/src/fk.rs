@@ -7,11 +7,11 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Pose;
 use crate::text::{self, Table};
-use opm_core::group::JointDisplacement;
 use opm_core::forward::{Assemblies, Assembly, NearError, Stop, Unmet};
-use opm_core::mechanism::joint::JointCoordinate;
+use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
 use opm_core::mechanism::file::FileUnits;
+use opm_core::mechanism::joint::JointCoordinate;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
@@ -66,7 +66,9 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
         let (c, limits) =
             (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
-        if let Some(range) = c.limits.filter(|_| !limits.admits(JointDisplacement::Value(value - c.home))) {
+        if let Some(range) =
+            c.limits.filter(|_| !limits.admits(JointDisplacement::Value(value - c.home)))
+        {
             let units = loaded.file.units;
             output.note(format_args!(
                 "{} = {} is beyond its limits, {} {}",

@@ -10,7 +10,9 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::numeric::number::readable;
 use opm_study::unit_product;
-use opm_workspace::measure::{Domain, DomainAxis, Goal, Measured, CoordinateRange, Stop, default_ranges, measure};
+use opm_workspace::measure::{
+    CoordinateRange, Domain, DomainAxis, Goal, Measured, Stop, default_ranges, measure,
+};
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
 use serde_json::{Map, Value, json};

@@ -21,7 +21,7 @@ pub struct LoadedMotion {
     /// Its text.
     pub text: String,
     /// What it says.
-    pub motion: Motion,
+    pub motion: PlatformMotion,
 }
 
 impl LoadedMotion {

@@ -43,8 +43,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         !progress.is_cancelled()
     };
     let follow = || match recorder {
-        Some(recorder) => recorder.leg_branches(trajectory, go_on),
-        None => request.leg_branches(trajectory, |_, _, _| Ok(()), go_on),
+        Some(recorder) => recorder.follow(trajectory, go_on),
+        None => request.follow(trajectory, |_, _, _| Ok(()), go_on),
     };
     let followed =
         watch(output, "following", Some(samples), || done.load(Ordering::Relaxed), follow);

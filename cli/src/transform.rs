@@ -4,8 +4,8 @@
 use crate::pose::{Misread, Number};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use opm_core::Quantity;
-use opm_core::manipulator::{Manipulator, OutsideMotion};
 use opm_core::decomposition::mobility::frame;
+use opm_core::manipulator::{Manipulator, OutsideMotion};
 use serde_json::{Value, json};
 use std::str::FromStr;
 

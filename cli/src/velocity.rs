@@ -9,7 +9,7 @@ use crate::text::{self, Table, short};
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::velocity::{
-    Cause, Conditioning, Jacobians, Measures, JointMotion, Singularities, VelocityError,
+    Cause, Conditioning, Jacobians, JointMotion, Measures, Singularities, VelocityError,
 };
 use opm_study::characteristic_length;
 use serde_json::{Map, Value, json};
@@ -102,7 +102,7 @@ impl Asked<'_> {
 struct Answer<'a> {
     asked: &'a Asked<'a>,
     at: &'a Solution,
-    motion: Motion,
+    motion: JointMotion,
     /// Joint coordinates and imaginary joints that have no rate.
     rateless: Vec<usize>,
     rateless_imaginary: Vec<usize>,

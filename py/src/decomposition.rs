@@ -3,9 +3,9 @@
 use crate::html::{self, digits};
 use crate::pickle::pickled;
 use opm_core::decomposition::Freedom;
-use opm_core::mechanism::leg::Leg;
-use opm_core::manipulator as core;
 use opm_core::group::subspace::SubspaceClass;
+use opm_core::manipulator as core;
+use opm_core::mechanism::leg::Leg;
 use pyo3::prelude::*;
 
 /// How the legs of a mechanism were cut in two: what ``opm decompose`` says.

@@ -8,7 +8,8 @@ use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
 use crate::sweep::modes;
 use opm_workspace::measure::{
-    self as workspace, Evaluator, Bounds, Cell, Domain, Goal, Measured, CoordinateRange, Search, Stop,
+    self as workspace, Bounds, Cell, CoordinateRange, Domain, Evaluator, Goal, Measured, Search,
+    Stop,
 };
 use opm_workspace::{Modes, Progress, Sections};
 use pyo3::prelude::*;
@@ -225,7 +226,7 @@ fn boxes_searched(
             let known = known.iter().flat_map(|part| part.as_bytes().as_chunks().0);
             known.map(Bounds::unpack).collect()
         };
-        py.detach(|| search.answer(bounds));
+        py.detach(|| search.answer(bounds)).map_err(|error| failed(&error))?;
     }
     Ok(search.found())
 }

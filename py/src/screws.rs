@@ -4,9 +4,9 @@ use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use nalgebra::{Point3, Vector6};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods};
+use opm_core::group::screw::Screw;
 use opm_core::mechanism::file::{self, Digits, FileErrors, FileUnits};
 use opm_core::mechanism::{Mechanism, ScrewJoint};
-use opm_core::group::screw::Screw;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 

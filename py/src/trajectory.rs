@@ -95,7 +95,7 @@ pub struct Trajectory {
 /// What was followed: for a recording.
 struct Source {
     manipulator: Py<Manipulator>,
-    motion: Motion,
+    motion: PlatformMotion,
     /// The file's own name, and its text.
     file_name: String,
     text: String,
@@ -180,7 +180,7 @@ pub fn trajectory(
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
     let stop = AtomicBool::new(false);
-    let work = || Record::leg_branches(inner, followed, &stop);
+    let work = || Record::follow(inner, followed, &stop);
     let record =
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
     let manipulator = owner.clone().unbind();
@@ -188,7 +188,7 @@ pub fn trajectory(
 }
 
 /// A motion, the name of its file, and the text of that.
-type Read = (Motion, String, String);
+type Read = (PlatformMotion, String, String);
 
 /// Waypoints, as the table of poses that they are.
 fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
@@ -239,7 +239,12 @@ fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> 
 }
 
 /// What the text of a file of this name says; messages call it `label`.
-fn parse(manipulator: &Manipulator, text: &str, name: &str, label: &str) -> PyResult<Motion> {
+fn parse(
+    manipulator: &Manipulator,
+    text: &str,
+    name: &str,
+    label: &str,
+) -> PyResult<PlatformMotion> {
     let (inner, path) = (&manipulator.inner, Path::new(name));
     let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
     let stem = path.file_stem().map_or_else(|| label.to_owned(), |s| s.display().to_string());
@@ -260,7 +265,7 @@ struct Record {
 }
 
 impl Record {
-    fn leg_branches(
+    fn follow(
         manipulator: &core::Manipulator,
         mut followed: core_trajectory::Trajectory<'_>,
         stop: &AtomicBool,
@@ -504,7 +509,7 @@ impl Trajectory {
         let work = || {
             let trajectory = request.trajectory()?;
             let recorder = MotionRecorder::create(&path, request, files)?;
-            recorder.leg_branches(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
+            recorder.follow(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
         };
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
             .map_err(study)

@@ -233,7 +233,7 @@ impl Manipulator {
             poses.count,
             [joints, joints, imaginary, imaginary],
             threads,
-            || (self.inner.solution(), self.inner.motion()),
+            || (self.inner.solution(), self.inner.joint_motion()),
             |(at, motion), row, out| {
                 if !self.solve(poses.row(row), mode, at)? {
                     return Ok([false; 2]);

@@ -3,10 +3,10 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, TaskHints};
-use opm_core::group::subspace::SubspaceClass;
 use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and a one-dimensional

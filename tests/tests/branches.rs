@@ -4,11 +4,11 @@
 use fastrand::Rng;
 use nalgebra::{DVector, Isometry3};
 use opm_core::decomposition::{Decomposition, LegSplit};
-use opm_core::mechanism::joint::{Joint, JointKind};
-use opm_core::mechanism::leg::Leg;
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::Mechanism;
-use opm_core::group::subspace::SubspaceClass;
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 use opm_tests::newton::{Closure, displacement};
 use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders};
 use std::collections::BTreeSet;

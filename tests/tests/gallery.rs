@@ -3,12 +3,12 @@
 
 use fastrand::Rng;
 use opm_core::decomposition::{DecomposeError, Decomposition, decompose};
-use opm_core::mechanism::joint::Joint;
-use opm_core::mechanism::leg::Leg;
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::joint::Joint;
+use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, file};
-use opm_core::group::subspace::SubspaceClass;
 use opm_tests::by_inverse::by_inverse;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 

@@ -2,9 +2,9 @@
 //! undecomposed legs: each leg's product of exponentials must bring the platform to the pose.
 
 use fastrand::Rng;
+use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::mechanism::leg::Leg;
-use opm_core::manipulator::Manipulator;
 use opm_tests::random::{Options, PAIRS, mechanism, meet, order, orders};
 use std::collections::BTreeSet;
 

@@ -10,7 +10,7 @@ use opm_tests::by_inverse::by_inverse;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
-    Visits, boundary, rings,
+    Visits, boundary, mask_boundary,
 };
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -231,7 +231,7 @@ fn visits_are_slices_that_reach_a_place() {
                 several += u32::from(expected > 1 && expected < grid.slices());
             }
             let mut twice = visits.clone();
-            twice.add(&visits);
+            twice.merge(&visits).unwrap();
             assert!(twice.counts().iter().zip(visits.counts()).all(|(two, one)| *two == 2 * one));
         }
     }
@@ -394,7 +394,7 @@ fn boundaries_of_solids_are_those_of_their_slices() {
             let area = (w * h) as usize;
             let axis = |n: u64| Axis::new("a", 0.0, (n - 1) as f64, n);
             let part = &mask[slice * area..(slice + 1) * area];
-            assert_eq!(outline.rings, rings(&axis(w), &axis(h), part));
+            assert_eq!(outline.rings, mask_boundary(&axis(w), &axis(h), part).unwrap());
         }
         assert_eq!(boundary(&random_set(&mut rng, &[w], &[false], 0.5).0), None);
         assert_eq!(boundary(&random_set(&mut rng, &[2; 4], &[false; 4], 0.5).0), None);
@@ -534,7 +534,7 @@ fn the_global_index_is_the_mean_of_the_local_ones() {
     let sweep = Sweep::new(&manipulator, &grid, Modes::One(mode));
     let index = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| ConditioningIndex::new(&sweep, length, &Progress::default()).unwrap())
+        pool.install(|| ConditioningIndex::of(&sweep, length, &Progress::default()).unwrap())
     };
     let found = index(1);
     assert_eq!(found, index(3));

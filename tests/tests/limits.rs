@@ -1,8 +1,8 @@
 //! Limits and full revolutions, on random mechanisms of every pair of subspaces.
 
 use fastrand::Rng;
-use opm_core::mechanism::joint::JointKind;
 use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::joint::JointKind;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::{PI, TAU};
 

@@ -2,9 +2,9 @@
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
-use opm_core::group::subspace::SubspaceClass;
 use opm_tests::random::{Options, PAIRS, direction, mechanism};
 
 const OPTIONS: Options = Options { limited: 0.0, balls: true };

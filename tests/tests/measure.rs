@@ -7,7 +7,9 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::mechanism::{examples, file};
 use opm_core::task::Task;
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::measure::{Evaluator, Domain, Goal, Measured, CoordinateRange, Search, Stop, measure};
+use opm_workspace::measure::{
+    CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
+};
 use opm_workspace::{Cancelled, Modes, Progress, Sections};
 use std::f64::consts::PI;
 
@@ -65,7 +67,11 @@ fn chance(hits: u32, draws: u32, [lower, upper]: [f64; 2]) -> f64 {
 #[test]
 fn all_orientations_of_the_paper() {
     let m = example("plano-spherical-5dof");
-    let over = [CoordinateRange::new("zeta", -PI, PI), CoordinateRange::new("xi", 0.0, PI), CoordinateRange::new("psi", -PI, PI)];
+    let over = [
+        CoordinateRange::new("zeta", -PI, PI),
+        CoordinateRange::new("xi", 0.0, PI),
+        CoordinateRange::new("psi", -PI, PI),
+    ];
     let domain = Domain::new(&m, Sections::Upper, &over).unwrap();
     let share = 1.0 - 1.5 * (1.0 - (PI / 6.0).cos());
     for tolerance in [1e-1, 1e-3, 1e-5] {
@@ -106,8 +112,11 @@ fn the_polygon_of_the_helical_manipulator() {
                     x * v - y * u
                 })
                 .sum::<f64>();
-        let over =
-            [CoordinateRange::new("x", -1.0, 1.1), CoordinateRange::new("y", -1.0, 1.2), CoordinateRange::new("phi", phi, phi)];
+        let over = [
+            CoordinateRange::new("x", -1.0, 1.1),
+            CoordinateRange::new("y", -1.0, 1.2),
+            CoordinateRange::new("phi", phi, phi),
+        ];
         let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
         let goal = Goal { tolerance: 1e-9, ..Goal::default() };
         let found = measured(&m, &domain, Modes::Any, goal);
@@ -372,14 +381,18 @@ fn domain_pieces(found: &Measured) -> u64 {
 #[test]
 fn what_was_found_before_a_stop_is_kept() {
     let m = example("plano-spherical-5dof");
-    let over = [CoordinateRange::new("x", -0.4, 0.4), CoordinateRange::new("xi", 0.0, 0.5), CoordinateRange::new("psi", 0.0, 0.5)];
+    let over = [
+        CoordinateRange::new("x", -0.4, 0.4),
+        CoordinateRange::new("xi", 0.0, 0.5),
+        CoordinateRange::new("psi", 0.0, 0.5),
+    ];
     let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
     let (goal, progress) = (Goal { tolerance: 0.0, ..Goal::default() }, Progress::default());
     let asker = Evaluator::new(&m, &domain, Modes::Any);
     let mut search = Search::new(&domain, goal);
     for _ in 0..10 {
         let bounds = asker.evaluate(search.round().unwrap(), &progress).unwrap();
-        search.answer(bounds);
+        search.answer(bounds).unwrap();
     }
     let before = search.found();
     assert_eq!((before.stop, before.boxes), (Stop::Cancelled, progress.done()));

@@ -3,8 +3,8 @@
 //! poses.
 
 use fastrand::Rng;
-use opm_core::decomposition::Decomposition;
 use opm_core::Quantity;
+use opm_core::decomposition::Decomposition;
 use opm_core::manipulator::{LegBranch, Manipulator};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};

@@ -4,11 +4,11 @@
 use fastrand::Rng;
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 use opm_core::decomposition::{Decomposition, Freedom};
-use opm_core::mechanism::joint::{JointKind, Quantity};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::plano_spherical::Home;
-use opm_core::group::subspace::SubspaceClass;
+use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, SINGULAR, SingularCause, SingularLeg, Singularities,
 };
@@ -524,17 +524,18 @@ fn measures_do_not_depend_on_place_and_size() {
             there.inverse_all(&other, &mut all).unwrap();
             let off = |at: &Solution| -> f64 {
                 let each = here.coordinates().iter().zip(found.at.joints()).zip(at.joints());
-                let off = |((c, a), b): ((&opm_core::mechanism::joint::JointCoordinate, &f64), &f64)| {
-                    match c.quantity {
-                        Quantity::Length => (a - b / size).abs(),
-                        // The components of a rotation vector are in base coordinates.
-                        Quantity::Angle if c.name.ends_with(['x', 'y', 'z']) => 0.0,
-                        Quantity::Angle => {
-                            let off = (a - b).rem_euclid(TAU);
-                            off.min(TAU - off)
+                let off =
+                    |((c, a), b): ((&opm_core::mechanism::joint::JointCoordinate, &f64), &f64)| {
+                        match c.quantity {
+                            Quantity::Length => (a - b / size).abs(),
+                            // The components of a rotation vector are in base coordinates.
+                            Quantity::Angle if c.name.ends_with(['x', 'y', 'z']) => 0.0,
+                            Quantity::Angle => {
+                                let off = (a - b).rem_euclid(TAU);
+                                off.min(TAU - off)
+                            }
                         }
-                    }
-                };
+                    };
                 each.map(off).sum()
             };
             let mut at = there.solution();

@@ -109,7 +109,7 @@ fn a_limited_sweep_finds_what_is_conditioned_well_enough() {
             let (reached, expected) =
                 by_predicate(&manipulator, &grid, modes, |solution| condition(solution) <= most);
             let limit = ConditionLimit { most, length };
-            let sweep = Sweep::new(&manipulator, &grid, modes).limited(Some(limit));
+            let sweep = Sweep::new(&manipulator, &grid, modes).with_limit(limit).unwrap();
             let count = sweep.count(&Progress::default()).unwrap();
             assert_eq!(count, expected, "{pair:?} {modes:?}");
             assert_eq!(points(&sweep), reached, "{pair:?} {modes:?}");

@@ -4,13 +4,13 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3, vector};
 use opm_core::decomposition::decompose;
-use opm_core::mechanism::joint::{Joint, JointKind};
-use opm_core::mechanism::leg::Leg;
+use opm_core::group::subspace::{SubspaceClass, UP};
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::family::plano_spherical::Home;
 use opm_core::mechanism::family::{Family, PlanoSpherical};
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{FrameHints, Mechanism, TaskHints, examples, file};
-use opm_core::group::subspace::{SubspaceClass, UP};
 use opm_core::task::{Subspace, SubspaceKind, TaskError};
 use opm_tests::random::{
     Options, PAIRS, direction, displace, displace_decomposition, displacement, mechanism, vector,

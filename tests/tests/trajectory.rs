@@ -4,7 +4,7 @@ use fastrand::Rng;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::{examples, file};
-use opm_core::motion::{self, Harmonics, PlatformMotion, Path, Sinusoid};
+use opm_core::motion::{self, Harmonics, Path, PlatformMotion, Sinusoid};
 use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use std::f64::consts::{PI, TAU};
@@ -16,7 +16,7 @@ const FINE: f64 = 5000.0;
 const STEP: f64 = 1.0 / FINE;
 
 /// Sinusoids about home, so wide that they meet reach, limits and singularities.
-fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
+fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> PlatformMotion {
     let harmonics = |c: &opm_core::task::TaskCoordinate| {
         let most = if c.quantity == Quantity::Angle { 0.8 } else { 0.7 };
         let mut sinusoid = || Sinusoid {
@@ -29,7 +29,7 @@ fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
         // The motion starts at home.
         Harmonics { offset: c.home - first, sinusoids }
     };
-    Motion {
+    PlatformMotion {
         name: "random".into(),
         start: 0.0,
         duration: seconds,
@@ -40,7 +40,7 @@ fn motion(rng: &mut Rng, manipulator: &Manipulator, seconds: f64) -> Motion {
 }
 
 /// Every violation of a motion.
-fn violations(manipulator: &Manipulator, motion: &Motion, rate: f64) -> Vec<Violation> {
+fn violations(manipulator: &Manipulator, motion: &PlatformMotion, rate: f64) -> Vec<Violation> {
     let mode = manipulator.home_mode();
     let mut trajectory = Trajectory::new(manipulator, motion, mode, rate).unwrap();
     let mut ended = Vec::new();
@@ -70,7 +70,7 @@ struct Seen {
     signs: [Option<f64>; 2],
 }
 
-fn look(manipulator: &Manipulator, motion: &Motion) -> Vec<Seen> {
+fn look(manipulator: &Manipulator, motion: &PlatformMotion) -> Vec<Seen> {
     let mut solution = manipulator.solution();
     let mut jacobians = manipulator.jacobians();
     let mut measured = manipulator.singularities();
@@ -232,8 +232,14 @@ fn a_dip_between_two_samples_is_found_where_the_slopes_say_so() {
         let x = Harmonics { offset: 0.0, sinusoids: vec![x] };
         let still = Harmonics::constant(0.0);
         let path = Path::Harmonics(vec![x, still.clone(), still]);
-        let motion =
-            Motion { name: "dip".into(), start: 0.0, duration: 2.0, rate: None, mode: None, path };
+        let motion = PlatformMotion {
+            name: "dip".into(),
+            start: 0.0,
+            duration: 2.0,
+            rate: None,
+            mode: None,
+            path,
+        };
         let found = violations(&manipulator, &motion, rate);
         let [violation] = found[..] else { panic!("{rate}: {found:?}") };
         let lowest = (270.0 - phase) / 180.0;
@@ -255,8 +261,14 @@ fn the_end_of_an_arm_is_found_between_two_samples() {
         manipulator.task_coordinates().iter().map(|c| Harmonics::constant(c.home)).collect();
     path[1].sinusoids.push(y);
     let path = Path::Harmonics(path);
-    let motion =
-        Motion { name: "arm".into(), start: 0.0, duration: 4.0, rate: None, mode: None, path };
+    let motion = PlatformMotion {
+        name: "arm".into(),
+        start: 0.0,
+        duration: 4.0,
+        rate: None,
+        mode: None,
+        path,
+    };
     let found = violations(&manipulator, &motion, 5.0);
     let arm: Vec<_> = found.iter().filter(|v| v.gauge == Gauge::Reach { leg: 3 }).collect();
     let [fold, unfold, violation] = arm[..] else { panic!("{found:?}") };
@@ -317,8 +329,14 @@ fn samples_go_from_start_to_end() {
     let manipulator = shipped("translational-helical-3dof");
     let still = vec![Harmonics::constant(0.0); 3];
     let path = Path::Harmonics(still);
-    let mut motion =
-        Motion { name: "still".into(), start: 5.0, duration: 0.3, rate: None, mode: None, path };
+    let mut motion = PlatformMotion {
+        name: "still".into(),
+        start: 5.0,
+        duration: 0.3,
+        rate: None,
+        mode: None,
+        path,
+    };
     for (duration, rate, samples) in [(0.3, 10.0, 4), (0.35, 10.0, 5), (1.0, 0.1, 2), (2.0, 1.0, 3)]
     {
         motion.duration = duration;

@@ -3,10 +3,10 @@
 use crate::load::Loaded;
 use crate::output::named;
 use crate::text::{self, Table};
-use opm_core::group::JointDisplacement;
-use opm_core::mechanism::joint::{JointCoordinate, Quantity};
 use opm_core::chain::limits::Limits;
+use opm_core::group::JointDisplacement;
 use opm_core::linkage::{Input, Linkage, Position};
+use opm_core::mechanism::joint::{JointCoordinate, Quantity};
 use opm_study::input_intervals;
 use serde_json::{Value, json};
 use std::fmt::Write;

@@ -12,7 +12,7 @@ use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
 use opm_study::WorkspaceKind;
-use opm_workspace::{Axis, rings};
+use opm_workspace::{Axis, mask_boundary};
 
 /// Most slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
@@ -160,7 +160,11 @@ impl<'a> Slices<'a> {
                 Some(color) => Paint::Values(Map::Viridis, color.range),
                 None => Paint::Plain([0; 3]),
             };
-            return Content::Cells(Cells::new(x, y, self.color.as_ref().map(|_| ())), paint);
+            let cells = match self.color {
+                Some(_) => Cells::with_values(x, y),
+                None => Cells::plain(x, y),
+            };
+            return Content::Cells(cells, paint);
         }
         let range = |seen: &Seen| {
             let field = match &self.layout.coordinates[seen.number].place {
@@ -348,7 +352,8 @@ impl<'a> Slices<'a> {
         let [a, b] = &self.view;
         let (x, y) = (axis(a)?, axis(b).filter(|_| !self.is_bar())?);
         let inside = cells.hits().filter(|_| self.layout.bounded)?;
-        Some(rings(&x, &y, &inside).into_iter().map(|ring| ring.points).collect())
+        let rings = mask_boundary(&x, &y, &inside).expect("one value for each cell");
+        Some(rings.into_iter().map(|ring| ring.points).collect())
     }
 
     /// The place of home, if it is in the tile of this value.

@@ -3,7 +3,7 @@
 use crate::text::{self, Table, count, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
-use opm_core::trajectory::{ViolationReport, Violation};
+use opm_core::trajectory::{Violation, ViolationReport};
 use opm_study::recording::violation_fields;
 use opm_study::{CoordinateRanges, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
@@ -38,8 +38,11 @@ impl Report<'_> {
             (manipulator.imaginary().iter().zip(&summary.imaginary))
                 .map(|(joint, r)| (joint.name.clone(), ranges(r)))
                 .collect();
-        let violations: Vec<Value> =
-            summary.violations.iter().map(|v| json(&ViolationReport::new(v, manipulator))).collect();
+        let violations: Vec<Value> = summary
+            .violations
+            .iter()
+            .map(|v| json(&ViolationReport::new(v, manipulator)))
+            .collect();
         json!({
             "name": manipulator.mechanism().name,
             "motion": request.motion.name,
@@ -126,7 +129,8 @@ impl Report<'_> {
     /// One line for people, in the units of the mechanism file.
     fn line(&self, violation: &Violation) -> String {
         let Violation { start, end, worst, amount, quantity, .. } = *violation;
-        let (what, units) = (ViolationReport::new(violation, self.request.manipulator).what(), self.units);
+        let (what, units) =
+            (ViolationReport::new(violation, self.request.manipulator).what(), self.units);
         match quantity {
             Some(quantity) => format!(
                 "t = {start:.6} .. {end:.6} s: {what} by {} {} at {worst:.6} s",

@@ -6,7 +6,7 @@ mod seen;
 
 use crate::run::{Folder, Run, number, opm};
 use crate::{HELICAL, PLANO};
-use opm_mcap::trajectory::{Coordinate, Configuration, Role, Sample};
+use opm_mcap::trajectory::{Coordinate, Posture, Role, Sample};
 use opm_mcap::{
     CloudLayout, Metadata, Trajectory, TrajectoryRecorder, Workspace, WorkspaceRecorder,
 };
@@ -429,7 +429,7 @@ fn unknown_motion_with(
     };
     let mut recorder = TrajectoryRecorder::create(path.as_ref(), &trajectory).unwrap();
     for (i, joints) in (0..).zip(values) {
-        let posture = Some(Configuration { joints, ..Configuration::default() });
+        let posture = Some(Posture { joints, ..Posture::default() });
         recorder.push(i * 1_000_000, &Sample { posture, ..Sample::default() }).unwrap();
     }
     for (number, violation) in (1..).zip(violations) {

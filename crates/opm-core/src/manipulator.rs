@@ -12,7 +12,6 @@
 //! [`Chain`](crate::chain::Chain).
 
 mod batch;
-mod transitions;
 mod closure;
 mod inverse;
 mod leg;
@@ -21,9 +20,9 @@ mod mode;
 pub(crate) mod plan;
 mod reach;
 mod read;
+mod transitions;
 
 pub use batch::{Batch, BatchError, BatchOutput};
-pub use transitions::Transitions;
 pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
@@ -31,6 +30,7 @@ pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
 pub use reach::LegBranch;
 pub use read::ReadError;
+pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
@@ -43,7 +43,7 @@ use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 use leg::CompileContext;
-pub(crate) use leg::{CompiledLeg, CompiledSection, LegBranches, LegSolution, ChainCoordinate};
+pub(crate) use leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegBranches, LegSolution};
 use mode::ModeLayout;
 use plan::Plan;
 

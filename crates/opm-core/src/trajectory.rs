@@ -36,7 +36,6 @@ pub use gauge::{Bound, Gauge, Part, Violation};
 pub use report::ViolationReport;
 pub use violations::Change;
 
-
 use crate::chain::limits::Limits;
 use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
 use crate::motion::{Instant, PlatformMotion};

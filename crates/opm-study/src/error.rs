@@ -9,7 +9,7 @@ pub use request::{RequestError, RequestOption, SetPart, Spelling};
 pub use shard::{MissingShards, ShardError, ShardProblem};
 
 use opm_core::trajectory::TrajectoryError;
-use opm_workspace::{Cancelled, SetError};
+use opm_workspace::{Cancelled, ConditionError, SetError};
 
 #[cfg(feature = "recording")]
 use crate::text::located;
@@ -101,6 +101,9 @@ pub enum StudyError {
         /// The unfinished file.
         partial: PathBuf,
     },
+    /// A condition number that is asked for where there is none.
+    #[error(transparent)]
+    Condition(ConditionError),
     /// No shards at all.
     #[error("there are no shards to join")]
     NoShards,
@@ -127,6 +130,15 @@ impl StudyError {
 impl From<Cancelled> for StudyError {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+impl From<ConditionError> for StudyError {
+    fn from(error: ConditionError) -> Self {
+        match error {
+            ConditionError::Cancelled(_) => Self::Cancelled,
+            other => Self::Condition(other),
+        }
     }
 }
 

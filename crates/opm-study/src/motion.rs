@@ -30,7 +30,7 @@ pub struct MotionRequest<'a> {
     /// The manipulator.
     pub manipulator: &'a Manipulator,
     /// The motion of its platform.
-    pub motion: &'a Motion,
+    pub motion: &'a PlatformMotion,
     /// What messages call the motion.
     pub label: &'a str,
     /// The working mode.
@@ -42,7 +42,7 @@ pub struct MotionRequest<'a> {
 impl<'a> MotionRequest<'a> {
     /// A motion with the working mode and the rate that it asks for itself, else those of home and
     /// [`DEFAULT_RATE`].
-    pub fn new(manipulator: &'a Manipulator, motion: &'a Motion, label: &'a str) -> Self {
+    pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
         let rate = motion.rate.unwrap_or(DEFAULT_RATE);
         Self { manipulator, motion, label, mode, rate }
@@ -83,7 +83,7 @@ impl<'a> MotionRequest<'a> {
     ///
     /// # Errors
     /// A pose that cannot be computed with; what `take` gives; that it was told to stop.
-    pub fn leg_branches(
+    pub fn follow(
         &self,
         trajectory: Trajectory<'_>,
         mut take: impl FnMut(u64, &Sample, &[Change]) -> Result<(), StudyError>,
@@ -125,7 +125,7 @@ impl<'a> MotionRequest<'a> {
 type Batch = Vec<(Sample, Vec<Change>)>;
 
 /// Sends all samples, batch by batch, in batches that come back; the violations that last to the end.
-fn leg_branches(
+fn follow(
     mut trajectory: Trajectory<'_>,
     ahead: &SyncSender<Batch>,
     used: &Receiver<Batch>,

@@ -92,7 +92,11 @@ impl Workspace {
 
     /// The sweep of its grid.
     pub fn sweep(&self) -> Sweep<'_> {
-        Sweep::new(&self.manipulator, &self.grid, self.modes).limited(self.limit)
+        let sweep = Sweep::new(&self.manipulator, &self.grid, self.modes);
+        match self.limit {
+            Some(limit) => sweep.with_limit(limit).expect("the request was checked"),
+            None => sweep,
+        }
     }
 
     /// Its poses, by sweeping.
@@ -120,7 +124,7 @@ impl Workspace {
         sweep: &Sweep<'_>,
         progress: &Progress,
     ) -> Result<Option<ConditioningIndex>, StudyError> {
-        let index = |length| ConditioningIndex::new(sweep, length, progress);
+        let index = |length| ConditioningIndex::of(sweep, length, progress);
         Ok(self.conditioning_length().map(index).transpose()?)
     }
 

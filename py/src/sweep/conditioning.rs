@@ -131,7 +131,7 @@ impl Sweep {
     /// What the poses of one part add to the conditioning index.
     fn _conditioning(&self, py: Python<'_>, number: u64, of: u64) -> PyResult<Indices> {
         let (progress, sweep) = (Progress::default(), self.swept(shard(number, of)?));
-        let work = || ConditioningIndex::new(&sweep, self.length(), &progress);
+        let work = || ConditioningIndex::of(&sweep, self.length(), &progress);
         let found =
             interrupt::run(py, few(self.threads, sweep.pieces()), work, || progress.cancel())?;
         let ConditioningIndex { poses, min, max, sum, .. } = found.map_err(|e| failed(&e))?;

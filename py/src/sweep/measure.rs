@@ -47,7 +47,8 @@ impl Sweep {
             return Err(wrong("a measure knows no max_condition: sweep without it"));
         }
         let axes = self.workspace.grid().axes().iter();
-        let over: Vec<_> = axes.map(|a| CoordinateRange::new(a.name.as_str(), a.min, a.max)).collect();
+        let over: Vec<_> =
+            axes.map(|a| CoordinateRange::new(a.name.as_str(), a.min, a.max)).collect();
         let (of, sections) = (self.of.clone_ref(py), self.workspace.grid().sections());
         let asked = Asked { of, sections, modes: self.workspace.modes(), threads: self.threads };
         asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)

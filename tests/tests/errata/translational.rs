@@ -3,10 +3,10 @@
 use crate::{Misses, ROUNDING, e, n, printed, wrapped};
 use fastrand::Rng;
 use nalgebra::{Matrix2, Rotation2, Vector2, Vector3};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::translational_helical;
 use opm_core::mechanism::{examples, file};
-use opm_core::group::subspace::SubspaceClass;
 use opm_tests::paper::TranslationalLeg;
 use std::f64::consts::TAU;
 

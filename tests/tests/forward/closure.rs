@@ -3,9 +3,9 @@
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Isometry3, Point3, Vector3};
-use opm_core::mechanism::joint::{Joint, JointKind, Quantity};
-use opm_core::mechanism::Mechanism;
 use opm_core::group::screw::Screw;
+use opm_core::mechanism::Mechanism;
+use opm_core::mechanism::joint::{Joint, JointKind, Quantity};
 use std::f64::consts::TAU;
 
 /// The largest number of steps from one start.

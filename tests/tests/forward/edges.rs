@@ -5,9 +5,9 @@ use crate::{Reached, apart, check_all, example, unlimited};
 use fastrand::Rng;
 use nalgebra::DMatrix;
 use opm_core::forward::{ForwardError, Unmet};
+use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
-use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::{Mechanism, examples, file};
 
 /// A double root is known to about the square root of rounding, and so is everything that depends
@@ -162,7 +162,11 @@ fn out_of_reach_says_by_how_much() {
     let expected = 0.12_f64.hypot(0.9) - 0.26;
     let [Unmet::Leg(unreachable)] = &found.unmet[..] else { panic!("{:?}", found.unmet) };
     assert_eq!((unreachable.leg, unreachable.section), (0, Section::Lower));
-    assert!((unreachable.deficit.excess - expected).abs() < 1e-12, "{}", unreachable.deficit.excess);
+    assert!(
+        (unreachable.deficit.excess - expected).abs() < 1e-12,
+        "{}",
+        unreachable.deficit.excess
+    );
 }
 
 #[test]

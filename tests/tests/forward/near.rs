@@ -3,8 +3,8 @@
 
 use crate::{Reached, apart, check, example};
 use fastrand::Rng;
-use opm_core::forward::{NearError, Stop};
 use opm_core::Quantity;
+use opm_core::forward::{NearError, Stop};
 use opm_core::manipulator::Manipulator;
 
 /// The percentage of regular poses for which the joint values lead back to the pose, in its own

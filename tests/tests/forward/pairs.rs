@@ -3,10 +3,10 @@
 
 use crate::{Reached, apart, check, check_all, unlimited};
 use fastrand::Rng;
-use opm_core::forward::{NearError, NoClosedForm};
-use opm_core::mechanism::joint::JointKind;
-use opm_core::manipulator::Manipulator;
 use opm_core::decomposition::mobility::mobility;
+use opm_core::forward::{NearError, NoClosedForm};
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::joint::JointKind;
 use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism};
 
 /// A mechanism whose actuators control it, as many as it has freedoms: as many as possible in one

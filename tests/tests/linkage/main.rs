@@ -8,11 +8,11 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Vector3};
 use numeric::{Closure, distance};
 use opm_core::chain::Branch;
-use opm_core::mechanism::joint::{Joint, JointKind};
-use opm_core::mechanism::leg::Leg;
 use opm_core::linkage::{
     Input, InputRange, Linkage, LinkageBranch, LinkageError, Obstacle, Position,
 };
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, examples, file};
 use random::{PATTERNS, linkage};
 use std::f64::consts::{PI, TAU};

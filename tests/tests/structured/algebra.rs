@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix4, Point3, Unit, Vector3};
 use opm_core::chain::spherical::Ball;
-use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::group::screw::Screw;
 use opm_core::group::subspace::{Frame, MotionSubspace, SubspaceClass};
+use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_tests::structured::{angles, axes, matrix, quaternion};
 use std::f64::consts::PI;
 

@@ -3,8 +3,8 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3};
 use opm_core::forward::RESIDUAL;
-use opm_core::mechanism::joint::JointKind;
 use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::mechanism::joint::JointKind;
 use opm_tests::structured::{apart, gap, manipulators, pose, quarter_turns};
 use std::f64::consts::TAU;
 

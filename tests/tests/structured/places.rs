@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use nalgebra::Isometry3;
 use opm_core::manipulator::Manipulator;
-use opm_core::skeleton::{ImaginaryJoints, Configuration, SeatMotion, Skeleton};
+use opm_core::skeleton::{Configuration, ImaginaryJoints, SeatMotion, Skeleton};
 use opm_tests::structured::{apart, gap, mechanisms, placed, pose};
 
 #[test]
@@ -32,7 +32,8 @@ fn mechanisms_are_the_same_anywhere() {
                 assert!((c.home - q).abs() < 1e-6, "{name} at {g}, {}: {q}", c.name);
             }
             let (decomposition, imaginary) = (there.decomposition(), there.imaginary());
-            let drawn = Skeleton::new(there.mechanism(), ImaginaryJoints { decomposition, imaginary });
+            let drawn =
+                Skeleton::new(there.mechanism(), ImaginaryJoints { decomposition, imaginary });
             for _ in 0..12 {
                 let pose = pose(&mut rng, &there);
                 let target = there.task().displacement(&pose);

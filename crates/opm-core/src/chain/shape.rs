@@ -51,8 +51,12 @@ impl Shape {
     #[must_use]
     pub(super) fn backwards(self) -> Self {
         let motion = match self.motion {
-            ShapeMotion::Carried(region, at) => ShapeMotion::Turned(region.turned((-1.0).into()), at),
-            ShapeMotion::Turned(region, at) => ShapeMotion::Carried(region.turned((-1.0).into()), at),
+            ShapeMotion::Carried(region, at) => {
+                ShapeMotion::Turned(region.turned((-1.0).into()), at)
+            }
+            ShapeMotion::Turned(region, at) => {
+                ShapeMotion::Carried(region.turned((-1.0).into()), at)
+            }
             sheared @ ShapeMotion::Sheared(..) => sheared,
         };
         Self { motion, ..self }
@@ -78,8 +82,12 @@ impl Shape {
         }
         Some(match &self.motion {
             ShapeMotion::Carried(places, pivot) => places.placed(shift - rotation * pivot, scale),
-            ShapeMotion::Turned(region, pivot) => region.turned(rotation).placed(shift + pivot, scale),
-            ShapeMotion::Sheared(chain, ranges) => chain.region(rotation, *ranges)?.placed(shift, scale),
+            ShapeMotion::Turned(region, pivot) => {
+                region.turned(rotation).placed(shift + pivot, scale)
+            }
+            ShapeMotion::Sheared(chain, ranges) => {
+                chain.region(rotation, *ranges)?.placed(shift, scale)
+            }
         })
     }
 }

@@ -7,7 +7,8 @@ use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::{
-    CompiledSection, LegSolution, Manipulator, Mode, Section, ChainCoordinate, Solution, Unreachable,
+    ChainCoordinate, CompiledSection, LegSolution, Manipulator, Mode, Section, Solution,
+    Unreachable,
 };
 use crate::numeric::Quantity;
 use nalgebra::{Complex, Isometry3};

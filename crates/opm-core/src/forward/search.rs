@@ -273,7 +273,11 @@ impl<'a> Search<'a> {
                     let tau = match tau {
                         JointDisplacement::Direction(_) if upper.commutes() => {
                             let counted = tau.nearest(slider_angle) + self.whole_turns(number);
-                            JointDisplacement::Value(if slides(chain) { slider_angle } else { counted })
+                            JointDisplacement::Value(if slides(chain) {
+                                slider_angle
+                            } else {
+                                counted
+                            })
                         }
                         JointDisplacement::Direction(_) | JointDisplacement::Value(_) => *tau,
                     };

@@ -4,7 +4,7 @@
 //! and returns what it wrote there: `Ok(Some(solution))`. A pose out of reach is an answer, `Ok(None)`;
 //! the buffer then says which legs are. An error means that the pose is no pose. Nothing allocates.
 
-use super::leg::{CompiledSection, LegSolution, Section, ChainCoordinate};
+use super::leg::{ChainCoordinate, CompiledSection, LegSolution, Section};
 use super::{Manipulator, Mode};
 use crate::chain::{Chain, ReachDeficit};
 use crate::group::{Displacement, JointDisplacement};

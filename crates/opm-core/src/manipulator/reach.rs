@@ -63,7 +63,13 @@ impl Manipulator {
 
     /// The ways in which a leg can follow the slice of poses with this `b`: in one working mode, or
     /// (`None`) in any. At most four; none where its upper section does not close.
-    pub fn leg_branches(&self, leg: usize, b: &Displacement, mode: Option<Mode>, ways: &mut Vec<LegBranch>) {
+    pub fn leg_branches(
+        &self,
+        leg: usize,
+        b: &Displacement,
+        mode: Option<Mode>,
+        ways: &mut Vec<LegBranch>,
+    ) {
         let compiled = &self.legs[leg];
         let mut solve = |branches: LegBranches| {
             let tau = match compiled.cut {
@@ -117,7 +123,13 @@ impl Manipulator {
     /// The ways in which a leg's lower section alone can follow where its cut is at the displacement
     /// `tau` along the intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in
     /// one working mode, or (`None`) in any. A leg that is cut in its lower section has no use for it.
-    pub fn lower_leg_branches(&self, leg: usize, tau: f64, mode: Option<Mode>, ways: &mut Vec<LegBranch>) {
+    pub fn lower_leg_branches(
+        &self,
+        leg: usize,
+        tau: f64,
+        mode: Option<Mode>,
+        ways: &mut Vec<LegBranch>,
+    ) {
         let compiled = &self.legs[leg];
         let tau = (compiled.cut == Section::Upper).then_some(JointDisplacement::Value(tau));
         let mut push = |branches: LegBranches| {

@@ -27,7 +27,7 @@
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
-use super::{Harmonics, PlatformMotion, Path, Sinusoid};
+use super::{Harmonics, Path, PlatformMotion, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
 use crate::numeric::Quantity;

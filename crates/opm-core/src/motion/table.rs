@@ -12,7 +12,7 @@
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
 
-use super::{PlatformMotion, Path, Spline};
+use super::{Path, PlatformMotion, Spline};
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
 use crate::numeric::Quantity;
@@ -29,7 +29,11 @@ const MOST_PROBLEMS: usize = 100;
 /// # Errors
 /// [`FileErrors`] lists every problem of the table with its location; beyond the first hundred,
 /// only their number.
-pub fn read(text: &str, name: &str, manipulator: &Manipulator) -> Result<PlatformMotion, FileErrors> {
+pub fn read(
+    text: &str,
+    name: &str,
+    manipulator: &Manipulator,
+) -> Result<PlatformMotion, FileErrors> {
     let mut problems = Problems::default();
     let motion = read_table(text, name, manipulator, &mut problems);
     match motion {

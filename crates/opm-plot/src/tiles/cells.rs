@@ -69,23 +69,16 @@ pub enum Paint {
 impl Cells {
     /// Cells of which none was hit, and which will be drawn in one colour.
     pub fn plain(x: Spacing, y: Spacing) -> Self {
-        Self::new(x, y, None)
+        let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
+        let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
+        let counts = vec![0; cells[0] * cells[1]];
+        Self { spacing: [x, y], together, cells, counts, sums: None, lines: vec![] }
     }
 
     /// Cells of which none was hit, and which will be coloured by the values of the hits.
     pub fn with_values(x: Spacing, y: Spacing) -> Self {
-        Self::new(x, y, Some(()))
-    }
-
-    /// [`Cells::plain`] and [`Cells::with_values`]: an old name, for the crates above.
-    #[doc(hidden)]
-    pub fn new(x: Spacing, y: Spacing, values: Option<()>) -> Self {
-        let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
-        let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
-        let all = cells[0] * cells[1];
-        let sums = values.map(|()| vec![0.0; all]);
-        let counts = vec![0; all];
-        Self { spacing: [x, y], together, cells, counts, sums, lines: vec![] }
+        let plain = Self::plain(x, y);
+        Self { sums: Some(vec![0.0; plain.counts.len()]), ..plain }
     }
 
     /// Adds a hit to the cell of the nearest grid values. A point outside the grid hits no cell.

@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::linkage::{LinkageRound, RoundSummary, input_intervals};
 use opm_core::linkage::Position;
 use opm_core::skeleton::{self as core, ImaginaryJoints};
-use opm_mcap::trajectory::{Configuration, Sample};
+use opm_mcap::trajectory::{Posture, Sample};
 use opm_mcap::{RecordError, Trajectory, TrajectoryRecorder};
 use serde_json::json;
 use std::path::Path;
@@ -60,7 +60,7 @@ pub fn record_linkage(
         } else {
             &[]
         };
-        let posture = Configuration { joints, imaginary, rates: None, frames };
+        let posture = Posture { joints, imaginary, rates: None, frames };
         let sample =
             Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };
         recorder.push(time, &sample).map_err(failed)

@@ -6,8 +6,8 @@ use crate::error::StudyError;
 use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
 use opm_core::manipulator::Manipulator;
 use opm_core::skeleton;
-use opm_core::trajectory::{Change, Sample, ViolationReport, Trajectory, Violation};
-use opm_mcap::trajectory::{Coordinate, Configuration, Rates, Role, Sample as Recorded};
+use opm_core::trajectory::{Change, Sample, Trajectory, Violation, ViolationReport};
+use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
 use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -47,11 +47,11 @@ impl<'a> MotionRecorder<'a> {
         Ok(Self { request, recorder, scene, place, last: 0, parallel, measures: Vec::new() })
     }
 
-    /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::leg_branches`].
+    /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::follow`].
     ///
     /// # Errors
     /// A pose that cannot be computed with, or a file that cannot be written; that it was told to stop.
-    pub fn leg_branches(
+    pub fn follow(
         mut self,
         trajectory: Trajectory<'_>,
         go_on: impl Fn(u64) -> bool,
@@ -59,7 +59,7 @@ impl<'a> MotionRecorder<'a> {
         let request = self.request;
         let take =
             |number, sample: &Sample, changes: &[Change]| self.sample(number, sample, changes);
-        let summary = request.leg_branches(trajectory, take, go_on)?;
+        let summary = request.follow(trajectory, take, go_on)?;
         self.finish(&summary)?;
         Ok(summary)
     }
@@ -115,7 +115,7 @@ impl<'a> MotionRecorder<'a> {
             } else {
                 &[]
             };
-            Some(Configuration { joints, imaginary, rates, frames })
+            Some(Posture { joints, imaginary, rates, frames })
         } else {
             None
         };
@@ -144,7 +144,8 @@ impl<'a> MotionRecorder<'a> {
         let manipulator = self.request.manipulator;
         let mut complete = || {
             for (number, violation) in summary.violations.iter().enumerate() {
-                let fields = violation_fields(&ViolationReport::new(violation, manipulator)).into_iter();
+                let fields =
+                    violation_fields(&ViolationReport::new(violation, manipulator)).into_iter();
                 let record: Metadata = fields
                     .map(|(key, value)| {
                         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);

@@ -1,9 +1,9 @@
 //! The bodies of a mechanism as a recording wants them: plain numbers, and colours.
 
 use nalgebra::{Isometry3, Point3, Vector3};
-use opm_core::mechanism::joint::{Joint, JointCoordinate};
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::Mechanism;
+use opm_core::mechanism::joint::{Joint, JointCoordinate};
 use opm_core::skeleton::{Body, Configuration, ImaginaryJoints, Material, Seat, Skeleton, Solid};
 use opm_mcap::scene::{self, Shape};
 use opm_mcap::trajectory::{Coordinate, Frame, Role};

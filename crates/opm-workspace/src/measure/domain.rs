@@ -2,8 +2,8 @@
 
 use super::cell::Cell;
 use crate::grid::Sections;
-use opm_core::enclosure::{BoxQuery, MOST, HalfTurn, Side};
 use opm_core::Quantity;
+use opm_core::enclosure::{BoxQuery, HalfTurn, MOST, Side};
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -3,7 +3,7 @@
 use super::Sweep;
 use super::clip::ClippedRows;
 use super::runs::{self, Run};
-use super::sheet::{LegBranch, Sheet};
+use super::sheet::{Sheet, SliceBranch};
 use super::transitions::Transitions;
 use super::worker::are_clippable;
 use opm_core::chain::equation::Span;
@@ -93,13 +93,13 @@ impl Row {
         &mut self,
         sweep: &Sweep<'_>,
         sheet: &Sheet<'_>,
-        (branch, number): (&LegBranch, usize),
+        (branch, number): (&SliceBranch, usize),
         window: Run,
     ) {
         let manipulator = sweep.manipulator;
         let lower = sweep.grid.lower();
         let axis = &sweep.grid.axes()[0];
-        let LegBranch { follow, transitions, .. } = branch;
+        let SliceBranch { follow, transitions, .. } = branch;
         let others = &sheet.others[..lower - 1];
         self.transitions.clear();
         // A pose alone is asked for.

@@ -4,12 +4,12 @@ use super::Sweep;
 use super::clip::ClipPlan;
 use crate::grid::{Axis, Sections, fill};
 use opm_core::chain::region::Region;
-use opm_core::manipulator::{Transitions, LegBranch};
+use opm_core::manipulator::{LegBranch, Transitions};
 use std::cell::OnceCell;
 
 /// One branch of a leg in the present sheet: one way in which it can follow.
 #[derive(Clone, Debug)]
-pub struct LegBranch {
+pub struct SliceBranch {
     pub follow: LegBranch,
     /// The poses that it reaches, if they are a region of the plane.
     region: Option<Region>,
@@ -21,7 +21,7 @@ pub struct LegBranch {
     pub unused: bool,
 }
 
-impl LegBranch {
+impl SliceBranch {
     fn new(follow: LegBranch) -> Self {
         Self { follow, region: None, plan: None, transitions: OnceCell::new(), unused: true }
     }
@@ -89,7 +89,7 @@ pub struct Sheet<'a> {
     pub first_row: u64,
     pub kind: SheetKind,
     /// The branches of every leg.
-    pub legs: Vec<Vec<LegBranch>>,
+    pub legs: Vec<Vec<SliceBranch>>,
     /// All coordinates but the first.
     pub others: Vec<f64>,
     pub scale: RowScale,
@@ -124,7 +124,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The branches of all legs, one after the other.
-    pub fn branches(&self) -> impl Iterator<Item = &LegBranch> + Clone {
+    pub fn branches(&self) -> impl Iterator<Item = &SliceBranch> + Clone {
         self.legs.iter().flatten()
     }
 
@@ -172,7 +172,7 @@ impl<'a> Sheet<'a> {
                 }
             }
             branches.clear();
-            branches.extend(self.found.iter().copied().map(LegBranch::new));
+            branches.extend(self.found.iter().copied().map(SliceBranch::new));
             if branches.is_empty() {
                 self.kind = SheetKind::Unreachable;
             }

@@ -4,7 +4,7 @@ use super::clip::{Clip, ClippedRows, Intersect, Intersection, RowState, Rows};
 use super::known_range::KnownRanges;
 use super::row::Row;
 use super::runs::{self, Run};
-use super::sheet::{LegBranch, Sheet, SheetKind};
+use super::sheet::{Sheet, SheetKind, SliceBranch};
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Axis, Sections};
@@ -76,9 +76,11 @@ impl Clipping {
             let row_step = sheet.scale.row_step;
             let (first, count) = (row_step * numbers.start as f64, numbers.end - numbers.start);
             self.rows = Rows::new(first, row_step, count as usize, window);
-            let fixed = sheet.branches().filter(|branch| regions && branch.follow.is_independent_of_slice());
+            let fixed = sheet
+                .branches()
+                .filter(|branch| regions && branch.follow.is_independent_of_slice());
             let (rows, intersection) = (&self.rows, &mut self.shared);
-            let regions = fixed.filter_map(LegBranch::clipped_to);
+            let regions = fixed.filter_map(SliceBranch::clipped_to);
             self.arch.dispatch(Intersect { regions, rows, intersection });
         }
         let branches = sheet.legs.iter().map(Vec::len).sum();
@@ -86,8 +88,8 @@ impl Clipping {
         let (rows, begun) = (&self.rows, &self.shared);
         if regions {
             let moving = sheet.branches().filter(|branch| !branch.follow.is_independent_of_slice());
-            let regions = moving.filter_map(LegBranch::clipped_to);
-            let with_holes = sheet.branches().filter_map(LegBranch::clipped_to);
+            let regions = moving.filter_map(SliceBranch::clipped_to);
+            let with_holes = sheet.branches().filter_map(SliceBranch::clipped_to);
             let clipped = &mut self.clipped[0];
             self.arch.dispatch(Clip { rows, begun, regions, with_holes, clipped });
         } else {
@@ -276,6 +278,6 @@ impl HitPoses {
 }
 
 /// Whether rows can be clipped to all branches of a leg.
-pub fn are_clippable(branches: &[LegBranch]) -> bool {
-    branches.iter().all(LegBranch::is_clippable)
+pub fn are_clippable(branches: &[SliceBranch]) -> bool {
+    branches.iter().all(SliceBranch::is_clippable)
 }

@@ -2,7 +2,7 @@
 //! Eq. 16 lacks).
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, ReachDeficit};
-use crate::chain::region::{Band, Convex, Region, Capsule};
+use crate::chain::region::{Band, Capsule, Convex, Region};
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
 use crate::group::{JointDisplacement, PlanarDisplacement};
