@@ -60,9 +60,11 @@ pub mod velocity;
 
 pub use decomposition::{DecomposeError, Decomposition, decompose};
 pub use linkage::Linkage;
+#[cfg(feature = "files")]
+pub use manipulator::ReadError;
 pub use manipulator::{
     ActuatedJoints, AllModes, Batch, BatchError, BatchOutput, CompileError, Manipulator, Mode,
-    PoseError, ReadError, Solution, Unreachable,
+    PoseError, Solution, Unreachable,
 };
 pub use mechanism::Mechanism;
 pub use mechanism::joint::{Joint, JointCoordinate, JointKind};

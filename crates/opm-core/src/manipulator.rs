@@ -19,6 +19,7 @@ mod locate;
 mod mode;
 pub(crate) mod plan;
 mod reach;
+#[cfg(feature = "files")]
 mod read;
 mod transitions;
 
@@ -29,6 +30,7 @@ pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
 pub use reach::LegBranch;
+#[cfg(feature = "files")]
 pub use read::ReadError;
 pub use transitions::Transitions;
 

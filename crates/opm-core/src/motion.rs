@@ -5,6 +5,7 @@
 //! derivatives. It is evaluated only at the times that are asked for.
 
 pub mod examples;
+#[cfg(feature = "files")]
 pub mod file;
 mod spline;
 pub mod table;

@@ -2,7 +2,7 @@
 //! are stored. Files are read and written by this list, and parameters are changed by name with it.
 
 use super::Family;
-use crate::mechanism::file::{FileUnits, checks};
+use crate::mechanism::file::{FileUnits, checks, quoted};
 use crate::numeric::Quantity;
 use std::fmt::Write;
 
@@ -284,10 +284,6 @@ fn known(groups: &[Group<'_>]) -> String {
         format!("{} {has} {}", legs.join(", "), names.join(", "))
     });
     kinds.collect::<Vec<_>>().join("; ")
-}
-
-fn quoted(name: &str) -> String {
-    toml::Value::from(name).to_string()
 }
 
 /// Constructors that read as a table of a family's parameters.

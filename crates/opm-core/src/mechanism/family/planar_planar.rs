@@ -27,8 +27,11 @@
 //!
 //! The imaginary joint of slider leg i is `sigma{i}`, a slider along `n(θ)`. At home `θ = 0`.
 
+#[cfg(feature = "files")]
 mod file;
+mod parameters;
 
+#[cfg(feature = "files")]
 pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};

@@ -16,8 +16,11 @@
 //! actuated; the spherical joint `s4` at P has a rotation vector that is zero at home. The
 //! imaginary joint of slider leg i is `theta1{i}`, a revolute about +z through P.
 
+#[cfg(feature = "files")]
 mod file;
+mod parameters;
 
+#[cfg(feature = "files")]
 pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};

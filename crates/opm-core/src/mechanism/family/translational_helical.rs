@@ -16,8 +16,11 @@
 //! drives P away from the leg if the screw is right-handed (`p > 0`). The helical leg's imaginary
 //! joint is `S`, a slider along `k̂`.
 
+#[cfg(feature = "files")]
 mod file;
+mod parameters;
 
+#[cfg(feature = "files")]
 pub(in crate::mechanism) use file::read;
 
 use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried};

@@ -1,9 +1,12 @@
 //! Checks of numbers, whether they come from a file or from a call. A message does not contain the
 //! name of the value; it is in the units of the caller.
 
-use super::reader::LARGEST;
 use super::units::FileUnits;
 use crate::numeric::Quantity;
+
+/// Largest accepted length or angle in metres or radians: larger than any machine. Squares and
+/// products of larger numbers could overflow.
+pub(crate) const LARGEST: f64 = 1e9;
 
 /// Checks that a number is neither NaN nor infinite.
 pub(crate) fn finite(value: f64) -> Result<f64, String> {

@@ -13,10 +13,6 @@ use std::collections::{HashMap, HashSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Largest accepted length or angle in metres or radians: larger than any machine. Squares and
-/// products of larger numbers could overflow.
-pub(crate) const LARGEST: f64 = 1e9;
-
 /// The problems found so far, and the units of the file.
 pub(crate) struct Reader {
     problems: RefCell<Vec<(usize, String)>>,

@@ -146,7 +146,7 @@ impl Digits {
     }
 }
 
-fn quoted(name: &str) -> String {
+pub(in crate::mechanism) fn quoted(name: &str) -> String {
     let escaped = name.chars().map(|c| match c {
         '\\' | '"' => format!("\\{c}"),
         c if c.is_control() => format!("\\u{:04X}", u32::from(c)),

@@ -1,8 +1,8 @@
-//! `family = "translational-helical"` in a mechanism file, and its parameters by name.
+//! `family = "translational-helical"` in a mechanism file.
 
-use super::{Home, TranslationalHelical, TranslationalLeg};
+use super::{TranslationalHelical, TranslationalLeg};
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::{Family, Group, Parameter, TableKey};
+use crate::mechanism::family::Family;
 use crate::mechanism::file::{
     Table, assembled, branches, leg_name, read_home, read_leg, tables_of,
 };
@@ -25,42 +25,4 @@ pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family
         family.legs.push(leg);
     }
     assembled(Family::TranslationalHelical(family), root, &legs)
-}
-
-impl TranslationalHelical {
-    /// Every parameter: first those of home, then those of the legs in order.
-    pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
-        let home = Group::home(self.home.parameters());
-        [home].into_iter().chain(self.legs.iter_mut().map(TranslationalLeg::group)).collect()
-    }
-}
-
-impl Home {
-    fn parameters(&mut self) -> Vec<Parameter<'_>> {
-        vec![
-            Parameter::length("x", &mut self.x, "P along x"),
-            Parameter::length("y", &mut self.y, "P along y"),
-            Parameter::angle("phi", &mut self.phi, "the platform's angle"),
-        ]
-    }
-}
-
-impl TranslationalLeg {
-    fn group(&mut self) -> Group<'_> {
-        let name = self.name.clone();
-        Group { table: TableKey::Legs("leg"), name, parameters: self.parameters() }
-    }
-
-    fn parameters(&mut self) -> Vec<Parameter<'_>> {
-        let limits = &mut self.limits;
-        vec![
-            Parameter::angle("alpha", &mut self.alpha, "the direction of the planar leg, an angle"),
-            Parameter::angle("beta", &mut self.beta, "the angle from it to the common axis"),
-            Parameter::length("k", &mut self.k, "the distance along the common axis"),
-            Parameter::pitch("pitch", &mut self.pitch, "the advance per radian"),
-            Parameter::length_limits("S", &mut limits.s),
-            Parameter::length_limits("r", &mut limits.r),
-            Parameter::angle_limits("phi", &mut limits.phi),
-        ]
-    }
 }
