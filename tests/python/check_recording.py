@@ -3,7 +3,7 @@
     python check_recording.py RECORDING... [--points EXPECTED.csv]
 
 `pymcap-cli doctor` must find nothing wrong, and the clouds, decoded by `mcap-protobuf-support`, must
-be what ARCHITECTURE.md says. With `--points`, the slices together must hold exactly the rows of the
+be what docs/recordings.md says. With `--points`, the slices together must hold exactly the rows of the
 CSV file, in its order: columns x, y, z and any of the scalars, in SI units and radians.
 """
 
