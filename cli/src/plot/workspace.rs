@@ -162,7 +162,7 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
     }
     let mut title = source.title();
     title.push_str(": ");
-    title.push_str(&layout.kind.title());
+    title.push_str(layout.kind.title());
     Heading { title, lines, notes: vec![] }
 }
 

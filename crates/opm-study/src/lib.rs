@@ -88,7 +88,9 @@ pub use error::{RequestError, RequestOption, SetPart, Spelling, StudyError};
 pub use kind::{UnknownKind, WorkspaceKind};
 pub use linkage::{LinkageRound, RoundSummary, input_intervals};
 pub use measure::{Measure, unit_product};
-pub use motion::{CoordinateRanges, DEFAULT_RATE, MotionRequest, MotionSummary, Range};
+pub use motion::{
+    CoordinateRanges, DEFAULT_RATE, MOST_LISTED, MotionRequest, MotionSummary, Range,
+};
 pub use names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 pub use poses::PoseSource;
 #[cfg(feature = "recording")]
