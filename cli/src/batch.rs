@@ -57,7 +57,7 @@ pub fn run(
         ("standard input".to_owned(), Box::new(io::stdin()))
     } else {
         let label = input.display().to_string();
-        let file = File::open(input).map_err(|error| Failure::at(&label, &error))?;
+        let file = File::open(input).map_err(|error| Failure::at(&label, error))?;
         (label, Box::new(file))
     };
     let batch = Batch { label: &label, manipulator, modes };
@@ -68,31 +68,33 @@ pub fn run(
         // No bar: the rows themselves may be on the terminal.
         return batch.solve(reader, io::stdout().lock(), &rows, &progress).map(|_| ()).map_err(
             |error| match error {
-                Stop::Write(error) => Failure::stdout(&error),
+                Stop::Write(error) => Failure::stdout(error),
                 Stop::Failure(failure) => failure,
             },
         );
     };
     loaded.refuse_as_output(path, &[input])?;
     let place = path.display();
-    let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, &error))?;
+    let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
     let solve = || batch.solve(reader, &mut file, &rows, &progress);
-    let summary = match watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve) {
-        Ok(summary) => summary,
-        Err(Stop::Failure(Failure::Interrupted(message))) => {
-            let kept = format!("{message}; what was solved is in {place}.partial");
-            return Err(Failure::Interrupted(kept));
-        }
-        Err(stop) => {
-            // The rows before a wrong one look like the answer and are not all of it.
-            file.discard();
-            return Err(match stop {
-                Stop::Write(error) => Failure::at(&place, &error),
-                Stop::Failure(failure) => failure,
-            });
-        }
-    };
-    file.commit().map_err(|error| Failure::at(&place, &error))?;
+    let summary =
+        match watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve) {
+            Ok(summary) => summary,
+            Err(Stop::Failure(Failure::Interrupted(message))) => {
+                return Err(Failure::Interrupted(message.reworded(|message| {
+                    format!("{message}; what was solved is in {place}.partial")
+                })));
+            }
+            Err(stop) => {
+                // The rows before a wrong one look like the answer and are not all of it.
+                file.discard();
+                return Err(match stop {
+                    Stop::Write(error) => Failure::at(&place, error),
+                    Stop::Failure(failure) => failure,
+                });
+            }
+        };
+    file.commit().map_err(|error| Failure::at(&place, error))?;
     output.note(format_args!(
         "{place}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
         count(summary.poses),
@@ -142,15 +144,15 @@ impl Batch<'_> {
     ) -> Result<Summary, Stop> {
         let start = Instant::now();
         let mut lines = Lines::new(input);
-        let columns = self.columns(lines.next().map_err(|error| self.unreadable(&error))?)?;
+        let columns = self.columns(lines.next().map_err(|error| self.unreadable(error))?)?;
         let writer =
             WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
         let mut table = Rows::new(self.manipulator, writer)?;
 
         let mut pose = self.manipulator.task().home();
-        while let Some(line) = lines.next().map_err(|error| self.unreadable(&error))? {
+        while let Some(line) = lines.next().map_err(|error| self.unreadable(error))? {
             if progress.is_cancelled() {
-                return Err(Failure::Interrupted("interrupted".into()).into());
+                return Err(Failure::interrupted("interrupted").into());
             }
             self.read(line, &columns, &mut pose)?;
             table.pose(&pose, self.modes, |error| self.at(line.number, error))?;
@@ -215,12 +217,12 @@ impl Batch<'_> {
         Ok(())
     }
 
-    fn unreadable(&self, error: &io::Error) -> Failure {
+    fn unreadable(&self, error: io::Error) -> Failure {
         Failure::at(self.label, error)
     }
 
     fn at(&self, line: u64, problem: impl Display) -> Failure {
-        Failure::Work(format!("{}:{line}: {problem}", self.label))
+        Failure::work(format!("{}:{line}: {problem}", self.label))
     }
 }
 

@@ -27,10 +27,10 @@ const LISTED: usize = 6;
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let mechanism = &loaded.file.mechanism;
-    let mobility = mobility(mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
+    let mobility = mobility(mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let decompositions = decompose(mechanism).map_err(|error| {
         let place = loaded.place_of(&CompileError::Decompose(error.clone()));
-        Failure::at(place, &error)
+        Failure::at(place, error)
     })?;
     let ways: Vec<Way<'_>> =
         decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
@@ -39,7 +39,7 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         && error.key().is_some()
     {
         let place = loaded.place_of(&CompileError::Task(error.clone()));
-        return Err(Failure::at(place, error));
+        return Err(Failure::at(place, error.clone()));
     }
     let report = Report { loaded: &loaded, mobility, ways, manipulator: compiled.as_ref().ok() };
     output.print(&report.json(), report.text())?;

@@ -41,7 +41,7 @@ pub fn run(args: &ExamplesArgs, output: &Output) -> Result<(), Failure> {
     let (name, description, text) = mechanism.or(motion).ok_or_else(|| {
         let motions: Vec<_> = MOTIONS.iter().map(|motion| motion.name).collect();
         let names = format!("{}, {}", example_names(), motions.join(", "));
-        Failure::Usage(format!("no example {name:?}; there are {names}"))
+        Failure::Usage(format!("no example {name:?}; there are {names}").into())
     })?;
     match output.format {
         Format::Text => print_with(|out| out.write_all(text.as_bytes())),

@@ -3,35 +3,81 @@
 use opm_study::text::located;
 use opm_study::{RequestError, RequestOption, ShardError, ShardProblem, StudyError};
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{self, ErrorKind, Write as _};
 
-/// Why a command ends early. Messages have one line a problem.
-#[derive(Debug, PartialEq, Eq)]
+/// Why a command ends early.
+#[derive(Debug)]
 pub enum Failure {
-    /// Wrong usage, which names the flag.
-    Usage(String),
-    /// The work failed: where and why.
-    Work(String),
+    /// Wrong usage; the message names the flag.
+    Usage(Message),
+    /// The work failed; the message says where and why.
+    Work(Message),
     /// Somebody pressed Ctrl-C.
-    Interrupted(String),
-    /// Whoever read standard output has gone: nothing more to say.
+    Interrupted(Message),
+    /// The reader of standard output has gone, so that there is nothing more to say.
     Closed,
 }
 
+/// What people are told of a failure, one line for each problem, and the error that caused it.
+#[derive(Debug)]
+pub struct Message {
+    text: String,
+    cause: Option<Box<dyn Error + Send + Sync>>,
+}
+
+impl Message {
+    /// The same failure in other words, made of those before.
+    #[must_use]
+    pub fn reworded(self, words: impl FnOnce(&str) -> String) -> Self {
+        Self { text: words(&self.text), ..self }
+    }
+
+    fn of(text: String, cause: impl Error + Send + Sync + 'static) -> Self {
+        Self { text, cause: Some(Box::new(cause)) }
+    }
+}
+
+impl Display for Message {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl<T: Into<String>> From<T> for Message {
+    fn from(text: T) -> Self {
+        Self { text: text.into(), cause: None }
+    }
+}
+
 impl Failure {
-    /// The work failed at `place`, for instance a file. An error that names it itself says it once.
-    pub fn at(place: impl Display, error: &(dyn Error + '_)) -> Self {
-        Self::Work(located(place, error))
+    /// The work failed at `place`, for instance a file. An error that names the place says it once.
+    pub fn at(place: impl Display, error: impl Error + Send + Sync + 'static) -> Self {
+        Self::Work(Message::of(located(place, &error), error))
+    }
+
+    /// The work failed, in these words.
+    pub fn work(text: impl Into<String>) -> Self {
+        Self::Work(Message::from(text))
+    }
+
+    /// The work was interrupted, in these words.
+    pub fn interrupted(text: impl Into<String>) -> Self {
+        Self::Interrupted(Message::from(text))
+    }
+
+    /// The work failed for a reason that is told in other words.
+    pub fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
+        Self::Work(Message::of(text.into(), error))
     }
 
     /// A flag was given what it cannot take.
     pub fn flag(flag: &str, problem: impl Display) -> Self {
-        Self::Usage(format!("{flag}: {problem}"))
+        Self::Usage(format!("{flag}: {problem}").into())
     }
 
     /// Writing to standard output failed.
-    pub fn stdout(error: &io::Error) -> Self {
+    pub fn stdout(error: io::Error) -> Self {
         match error.kind() {
             ErrorKind::BrokenPipe => Self::Closed,
             _ => Self::at("standard output", error),
@@ -46,8 +92,30 @@ impl Failure {
             Self::Interrupted(message) => (message, 130),
             Self::Closed => return 0,
         };
-        talk(message);
+        talk(&message.text);
         code
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(message) | Self::Work(message) | Self::Interrupted(message) => {
+                message.fmt(f)
+            }
+            Self::Closed => f.write_str("nobody reads standard output"),
+        }
+    }
+}
+
+impl Error for Failure {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Usage(message) | Self::Work(message) | Self::Interrupted(message) => {
+                message.cause.as_deref().map(|cause| cause as _)
+            }
+            Self::Closed => None,
+        }
     }
 }
 
@@ -65,28 +133,32 @@ impl From<StudyError> for Failure {
             StudyError::Request(error) => error.into(),
             StudyError::Cancelled
             | StudyError::CancelledRecording { .. }
-            | StudyError::CancelledShard { .. } => Self::Interrupted(error.to_string()),
+            | StudyError::CancelledShard { .. } => {
+                Self::Interrupted(Message::of(error.to_string(), error))
+            }
             StudyError::Shard(error) => error.into(),
             StudyError::Closed => Self::Closed,
-            _ => Self::Work(error.to_string()),
+            _ => Self::because(error.to_string(), error),
         }
     }
 }
 
 impl From<RequestError> for Failure {
     fn from(error: RequestError) -> Self {
-        Self::flag(flag(error.option()), error.problem(flag))
+        let option = flag(error.option());
+        Self::Usage(Message::of(format!("{option}: {}", error.problem(flag)), error))
     }
 }
 
 impl From<ShardError> for Failure {
     fn from(error: ShardError) -> Self {
-        match error {
+        let text = match &error {
             ShardError { file, problem: ShardProblem::NoShard } => {
-                Self::Work(format!("{file}: no shard of `opm workspace --shard`"))
+                format!("{file}: no shard of `opm workspace --shard`")
             }
-            error => Self::Work(error.to_string()),
-        }
+            error => error.to_string(),
+        };
+        Self::because(text, error)
     }
 }
 
@@ -113,8 +185,20 @@ mod tests {
 
     #[test]
     fn a_closed_pipe_is_not_worth_a_word() {
-        assert_eq!(Failure::stdout(&ErrorKind::BrokenPipe.into()), Failure::Closed);
-        let full = Failure::stdout(&ErrorKind::StorageFull.into());
-        assert!(matches!(full, Failure::Work(text) if text.starts_with("standard output: ")));
+        assert!(matches!(Failure::stdout(ErrorKind::BrokenPipe.into()), Failure::Closed));
+        let full = Failure::stdout(ErrorKind::StorageFull.into());
+        assert!(full.to_string().starts_with("standard output: "));
+    }
+
+    /// Who uses this library can ask what happened, and need not read the message.
+    #[test]
+    fn a_failure_keeps_its_cause() {
+        let full = Failure::at("a.mcap", io::Error::from(ErrorKind::StorageFull));
+        let cause = full.source().and_then(|cause| cause.downcast_ref::<io::Error>());
+        assert_eq!(cause.map(io::Error::kind), Some(ErrorKind::StorageFull));
+        let request = Failure::from(RequestError::UnusedLength);
+        let cause = request.source().and_then(|cause| cause.downcast_ref::<RequestError>());
+        assert!(matches!(cause, Some(RequestError::UnusedLength)));
+        assert!(request.to_string().starts_with("--length: "));
     }
 }

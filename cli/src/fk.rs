@@ -47,7 +47,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
                     NearError::Joints(error) => wrong(&error),
                     NearError::Start(error) => Failure::flag("--near", error),
                     NearError::NotFound(not_found) => {
-                        Failure::Work(format!("{}: {}", loaded.label, {
+                        Failure::work(format!("{}: {}", loaded.label, {
                             match not_found.why {
                                 Stop::OutOfReach(u) if not_found.steps == 0 => format!(
                                     "the start is out of reach in mode {}: {}: {}",

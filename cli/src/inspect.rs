@@ -12,10 +12,10 @@ const SECOND: f64 = 1e9;
 
 pub fn run(args: &InspectArgs, output: &Output) -> Result<(), Failure> {
     let label = args.file.display().to_string();
-    let recording = read::<ReadError>(&args.file, |_| Ok(())).map_err(|error| match &error {
+    let recording = read::<ReadError>(&args.file, |_| Ok(())).map_err(|error| match error {
         ReadError::Io { source, .. } => Failure::at(&label, source),
-        ReadError::NotMcap { .. } => Failure::Work(format!("{label}: not an MCAP file")),
-        _ => Failure::at(&label, &error),
+        ReadError::NotMcap { .. } => Failure::because(format!("{label}: not an MCAP file"), error),
+        _ => Failure::at(&label, error),
     })?;
     output.print(&json(&label, &recording), text(&label, &recording))?;
     if !recording.complete {

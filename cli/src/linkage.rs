@@ -15,7 +15,7 @@ use report::Run;
 pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.file)?;
     let linkage =
-        Linkage::new(&loaded.file.mechanism).map_err(|error| Failure::at(&loaded.label, &error))?;
+        Linkage::new(&loaded.file.mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let (input, value) = resolve(args.input.as_ref(), &linkage)?;
     let run = Run { loaded: &loaded, linkage: &linkage, input };
     match value {

@@ -42,21 +42,23 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
             Some(example) => (example.text.to_owned(), None, format!("{}.toml", example.name)),
             // A bare word is more likely a name than a path.
             None if given.extension().is_none() && given.components().count() == 1 => {
-                return Err(Failure::Work(format!(
+                return Err(Failure::work(format!(
                     "{label}: no such file, and no such example; there are {}",
                     example_names()
                 )));
             }
-            None => return Err(Failure::Work(format!("{label}: No such file or directory"))),
+            None => return Err(Failure::work(format!("{label}: No such file or directory"))),
         },
     };
-    let file = file::read(&text).map_err(|errors| Failure::Work(errors.in_file(&label)))?;
+    let file =
+        file::read(&text).map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
     Ok(Loaded { label, file_name, path, text, file })
 }
 
 /// Reads a mechanism file that is attached to a recording; `label` is what it was named to the run.
 pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Failure> {
-    let file = file::read(text).map_err(|errors| Failure::Work(errors.in_file(label)))?;
+    let file =
+        file::read(text).map_err(|errors| Failure::because(errors.in_file(label), errors))?;
     let (label, file_name) = (label.to_owned(), file_name.to_owned());
     Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file })
 }
@@ -64,7 +66,7 @@ pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Fail
 /// The text of a file of at most so many bytes; `None` where there is no such file.
 pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
     let label = given.display();
-    let failed = |error| Failure::at(&label, &error);
+    let failed = |error| Failure::at(&label, error);
     let source = match File::open(given) {
         Ok(source) => source,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -74,12 +76,12 @@ pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Fa
     source.take(longest + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > longest {
         let most = longest >> 20;
-        return Err(Failure::Work(format!("{label}: more than {most} MiB, expected a {what}")));
+        return Err(Failure::work(format!("{label}: more than {most} MiB, expected a {what}")));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
-        Failure::Work(format!("{label}:{line}: not UTF-8, expected a {what}"))
+        Failure::work(format!("{label}:{line}: not UTF-8, expected a {what}"))
     })?;
     Ok(Some(text))
 }
@@ -94,7 +96,8 @@ impl Loaded {
     pub fn compile(&self) -> Result<Manipulator, Failure> {
         Manipulator::new(self.file.mechanism.clone()).map_err(|error| {
             let hint = self.linkage_hint();
-            Failure::Work(format!("{}: {}{hint}", self.place_of(&error), chain(&error)))
+            let text = format!("{}: {}{hint}", self.place_of(&error), chain(&error));
+            Failure::because(text, error)
         })
     }
 

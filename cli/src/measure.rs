@@ -49,7 +49,7 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
             );
         }
         Stop::Cancelled => {
-            return Err(Failure::Interrupted("interrupted; the bounds hold".into()));
+            return Err(Failure::interrupted("interrupted; the bounds hold"));
         }
     }
     Ok(())
@@ -76,7 +76,7 @@ fn domain(
     checked(&given)?;
     let find = || pool.install(|| default_ranges(manipulator, sections, modes, &given, progress));
     let (over, beyond) = watch(output, "fitting ranges", None, || progress.done(), find)
-        .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting ranges".into()))?;
+        .map_err(|Cancelled| Failure::interrupted("interrupted while fitting ranges"))?;
     if over.len() > given.len() {
         // As flags in SI, so that the same run can be asked for again.
         let flags = over.iter().map(|CoordinateRange { name, min, max }| match min == max {

@@ -20,10 +20,9 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     let shards = read(&args.parts, output, &progress)?;
     let (Attachment { name, text }, label) = shards.mechanism()?;
     let loaded = load::attached(label, name, text).map_err(|failure| match failure {
-        Failure::Work(problem) => {
-            let first = shards.first().path().display();
-            Failure::Work(format!("{first}: attached file {problem}"))
-        }
+        Failure::Work(problem) => Failure::Work(problem.reworded(|problem| {
+            format!("{}: attached file {problem}", shards.first().path().display())
+        })),
         other => other,
     })?;
     let workspace = shards.workspace(loaded.compile()?)?.with_shape(args.shape);
@@ -90,7 +89,7 @@ fn with_commands(
     if missing.count() > COMMANDS as u64 {
         message += "\n  and so on for the others";
     }
-    Failure::Work(message)
+    Failure::work(message)
 }
 
 /// The command that makes a shard.

@@ -50,7 +50,7 @@ pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Fai
     let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
     let motion =
         if table { table::read(&text, &stem, manipulator) } else { file::read(&text, manipulator) };
-    let motion = motion.map_err(|errors| Failure::Work(errors.in_file(&label)))?;
+    let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
     Ok(LoadedMotion { label, file_name, path, text, motion })
 }
 
@@ -59,9 +59,9 @@ fn unknown(given: &Path, label: &str) -> Failure {
     // A bare word is more likely a name than a path.
     if given.extension().is_none() && given.components().count() == 1 {
         let names = names.join(", ");
-        return Failure::Work(format!(
+        return Failure::work(format!(
             "{label}: no such file, and no such motion; there are {names}"
         ));
     }
-    Failure::Work(format!("{label}: no such file"))
+    Failure::work(format!("{label}: no such file"))
 }

@@ -50,7 +50,7 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let progress = interruptible()?;
     let source = Source::open(&args.file, output, &progress)?;
     if let Some(shard) = source.metadata("shard").get("shard") {
-        return Err(Failure::Work(format!(
+        return Err(Failure::work(format!(
             "{}: shard {shard} of a sweep, which has no points of its own; join all shards with `opm \
              merge`, and draw what it writes",
             source.label
@@ -66,7 +66,7 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         Ending::Svg => svg::write(&drawing).map(String::into_bytes),
         Ending::Png => png::write(&drawing),
     };
-    let bytes = bytes.map_err(|error| Failure::at(&place, &error))?;
+    let bytes = bytes.map_err(|error| Failure::at(&place, error))?;
     target.commit(&bytes)?;
     if !source.recording.complete {
         let label = &source.label;
@@ -100,7 +100,7 @@ struct Target {
 
 impl Target {
     fn create(path: &Path) -> Result<Self, Failure> {
-        let file = PartialFile::create(path).map_err(|e| Failure::at(path.display(), &e))?;
+        let file = PartialFile::create(path).map_err(|e| Failure::at(path.display(), e))?;
         Ok(Self { path: path.to_owned(), file: Some(file) })
     }
 
@@ -113,7 +113,7 @@ impl Target {
                 Err(error)
             }
         };
-        written.map_err(|error| Failure::at(self.path.display(), &error))
+        written.map_err(|error| Failure::at(self.path.display(), error))
     }
 }
 

@@ -24,7 +24,7 @@ pub fn interruptible() -> Result<Arc<Progress>, Failure> {
         }
         heard.cancel();
     })
-    .map_err(|error| Failure::at("Ctrl-C", &error))?;
+    .map_err(|error| Failure::at("Ctrl-C", error))?;
     Ok(progress)
 }
 

@@ -55,7 +55,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
                 format!("; what was recorded is in {}", partial(path).display())
             });
             let message = format!("interrupted; {done} of {samples} samples were followed{kept}");
-            Failure::Interrupted(message)
+            Failure::interrupted(message)
         }
         other => other.into(),
     })?;
@@ -73,7 +73,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let report = Report { request, summary: &summary, units: loaded.file.units };
     output.print(&report.json(), report.text())?;
     match args.strict && violations > 0 {
-        true => Err(Failure::Work(format!(
+        true => Err(Failure::work(format!(
             "{}: the mechanism cannot follow all of it (--strict): {}",
             motion.label,
             report.first()

@@ -114,9 +114,9 @@ fn sweep_shard(
         let found =
             stored.and_then(|stored| Ok(stored.count_of(workspace, loaded.attachment(), shard)?));
         let found = found.map_err(|error| match Failure::from(error) {
-            Failure::Work(problem) => {
-                Failure::Work(format!("{problem}; use another name, or --force to replace it"))
-            }
+            Failure::Work(problem) => Failure::Work(problem.reworded(|problem| {
+                format!("{problem}; use another name, or --force to replace it")
+            })),
             other => other,
         })?;
         output.note(format_args!("{}: shard {shard} is there already", path.display()));

@@ -27,7 +27,7 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
                 sweep.report(None, &summary, output);
                 Ok(())
             }
-            Err(Stop::Write(error)) => Err(Failure::stdout(&error)),
+            Err(Stop::Write(error)) => Err(Failure::stdout(error)),
             Err(Stop::Failure(failure)) => Err(failure),
         };
     };
@@ -35,12 +35,12 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
     let place = path.display();
     let summary = match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => {
-            let mut file = PartialFile::create(path).map_err(|e| Failure::at(&place, &e))?;
+            let mut file = PartialFile::create(path).map_err(|e| Failure::at(&place, e))?;
             sweep
                 .csv(&mut file)
                 .and_then(|summary| file.commit().map(|()| summary).map_err(Stop::Write))
                 .map_err(|error| match error {
-                    Stop::Write(error) => Failure::at(&place, &error),
+                    Stop::Write(error) => Failure::at(&place, error),
                     Stop::Failure(failure) => failure,
                 })?
         }

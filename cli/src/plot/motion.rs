@@ -29,7 +29,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
         names.truncate(8);
         let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
         let cut = if source.recording.complete { "" } else { "cut short, and " };
-        return Err(Failure::Work(format!(
+        return Err(Failure::work(format!(
             "{}: {cut}nothing to draw: it holds {found}, expected /workspace/slices or /joints, as opm \
              records them",
             source.label
@@ -49,7 +49,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     })?;
     motion.finish();
     if motion.instants == 0 {
-        return Err(Failure::Work(format!("{}: no sample to draw", source.label)));
+        return Err(Failure::work(format!("{}: no sample to draw", source.label)));
     }
     let figure = motion.figure(&wanted, args)?;
     drawn(args, |size| figure.draw(size))
@@ -258,7 +258,7 @@ impl<'a> Motion<'a> {
         }
         if rows.is_empty() {
             let label = &source.label;
-            return Err(Failure::Work(format!(
+            return Err(Failure::work(format!(
                 "{label}: it holds none of what --panels and --values ask for"
             )));
         }
@@ -266,7 +266,7 @@ impl<'a> Motion<'a> {
             let asked = rows_of(*panel);
             if !asked.is_empty() && !rows.keys().any(|(group, _)| asked.contains(group)) {
                 let (label, name) = (&source.label, panel.name());
-                return Err(Failure::Work(format!("{label}: no {name} in what --panels asks for")));
+                return Err(Failure::work(format!("{label}: no {name} in what --panels asks for")));
             }
         }
         // Columns that nothing is in are left out.

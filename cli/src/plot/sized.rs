@@ -14,6 +14,6 @@ pub fn drawn(
         Some(PictureSize(Size { width, height })) => {
             Failure::flag("--size", format!("{width}x{height}: {error}"))
         }
-        None => Failure::Work(format!("{error}; choose fewer with --panels or --values")),
+        None => Failure::work(format!("{error}; choose fewer with --panels or --values")),
     })
 }

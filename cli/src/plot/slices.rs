@@ -63,7 +63,7 @@ impl<'a> Slices<'a> {
         let bar = view[0] == view[1];
         if bar && layout.coordinates.get(view[0]).is_none_or(|c| c.axis.is_none()) {
             let name = layout.coordinates.get(view[0]).map_or("one coordinate", |c| &*c.name);
-            return Err(Failure::Work(format!(
+            return Err(Failure::work(format!(
                 "{}: nothing to draw: its points differ in {name} alone, and a slice shows two \
                  coordinates; record with --axes or --scalars, and choose with --values",
                 source.label

@@ -68,7 +68,7 @@ impl<'a> Source<'a> {
         let label = path.display().to_string();
         // It is read more than once.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            return Err(Failure::Work(format!(
+            return Err(Failure::work(format!(
                 "{label}: not a regular file, expected a recording"
             )));
         }
@@ -113,14 +113,14 @@ impl<'a> Source<'a> {
         found.map_err(|stop| match stop {
             Stop::Interrupted => {
                 let seen = count(done());
-                Failure::Interrupted(format!("interrupted while reading; messages so far: {seen}"))
+                Failure::interrupted(format!("interrupted while reading; messages so far: {seen}"))
             }
-            Stop::Read(error) => match &error {
+            Stop::Read(error) => match error {
                 ReadError::Io { source, .. } => Failure::at(&self.label, source),
                 ReadError::NotMcap { .. } => {
-                    Failure::Work(format!("{}: not an MCAP file", self.label))
+                    Failure::because(format!("{}: not an MCAP file", self.label), error)
                 }
-                _ => Failure::at(&self.label, &error),
+                _ => Failure::at(&self.label, error),
             },
         })
     }

@@ -29,7 +29,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     if points.unwrap_or(0) == 0 {
         let limited = source.metadata("run").contains_key("max_condition");
         let (label, nothing) = (&source.label, layout.kind.nothing(limited));
-        return Err(Failure::Work(format!("{label}: nothing to draw: {nothing}")));
+        return Err(Failure::work(format!("{label}: nothing to draw: {nothing}")));
     }
     let (view, joints) = chosen(&layout, source, args)?;
     // What has no axis on a grid has no slices, unless somebody wants to see them.
@@ -43,7 +43,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     if cloud.is_none() && (meant || asked(PanelName::Imaginary)) {
         let hint = missing(source);
         if asked(PanelName::Imaginary) && slices.is_none() {
-            return Err(Failure::Work(format!("{}: {hint}", source.label)));
+            return Err(Failure::work(format!("{}: {hint}", source.label)));
         }
         output.note(format_args!("{}: {hint}", source.label));
     }

@@ -30,7 +30,7 @@ impl Work<'_> {
         let (progress, pool) = (self.progress, self.pool);
         let find = || pool.install(|| request.fit(progress));
         let workspace = watch(self.output, "fitting a grid", None, || progress.done(), find)
-            .map_err(|Cancelled| Failure::Interrupted("interrupted while fitting a grid".into()))?;
+            .map_err(|Cancelled| Failure::interrupted("interrupted while fitting a grid"))?;
         advice::of_fitted(&workspace, self.output);
         Ok(workspace)
     }
@@ -48,7 +48,7 @@ impl Work<'_> {
         let found = self.watch("counting", poses, || sweep.count(self.progress));
         let found = found.map_err(|Cancelled| {
             let (done, poses) = (count(self.progress.done() - before), count(poses));
-            Failure::Interrupted(format!("interrupted; {done} of {poses} poses were decided"))
+            Failure::interrupted(format!("interrupted; {done} of {poses} poses were decided"))
         })?;
         let seconds = start.elapsed().as_secs_f64().max(1e-9);
         let conditioning = match workspace.conditioning_length() {
@@ -116,5 +116,5 @@ impl Work<'_> {
 /// A pool of so many threads, or of one a processor.
 pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
-    builder.build().map_err(|error| Failure::at("threads", &error))
+    builder.build().map_err(|error| Failure::at("threads", error))
 }

@@ -137,7 +137,7 @@ impl Sample {
         self.instant.velocity.clone_from(velocity);
         self.instant.acceleration.clone_from(acceleration);
         (self.reached, self.regular) = (other.reached, other.regular);
-        self.solution.copy_from(&other.solution);
+        self.solution.clone_from(&other.solution);
         self.motion.joint_rates.clone_from(&other.motion.joint_rates);
         self.motion.joint_accelerations.clone_from(&other.motion.joint_accelerations);
         self.motion.imaginary_rates.clone_from(&other.motion.imaginary_rates);
@@ -283,7 +283,7 @@ impl<'a> Trajectory<'a> {
         self.next += 1;
         let last = self.next == self.samples;
         std::mem::swap(&mut self.previous, &mut self.current);
-        self.current.solution.copy_from(&self.previous.solution);
+        self.current.solution.clone_from(&self.previous.solution);
         let turns = if number == 0 { Turns::Home } else { Turns::Held };
         self.solver.solve(time, turns, &mut self.current)?;
         self.solver.rates(&mut self.current)?;
@@ -414,7 +414,7 @@ impl Solver<'_> {
     ) -> Result<(), TrajectoryError> {
         let step = SLOPE_STEP / self.rate;
         let time = if look == Look::Ahead { sample.time + step } else { sample.time - step };
-        probe.solution.copy_from(&sample.solution);
+        probe.solution.clone_from(&sample.solution);
         self.solve(time, Turns::Held, probe)?;
         // As far as doubles have gone.
         let step = probe.time - sample.time;

@@ -59,7 +59,7 @@ pub struct Unreachable {
 /// Every joint in one working mode at one pose. [`Manipulator::solution`] makes one, to be written to.
 ///
 /// Its numbers can be read and not changed: velocities and Jacobians start from them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Solution {
     pub(crate) joints: Vec<f64>,
     pub(crate) imaginary: Vec<f64>,
@@ -118,9 +118,23 @@ impl Solution {
     fn reached(&self) -> Option<&Self> {
         self.unreachable.is_empty().then_some(self)
     }
+}
+
+impl Clone for Solution {
+    fn clone(&self) -> Self {
+        Self {
+            joints: self.joints.clone(),
+            imaginary: self.imaginary.clone(),
+            cuts: self.cuts.clone(),
+            place: self.place.clone(),
+            legs: self.legs.clone(),
+            within_limits: self.within_limits,
+            unreachable: self.unreachable.clone(),
+        }
+    }
 
     /// Takes over what another solution of the same manipulator holds, without allocating.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
+    fn clone_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         self.imaginary.clone_from(&other.imaginary);
         self.cuts.clone_from(&other.cuts);

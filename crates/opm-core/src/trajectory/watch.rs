@@ -116,7 +116,7 @@ impl Trajectory<'_> {
         if after.time >= to.time {
             return Ok((to, None));
         }
-        to.solution.copy_from(&after.solution);
+        to.solution.clone_from(&after.solution);
         self.solver.solve(to.time, Turns::Held, &mut to)?;
         self.solver.rates(&mut to)?;
         let last = to.time >= self.solver.motion.end();
