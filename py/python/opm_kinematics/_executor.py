@@ -2,12 +2,19 @@
 
 What the work itself gives or raises comes back in an :class:`_Answer`. So whatever else a future gives or raises was made by the
 executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
+
+A future may also never complete: an error can end the coroutine that completes a future of Dask's executor, where a worker
+is lost while a result is fetched. So where nothing comes for a while, the missing parts are submitted once more. The first
+answer counts.
 """
 
+import itertools
 import pickle
+import queue
 from asyncio import CancelledError
 from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
+from concurrent.futures import BrokenExecutor, Executor, Future
+from functools import partial
 from types import TracebackType
 from typing import Any
 
@@ -21,6 +28,12 @@ SHARDS = 64
 
 #: How often a part is run again before it is given up.
 RETRIES = 3
+
+#: After how many seconds without an answer the missing parts are submitted once more; doubled each time.
+PATIENCE = 10.0
+
+#: A number for each submission. Dask takes two calls with equal arguments for one, with one state.
+SUBMISSIONS = itertools.count()
 
 #: What a future raises for a lost part. The rest of BaseException, as KeyboardInterrupt, ends the whole work.
 LOST = (Exception, CancelledError)
@@ -55,7 +68,8 @@ class Workers:
     def close(self) -> None:
         """Closes the executor that was made."""
         if self._made is not None:
-            self._made.shutdown(wait=False, cancel_futures=True)
+            # What has not begun is cancelled by now. Dask's executor has no option for that.
+            self._made.shutdown(wait=False)
             self._made = None
 
     def shards(self) -> int:
@@ -157,18 +171,23 @@ def _round(
 
     A broken executor is the sign that it gives first: such a one takes no more work.
     """
-    futures: dict[Future[Any], int] = {}
+    submitted = _Submitted(pool, plan, task)
+    patience = PATIENCE
     lost: BaseException | None = None
     try:
-        for number, part in missing.items():
+        lost = submitted.add(missing)
+        while submitted.futures:
             try:
-                futures[pool.submit(_work, plan, task, part)] = number
-            except BrokenExecutor as error:
-                lost = error
-                break
-        for future in as_completed(list(futures)):
-            # A future keeps its result: with the last reference to it both go.
-            number = futures.pop(future)
+                number, future = submitted.done.get(timeout=patience)
+            except queue.Empty:
+                if not submitted.running():
+                    lost = submitted.add({number: missing[number] for number in submitted.futures}) or lost
+                    patience *= 2
+                continue
+            if number not in submitted.futures:
+                continue  # another submission of this part was first
+            # A future keeps its result: with the last reference to it both go. Other submissions of the part go with it.
+            submitted.drop(number)
             try:
                 answer = future.result()
                 if not isinstance(answer, _Answer):
@@ -181,9 +200,45 @@ def _round(
             results.add(number, answer.result)
             del missing[number]
     finally:
-        for future in futures:
-            future.cancel()
+        for number in list(submitted.futures):
+            submitted.drop(number)
     return lost
+
+
+class _Submitted:
+    """The parts that are under way, each with the futures of its submissions."""
+
+    def __init__(self, pool: Executor, plan: object, task: str) -> None:
+        self._pool, self._plan, self._task = pool, plan, task
+        self.futures: dict[int, list[Future[Any]]] = {}
+        #: The futures that are done, each with the number of its part.
+        self.done: queue.SimpleQueue[tuple[int, Future[Any]]] = queue.SimpleQueue()
+
+    def add(self, parts: dict[int, tuple[Any, ...]]) -> BrokenExecutor | None:
+        """Submits parts, up to the first that a broken executor refuses; gives what it raised."""
+        for number, part in parts.items():
+            try:
+                future = self._pool.submit(_work, self._plan, self._task, part, next(SUBMISSIONS))
+            except BrokenExecutor as error:
+                return error
+            self.futures.setdefault(number, []).append(future)
+            future.add_done_callback(partial(self._put, number))
+        return None
+
+    def _put(self, number: int, future: Future[Any]) -> None:
+        self.done.put((number, future))
+
+    def drop(self, number: int) -> None:
+        """Forgets a part, and cancels what has not begun of it."""
+        for future in self.futures.pop(number):
+            future.cancel()
+
+    def running(self) -> bool:
+        """Whether the executor says that it works on a part.
+
+        Those of the standard library, of loky and of mpi4py do. That of Dask never does.
+        """
+        return any(future.running() for futures in self.futures.values() for future in futures)
 
 
 def _number_of_workers(executor: Executor) -> int | None:
@@ -210,7 +265,7 @@ class _Answer:
         return _Answer, (self.result, self.error)
 
 
-def _work(plan: object, task: str, part: tuple[Any, ...]) -> _Answer:
+def _work(plan: object, task: str, part: tuple[Any, ...], _submission: int) -> _Answer:
     try:
         return _Answer(getattr(plan, task)(*part))
     except Exception as error:
