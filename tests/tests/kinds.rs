@@ -131,7 +131,7 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
                 _ => Modes::One(manipulator.home_mode()),
             };
             let set = reached(&Sweep::new(&manipulator, &grid, modes));
-            let cuts = manipulator.cuts();
+            let cuts = manipulator.intersection_joints();
             for number in 0..grid.poses() {
                 let pose = grid.pose(number);
                 let v = manipulator.task().lower(&pose);

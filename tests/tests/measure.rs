@@ -30,7 +30,7 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
         return m.upper_closes(&m.task().upper(pose), mode, &mut ways);
     }
     let (v, others) = (m.task().lower(&pose[..lower]), &pose[lower..]);
-    let cuts = m.cuts();
+    let cuts = m.intersection_joints();
     (0..m.legs()).all(|leg| {
         ways.clear();
         if domain.sections() == Sections::Whole {

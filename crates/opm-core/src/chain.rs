@@ -30,9 +30,6 @@ pub mod translational;
 
 pub use joint::ChainJoint;
 
-// The name that it had before.
-pub use crate::group::JointDisplacement as Amount;
-
 use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
 use cylindrical::CylindricalChain;
@@ -133,7 +130,7 @@ fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
     /// The joints' displacements, base first; not to be read unless `holds`.
-    pub amounts: [JointDisplacement; 3],
+    pub displacements: [JointDisplacement; 3],
     /// The target is in reach, and not one of those that [`ClosedForm::exception`] is for.
     pub holds: bool,
     /// The target is out of reach. Where it neither holds nor is beyond, the exception tells.
@@ -143,16 +140,16 @@ pub(crate) struct Attempt {
 impl Attempt {
     /// Of a closed form to which every target in reach is alike.
     #[inline(always)]
-    fn decided(amounts: [JointDisplacement; 3], holds: bool) -> Self {
-        Self { amounts, holds, beyond: !holds }
+    fn decided(displacements: [JointDisplacement; 3], holds: bool) -> Self {
+        Self { displacements, holds, beyond: !holds }
     }
 
     /// Of the same joints from the other end, for the inverse of the target:
-    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, the joints backwards, each amount with the other sign.
+    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, the joints backwards, each displacement with the other sign.
     #[inline(always)]
     fn backwards(self) -> Self {
-        let [a3, a2, a1] = self.amounts;
-        Self { amounts: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
+        let [a3, a2, a1] = self.displacements;
+        Self { displacements: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
     }
 }
 
@@ -162,7 +159,7 @@ pub(crate) trait ClosedForm {
     type Target;
 
     /// The general case: no branch, no call, so that a loop over targets is vectorised. Which of an
-    /// amount's two kinds it gives depends on the joint alone.
+    /// displacement's two kinds it gives depends on the joint alone.
     fn attempt(&self, target: &Self::Target, branch: Branch) -> Attempt;
 
     /// What an attempt that does not hold leaves open: by how much the target is out of reach, and the
@@ -172,7 +169,7 @@ pub(crate) trait ClosedForm {
         target: &Self::Target,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        Ok(self.attempt(target, branch).amounts)
+        Ok(self.attempt(target, branch).displacements)
     }
 
     /// The joints' displacements that move the outer link by `target`.
@@ -182,8 +179,8 @@ pub(crate) trait ClosedForm {
         target: &Self::Target,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        let Attempt { amounts, holds, .. } = self.attempt(target, branch);
-        if holds { Ok(amounts) } else { self.exception(target, branch) }
+        let Attempt { displacements, holds, .. } = self.attempt(target, branch);
+        if holds { Ok(displacements) } else { self.exception(target, branch) }
     }
 }
 
@@ -260,7 +257,7 @@ impl Chain {
         }
     }
 
-    /// Number of freedoms, which is the number of amounts that mean anything.
+    /// Number of freedoms, which is the number of displacements that mean anything.
     pub fn freedoms(&self) -> usize {
         match self {
             Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
@@ -307,23 +304,23 @@ impl Chain {
                 .first(&chain.third_axis(target.spherical()), branch)
                 .map(JointDisplacement::Direction),
             Self::Planar(_) | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                self.inverse(target, branch).map(|amounts| amounts[0])
+                self.inverse(target, branch).map(|displacements| displacements[0])
             }
         }
     }
 }
 
-/// What is known of a chain with one joint held, for a few amounts of each joint.
+/// What is known of a chain with one joint held, for a few displacements of each joint.
 impl Chain {
-    /// The targets on which the chain closes with joint number `joint` at `amount`; `None` of a ball,
+    /// The targets on which the chain closes with joint number `joint` at `displacement`; `None` of a ball,
     /// whose rotation vector has no closed form along a path.
-    pub(crate) fn held(&self, joint: usize, amount: JointDisplacement) -> Option<Surface> {
+    pub(crate) fn held(&self, joint: usize, displacement: JointDisplacement) -> Option<Surface> {
         match self {
-            Self::Planar(chain) => Some(chain.held(joint, amount)),
-            Self::Spherical(chain) => Some(chain.held(joint, amount)),
+            Self::Planar(chain) => Some(chain.held(joint, displacement)),
+            Self::Spherical(chain) => Some(chain.held(joint, displacement)),
             Self::Ball(_) => None,
-            Self::Cylindrical(chain) => Some(chain.held(joint, amount)),
-            Self::Translational(chain) => Some(chain.held(joint, amount)),
+            Self::Cylindrical(chain) => Some(chain.held(joint, displacement)),
+            Self::Translational(chain) => Some(chain.held(joint, displacement)),
         }
     }
 
@@ -334,18 +331,18 @@ impl Chain {
             Self::Spherical(chain) => chain.folds().to_vec(),
             Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => Vec::new(),
         };
-        middle.into_iter().filter_map(|amount| self.held(1, amount)).collect()
+        middle.into_iter().filter_map(|displacement| self.held(1, displacement)).collect()
     }
 
-    /// The limits of a joint as amounts that it can be held at.
+    /// The limits of a joint as displacements that it can be held at.
     pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[JointDisplacement; 2]> {
         let turns = match self {
-            Self::Planar(chain) => chain.turns(joint),
+            Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
             Self::Ball(_) | Self::Translational(_) => false,
-            Self::Cylindrical(chain) => chain.turns(joint),
+            Self::Cylindrical(chain) => chain.is_rotation(joint),
         };
-        if turns { limits.turns() } else { limits.values() }
+        if turns { limits.direction_ends() } else { limits.value_ends() }
     }
 
     /// No length of the chain at home is longer, metres.

@@ -33,12 +33,12 @@ pub use share::MOST;
 /// One coordinate of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// The middle: a value, radians or metres, or what stands for it in a `piece`.
+    /// The middle: a value, radians or metres, or what stands for it in a `half_turn`.
     pub middle: f64,
     /// How far it is from the middle to either end; zero where the coordinate has one value.
     pub half: f64,
     /// The coordinate is an angle of which the box is even in the cosine: see [`HalfTurn`].
-    pub piece: Option<HalfTurn>,
+    pub half_turn: Option<HalfTurn>,
 }
 
 /// Half a turn of an angle `α`, from `number` times π to the next multiple, over which `-cos α` or `cos α`
@@ -51,12 +51,12 @@ pub struct HalfTurn {
 }
 
 impl HalfTurn {
-    /// The piece that holds an angle.
+    /// The half_turn that holds an angle.
     pub fn of(angle: f64) -> Self {
         Self { number: (angle / PI).floor() as i64 }
     }
 
-    /// How far an angle is from the beginning: from zero to π in this piece.
+    /// How far an angle is from the beginning: from zero to π in this half_turn.
     pub fn within(self, angle: f64) -> f64 {
         (angle - self.start()).clamp(0.0, PI)
     }
@@ -70,7 +70,7 @@ impl HalfTurn {
         self.number as f64 * PI
     }
 
-    /// Of the sine over the piece.
+    /// Of the sine over the half_turn.
     fn sign(self) -> f64 {
         if self.number.rem_euclid(2) == 0 { 1.0 } else { -1.0 }
     }
@@ -133,9 +133,9 @@ impl Manipulator {
                 Affine::constant(side.middle)
             };
             let of_upper = query == BoxQuery::Upper || number >= lower_count;
-            match side.piece {
+            match side.half_turn {
                 None => Coordinate::Linear(value),
-                Some(piece) => Coordinate::Polar(polar(piece, value, of_upper)),
+                Some(half_turn) => Coordinate::Polar(polar(half_turn, value, of_upper)),
             }
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
@@ -154,12 +154,14 @@ impl Manipulator {
             }
             BoxQuery::Lower => {
                 let v = target::task::lower(task, &coordinates[..lower_count]);
-                let mut cuts = coordinates[lower_count..].iter();
+                let mut taus = coordinates[lower_count..].iter();
                 all(legs, |leg| {
-                    let tau = match self.legs[leg].cut {
-                        Section::Upper => match cuts.next() {
+                    let tau = match self.legs[leg].split_section {
+                        Section::Upper => match taus.next() {
                             Some(&Coordinate::Linear(tau)) => tau,
-                            _ => unreachable!("a length or an angle for every cut"),
+                            _ => unreachable!(
+                                "a length or an angle for the intersection displacement of every leg"
+                            ),
                         },
                         Section::Lower => Affine::constant(0.0),
                     };
@@ -186,11 +188,11 @@ impl Manipulator {
 }
 
 /// The unit vector at the angle that `at` stands for, of `nu` less its home value.
-fn polar<const N: usize>(piece: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
-    let sign = piece.sign();
+fn polar<const N: usize>(half_turn: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
+    let sign = half_turn.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
     let alpha = Plane { re: cosine, im: sine };
-    // nu is a quarter of a turn less than what the piece is of.
+    // nu is a quarter of a turn less than what the half_turn is of.
     if of_upper { alpha } else { Plane { re: alpha.im, im: -alpha.re } }
 }
 
@@ -211,10 +213,10 @@ fn all<const N: usize>(
 
 /// The share that any of some ways reaches.
 fn any<T, const N: usize>(
-    ways: impl IntoIterator<Item = T>,
-    mut of_way: impl FnMut(T) -> Share<N>,
+    options: impl IntoIterator<Item = T>,
+    mut share_of: impl FnMut(T) -> Share<N>,
 ) -> Share<N> {
-    ways.into_iter().fold(Share::NONE, |share, way| share.or(of_way(way)))
+    options.into_iter().fold(Share::NONE, |share, option| share.or(share_of(option)))
 }
 
 /// A leg's conditions over a box.
@@ -256,21 +258,21 @@ impl LegConditions<'_> {
             return closes;
         }
         closes.and(any(self.branches(leg, section), |branch| {
-            let amounts = chain::amounts(&compiled.chain, target, branch);
-            let within = self.admits(compiled, &amounts);
-            if within.is_none() { within } else { within.and(then(&amounts)) }
+            let displacements = chain::displacements(&compiled.chain, target, branch);
+            let within = self.admits(compiled, &displacements);
+            if within.is_none() { within } else { within.and(then(&displacements)) }
         }))
     }
 
     fn upper<const N: usize>(&self, leg: usize, b: &Target<N>) -> Share<N> {
-        match self.leg(leg).cut {
+        match self.leg(leg).split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |_| Share::ALL),
             Section::Lower => Share::ALL,
         }
     }
 
     fn lower<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
-        match self.leg(leg).cut {
+        match self.leg(leg).split_section {
             Section::Upper => self.reaches(leg, v, Enclosed::Value(tau)),
             Section::Lower => self.section(leg, Section::Lower, v, |_| Share::ALL),
         }
@@ -278,17 +280,18 @@ impl LegConditions<'_> {
 
     fn whole<const N: usize>(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
         let compiled = self.leg(leg);
-        match compiled.cut {
-            Section::Upper => self.section(leg, Section::Upper, b, |amounts| {
-                self.unwound(compiled, amounts[0], |tau| self.reaches(leg, v, tau))
+        match compiled.split_section {
+            Section::Upper => self.section(leg, Section::Upper, b, |displacements| {
+                self.unwound(compiled, displacements[0], |tau| self.reaches(leg, v, tau))
             }),
-            Section::Lower => self.section(leg, Section::Lower, v, |amounts| {
-                if !compiled.upper_decides {
+            Section::Lower => self.section(leg, Section::Lower, v, |displacements| {
+                if !compiled.upper_constrains {
                     return Share::ALL;
                 }
-                let cut = amounts[compiled.lower.chain.freedoms() - 1];
-                self.unwound(compiled, cut, |cut| {
-                    let target = target::before(self.manipulator.task().upper_intersection, b, cut);
+                let step = displacements[compiled.lower.chain.freedoms() - 1];
+                self.unwound(compiled, step, |step| {
+                    let target =
+                        target::before(self.manipulator.task().upper_intersection, b, step);
                     self.section(leg, Section::Upper, &target, |_| Share::ALL)
                 })
             }),
@@ -306,13 +309,13 @@ impl LegConditions<'_> {
     fn unwound<const N: usize>(
         &self,
         leg: &CompiledLeg,
-        cut: Enclosed<N>,
+        tau: Enclosed<N>,
         then: impl Fn(Enclosed<N>) -> Share<N>,
     ) -> Share<N> {
-        if !leg.unwinds() || matches!(cut, Enclosed::Value(_)) {
-            return then(cut);
+        if !leg.unwinds() || matches!(tau, Enclosed::Value(_)) {
+            return then(tau);
         }
-        let number = cut.number();
+        let number = tau.number();
         let turns = (number.centre / TAU).round();
         let near = number - TAU * turns;
         let here = then(Enclosed::Value(near));
@@ -327,23 +330,25 @@ impl LegConditions<'_> {
     fn admits<const N: usize>(
         &self,
         section: &CompiledSection,
-        amounts: &[Enclosed<N>; 3],
+        displacements: &[Enclosed<N>; 3],
     ) -> Share<N> {
         if !section.limited {
             return Share::ALL;
         }
         let limits = self.manipulator.limits();
-        let joints = section.slots.iter().zip(amounts);
-        joints.fold(Share::ALL, |share, (slot, amount)| match slot {
-            Some(slot) if !share.is_none() => share.and(within(&limits[slot.coordinate], amount)),
+        let joints = section.coordinates.iter().zip(displacements);
+        joints.fold(Share::ALL, |share, (coordinate, displacement)| match coordinate {
+            Some(coordinate) if !share.is_none() => {
+                share.and(within(&limits[coordinate.number], displacement))
+            }
             _ => share,
         })
     }
 }
 
 /// The share for which a joint's displacement is within its limits.
-fn within<const N: usize>(limits: &Limits, amount: &Enclosed<N>) -> Share<N> {
-    match (limits, amount) {
+fn within<const N: usize>(limits: &Limits, displacement: &Enclosed<N>) -> Share<N> {
+    match (limits, displacement) {
         (Limits::Free, _) => Share::ALL,
         (Limits::Range { low, high, .. }, Enclosed::Value(value)) => {
             Share::within(value, [*low, *high], 0.0)

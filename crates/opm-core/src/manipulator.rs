@@ -156,22 +156,19 @@ impl Manipulator {
     }
 
     /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
-    pub fn counts_turns(&self, name: &str) -> bool {
-        let section = match CoordinateKind::from_name(name) {
-            Some(CoordinateKind::Theta) => Section::Lower,
-            Some(CoordinateKind::Phi) => Section::Upper,
-            Some(
-                CoordinateKind::X
-                | CoordinateKind::Y
-                | CoordinateKind::Z
-                | CoordinateKind::W
-                | CoordinateKind::Zeta
-                | CoordinateKind::Xi
-                | CoordinateKind::Psi
-                | CoordinateKind::Mu
-                | CoordinateKind::Nu,
-            )
-            | None => return false,
+    pub fn counts_turns(&self, kind: CoordinateKind) -> bool {
+        let section = match kind {
+            CoordinateKind::Theta => Section::Lower,
+            CoordinateKind::Phi => Section::Upper,
+            CoordinateKind::X
+            | CoordinateKind::Y
+            | CoordinateKind::Z
+            | CoordinateKind::W
+            | CoordinateKind::Zeta
+            | CoordinateKind::Xi
+            | CoordinateKind::Psi
+            | CoordinateKind::Mu
+            | CoordinateKind::Nu => return false,
         };
         self.legs.iter().any(|leg| leg.section(section).chain.counts_turns())
     }
@@ -281,12 +278,12 @@ impl Compiled {
         let length = frame(mechanism).length;
         let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
         let mut actuated = Vec::new();
-        let mut drives = Vec::with_capacity(coordinates.len());
+        let mut actuated_numbers = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
             for _ in &joint.coordinates {
-                drives.push(joint.actuated.then_some(actuated.len()));
+                actuated_numbers.push(joint.actuated.then_some(actuated.len()));
                 if joint.actuated {
-                    actuated.push(drives.len() - 1);
+                    actuated.push(actuated_numbers.len() - 1);
                 }
             }
         }
@@ -295,9 +292,13 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let around =
-                CompileContext { task: &task, drives: &drives, limits: &limits, size: length };
-            let mut compiled = CompiledLeg::new(leg, split, first, around)
+            let context = CompileContext {
+                task: &task,
+                actuated: &actuated_numbers,
+                limits: &limits,
+                size: length,
+            };
+            let mut compiled = CompiledLeg::new(leg, split, first, context)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {
                 compiled.imaginary = Some(imaginary.len());
@@ -338,7 +339,8 @@ impl Compiled {
 
 impl ImaginaryJoint {
     pub(crate) fn new(leg: &Leg, number: usize, task: &Task) -> Self {
-        let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
+        let quantity =
+            if task.intersection_point.is_some() { Quantity::Angle } else { Quantity::Length };
         let (home, sign) = match &leg.imaginary {
             Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
             None => (0.0, 1.0),

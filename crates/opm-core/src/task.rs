@@ -194,7 +194,7 @@ pub enum FrameProblem {
         line: [f64; 3],
     },
     /// It is not perpendicular to the normal or to the intersection motion.
-    NotSquare {
+    NotPerpendicular {
         /// The direction given.
         given: [f64; 3],
         /// The normal's, or the intersection motion's.
@@ -216,7 +216,7 @@ impl fmt::Display for FrameProblem {
                 let (given, back) = (triple(given), triple(&line.map(|c| -c)));
                 write!(f, "is {given}, expected {} or {back}", triple(line))
             }
-            Self::NotSquare { given, to } => {
+            Self::NotPerpendicular { given, to } => {
                 write!(f, "is {}, expected a direction square to {}", triple(given), triple(to))
             }
         }
@@ -243,7 +243,7 @@ pub struct Task {
     /// Unit direction of the intersection motion, base coordinates.
     pub direction: Unit<Vector3<f64>>,
     /// A point of the intersection motion's axis at home, where it is a rotation.
-    pub cut_point: Option<Point3<f64>>,
+    pub intersection_point: Option<Point3<f64>>,
     /// `v`'s coordinates, then `b`'s.
     pub coordinates: Vec<TaskCoordinate>,
     /// How many of them are `v`'s.
@@ -317,7 +317,7 @@ impl Task {
             lower_intersection,
             upper_intersection,
             direction: axis,
-            cut_point: point,
+            intersection_point: point,
             coordinates,
             lower_count,
             home_orientation_inverse,
@@ -363,10 +363,10 @@ impl Task {
     /// What decides which coordinates a section has.
     #[inline]
     pub(crate) fn form(&self, section: Section) -> Form {
-        let turn = self.cut_point.is_some();
+        let rotation = self.intersection_point.is_some();
         match section {
-            Section::Lower => Form { kind: self.lower.kind, turn },
-            Section::Upper => Form { kind: self.upper.kind, turn },
+            Section::Lower => Form { kind: self.lower.kind, rotation },
+            Section::Upper => Form { kind: self.upper.kind, rotation },
         }
     }
 

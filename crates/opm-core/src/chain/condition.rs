@@ -83,16 +83,19 @@ pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
 impl Condition {
     /// What the joint `held` alone asks of the chain's displacement; `None` of a spherical joint, no part
     /// of which asks for one equation.
-    pub fn new(chain: &Chain, held: usize, amount: JointDisplacement) -> Option<Self> {
+    pub fn new(chain: &Chain, held: usize, displacement: JointDisplacement) -> Option<Self> {
         match chain {
-            Chain::Planar(chain) => Some(planar(&chain.joints(), held, amount)),
-            Chain::Spherical(chain) => Some(spherical(chain.axes(), held, amount)),
+            Chain::Planar(chain) => Some(planar(&chain.joints(), held, displacement)),
+            Chain::Spherical(chain) => Some(spherical(chain.axes(), held, displacement)),
             Chain::Ball(_) => None,
             Chain::Cylindrical(_) | Chain::Translational(_) => {
                 let joints = flat_joints(chain)?;
                 let ([a, b], [p, q]) = (joints[held], joints[1 - held]);
                 let normal = [q, -p];
-                Some(Self::Flat { normal, value: (normal[0] * a + normal[1] * b) * amount.value() })
+                Some(Self::Flat {
+                    normal,
+                    value: (normal[0] * a + normal[1] * b) * displacement.value(),
+                })
             }
         }
     }
@@ -216,8 +219,8 @@ pub fn length(z: Complex<f64>) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-fn planar(joints: &[PlanarJoint; 3], held: usize, amount: JointDisplacement) -> Condition {
-    let known = joints[held].displacement(amount);
+fn planar(joints: &[PlanarJoint; 3], held: usize, displacement: JointDisplacement) -> Condition {
+    let known = joints[held].displacement(displacement);
     let none = PlanarDisplacement::IDENTITY;
     let (before, first, second, after) = match held {
         0 => (known, joints[1], joints[2], none),
@@ -255,8 +258,8 @@ fn carried(g: &PlanarDisplacement, joint: &PlanarJoint) -> PlanarJoint {
     }
 }
 
-fn spherical(axes: &[Vector3<f64>; 3], held: usize, amount: JointDisplacement) -> Condition {
-    let known = rotation_about(&axes[held], amount.unit_direction());
+fn spherical(axes: &[Vector3<f64>; 3], held: usize, displacement: JointDisplacement) -> Condition {
+    let known = rotation_about(&axes[held], displacement.unit_direction());
     let (fixed, carried, cosine) = match held {
         0 => (known * axes[1], axes[2], axes[1].dot(&axes[2])),
         1 => {

@@ -1,5 +1,5 @@
 //! Chains of two coaxial joints: revolute, prismatic or helical. Linear, and counting whole turns,
-//! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
+//! since a helical joint does. A revolute joint does not: its displacement is a turn like any other.
 
 use super::surface::Surface;
 use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, ReachDeficit};
@@ -61,27 +61,28 @@ impl CylindricalChain {
         self.joints.iter().position(CoaxialJoint::is_revolute)
     }
 
-    /// Whether an amount of a joint is a turn.
-    pub(super) fn turns(&self, joint: usize) -> bool {
+    /// Whether an displacement of a joint is a turn.
+    pub(super) fn is_rotation(&self, joint: usize) -> bool {
         self.joints[joint].is_revolute()
     }
 
-    /// The targets with joint number `joint` at `amount`: those of [`CylindricalChain::inverse`].
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets with joint number `joint` at `displacement`: those of [`CylindricalChain::inverse`].
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let [p, q] = self.joints;
         let (turn, advance) = if joint == 0 { (q.advance, -q.turn) } else { (-p.advance, p.turn) };
-        let period = self.turns(joint).then_some(TAU * self.determinant);
-        Surface::Coaxial { turn, advance, at: amount.value() * self.determinant, period }
+        let period = self.is_rotation(joint).then_some(TAU * self.determinant);
+        Surface::Coaxial { turn, advance, at: displacement.value() * self.determinant, period }
     }
 
-    /// The joints' amounts that displace the outer link by `target`.
+    /// The joints' displacements that displace the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: &CylindricalDisplacement) -> [JointDisplacement; 2] {
-        let mut amounts = self.coordinates(target).map(JointDisplacement::Value);
+        let mut displacements = self.coordinates(target).map(JointDisplacement::Value);
         if let Some(revolute) = self.revolute() {
-            amounts[revolute] = JointDisplacement::Direction(amounts[revolute].unit_direction());
+            displacements[revolute] =
+                JointDisplacement::Direction(displacements[revolute].unit_direction());
         }
-        amounts
+        displacements
     }
 
     /// The joints' coordinates, those of revolute joints too with whole turns.
@@ -93,10 +94,10 @@ impl CylindricalChain {
         [first, second]
     }
 
-    /// The displacement of the outer link; its whole turns are those that the amounts hold.
-    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> CylindricalDisplacement {
+    /// The displacement of the outer link; its whole turns are those that the displacements hold.
+    pub fn forward(&self, displacements: &[JointDisplacement; 2]) -> CylindricalDisplacement {
         let [p, q] = self.joints;
-        let [a, b] = amounts.map(JointDisplacement::value);
+        let [a, b] = displacements.map(JointDisplacement::value);
         CylindricalDisplacement {
             angle: p.turn * a + q.turn * b,
             advance: p.advance * a + q.advance * b,
@@ -114,15 +115,15 @@ impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
     #[inline(always)]
     fn attempt(&self, target: &CylindricalDisplacement, _: Branch) -> Attempt {
         let [first, second] = self.0.coordinates(target);
-        let mut amounts = [first, second, 0.0].map(JointDisplacement::Value);
+        let mut displacements = [first, second, 0.0].map(JointDisplacement::Value);
         let mut reduced = true;
         if NUMBER < 2 {
             let angle = if NUMBER == 0 { first } else { second };
             let (sin, cos) = sin_cos_reduced(angle);
-            amounts[NUMBER] = JointDisplacement::Direction(Complex::new(cos, sin));
+            displacements[NUMBER] = JointDisplacement::Direction(Complex::new(cos, sin));
             reduced = angle.abs() <= MOST_REDUCED;
         }
-        Attempt { amounts, holds: reduced, beyond: false }
+        Attempt { displacements, holds: reduced, beyond: false }
     }
 
     #[cold]

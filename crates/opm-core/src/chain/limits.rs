@@ -55,8 +55,8 @@ impl Limits {
     /// Whether a displacement from home is allowed. A turn is, when it is at any whole number of
     /// turns.
     #[inline(always)]
-    pub fn admits(&self, amount: JointDisplacement) -> bool {
-        match (self, amount) {
+    pub fn admits(&self, displacement: JointDisplacement) -> bool {
+        match (self, displacement) {
             (Self::Free, _) | (Self::Range { arc: None, .. }, JointDisplacement::Direction(_)) => {
                 true
             }
@@ -69,12 +69,12 @@ impl Limits {
         }
     }
 
-    /// The value to report for an amount, a displacement from home: the turn nearest to home, but one
+    /// The value to report for an displacement, a displacement from home: the turn nearest to home, but one
     /// within the limits where there is one.
     #[inline(always)]
-    pub fn report(&self, amount: JointDisplacement) -> f64 {
-        let nearest = amount.value();
-        match (self, amount) {
+    pub fn report(&self, displacement: JointDisplacement) -> f64 {
+        let nearest = displacement.value();
+        match (self, displacement) {
             (Self::Range { low, high, .. }, JointDisplacement::Direction(_)) => {
                 turned(nearest, *low, *high)
             }
@@ -82,22 +82,22 @@ impl Limits {
         }
     }
 
-    /// The value to report for an amount and whether it is allowed, displacements from home: as
+    /// The value to report for an displacement and whether it is allowed, displacements from home: as
     /// [`Limits::report`] and [`Limits::admits`] say, or (`held`) at the turn nearest to a value that
     /// a motion comes from, wherever the limits are.
     #[inline(always)]
-    pub fn place(&self, amount: JointDisplacement, held: Option<f64>) -> (f64, bool) {
+    pub fn place(&self, displacement: JointDisplacement, held: Option<f64>) -> (f64, bool) {
         match held {
-            None => (self.report(amount), self.admits(amount)),
+            None => (self.report(displacement), self.admits(displacement)),
             Some(held) => {
-                let value = amount.nearest(held);
+                let value = displacement.nearest(held);
                 (value, self.admits(JointDisplacement::Value(value)))
             }
         }
     }
 
     /// The ends of the limits of a length, or of an angle that counts whole turns.
-    pub(crate) fn values(&self) -> Option<[JointDisplacement; 2]> {
+    pub(crate) fn value_ends(&self) -> Option<[JointDisplacement; 2]> {
         match self {
             Self::Free => None,
             Self::Range { low, high, .. } => {
@@ -107,7 +107,7 @@ impl Limits {
     }
 
     /// The ends of the limits of an angle that does not count whole turns; none of a full turn.
-    pub(crate) fn turns(&self) -> Option<[JointDisplacement; 2]> {
+    pub(crate) fn direction_ends(&self) -> Option<[JointDisplacement; 2]> {
         match self {
             Self::Range { arc: Some(arc), .. } => {
                 Some([arc.from, arc.to].map(JointDisplacement::Direction))

@@ -45,13 +45,15 @@ pub enum PlanarJoint {
 
 impl PlanarJoint {
     /// The displacement of the outer link.
-    pub fn displacement(&self, amount: JointDisplacement) -> PlanarDisplacement {
+    pub fn displacement(&self, displacement: JointDisplacement) -> PlanarDisplacement {
         match *self {
             Self::Revolute { at, reversed } => {
-                let turn = amount.unit_direction();
+                let turn = displacement.unit_direction();
                 PlanarDisplacement::about(at, if reversed { turn.conj() } else { turn })
             }
-            Self::Prismatic { along } => PlanarDisplacement::translation(along * amount.value()),
+            Self::Prismatic { along } => {
+                PlanarDisplacement::translation(along * displacement.value())
+            }
         }
     }
 }
@@ -68,9 +70,9 @@ impl Pivot {
         PlanarJoint::Revolute { at: self.at, reversed: self.reversed }
     }
 
-    /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
+    /// The displacement for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
     #[inline(always)]
-    fn amount(&self, r: Complex<f64>) -> JointDisplacement {
+    fn displacement(&self, r: Complex<f64>) -> JointDisplacement {
         JointDisplacement::Direction(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
     }
 }
@@ -198,10 +200,16 @@ impl PlanarChain {
 }
 
 /// The displacement of the outer link: the product of the joints' displacements, base first.
-pub fn forward(joints: &[PlanarJoint; 3], amounts: &[JointDisplacement; 3]) -> PlanarDisplacement {
-    joints.iter().zip(amounts).fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| {
-        g.after(&joint.displacement(amount))
-    })
+pub fn forward(
+    joints: &[PlanarJoint; 3],
+    displacements: &[JointDisplacement; 3],
+) -> PlanarDisplacement {
+    joints
+        .iter()
+        .zip(displacements)
+        .fold(PlanarDisplacement::IDENTITY, |g, (joint, &displacement)| {
+            g.after(&joint.displacement(displacement))
+        })
 }
 
 /// `a × b`, the third component of the cross product.

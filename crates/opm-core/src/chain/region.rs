@@ -71,7 +71,7 @@ pub struct Capsule {
 
 /// What a row cuts from a convex set: nothing where `to < from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct Chord {
     /// First coordinate of the near end.
     pub from: f64,
     /// First coordinate of the far end.
@@ -255,7 +255,7 @@ impl Band {
 
     /// What the row at the second coordinate `y` cuts from it.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
         // Nothing but `up` differs from row to row.
         let [from, to] = self.met.map(|end| end * self.inverse);
         let up = self.across.im * self.inverse * y;
@@ -265,7 +265,7 @@ impl Band {
         } else {
             true
         };
-        Section { from, to, sure }
+        Chord { from, to, sure }
     }
 }
 
@@ -312,11 +312,11 @@ impl Disc {
 
     /// What the row at the second coordinate `y` cuts from it.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
         let square = self.square(y);
         let half = larger(square, 0.0).sqrt();
         let gap = missed(square >= 0.0);
-        Section {
+        Chord {
             from: self.centre.re - half + gap,
             to: self.centre.re + half - gap,
             sure: square.abs() > precision.square,
@@ -344,18 +344,18 @@ impl Capsule {
     /// it is near to the band's edge when it is near to touching the disc: the rim, which the band has
     /// more, is far less than what a square has to be for its root to be sure.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
+        let (band, half) = (self.band.chord(y, precision), self.half.chord(y, precision));
         let (from, to) = (larger(band.from, half.from), smaller(band.to, half.to));
         let met = from <= to;
         let from = if met { from } else { f64::INFINITY };
         let to = if met { to } else { f64::NEG_INFINITY };
         // Not a number where the row misses the disc: then the second of two is taken.
         let square = self.tip.square(y);
-        let chord = square.sqrt();
-        Section {
-            from: smaller(self.tip.centre.re - chord, from),
-            to: larger(self.tip.centre.re + chord, to),
+        let half_chord = square.sqrt();
+        Chord {
+            from: smaller(self.tip.centre.re - half_chord, from),
+            to: larger(self.tip.centre.re + half_chord, to),
             sure: square.abs() > precision.square,
         }
     }
@@ -363,9 +363,9 @@ impl Capsule {
 
 /// What the row at the second coordinate `y` cuts from two bands.
 #[inline(always)]
-pub fn common(bands: &[Band; 2], y: f64, precision: &Precision) -> Section {
-    let [a, b] = [bands[0].section(y, precision), bands[1].section(y, precision)];
-    Section { from: larger(a.from, b.from), to: smaller(a.to, b.to), sure: a.sure & b.sure }
+pub fn common(bands: &[Band; 2], y: f64, precision: &Precision) -> Chord {
+    let [a, b] = [bands[0].chord(y, precision), bands[1].chord(y, precision)];
+    Chord { from: larger(a.from, b.from), to: smaller(a.to, b.to), sure: a.sure & b.sure }
 }
 
 /// What moves the ends of a section apart the wrong way, where the row misses the set: a sum, since the

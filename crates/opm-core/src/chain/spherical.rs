@@ -70,7 +70,7 @@ impl SphericalChain {
     fn first_at_boundary(&self, w: &Vector3<f64>) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.d.is_nan() || equation.has_none() {
-            return Err(self.gap(w));
+            return Err(self.deficit(w));
         }
         let Equation { a, b, d, square } = equation;
         let length = square.sqrt();
@@ -116,12 +116,12 @@ impl SphericalChain {
         apply(target, &self.axes[2])
     }
 
-    /// The targets on which the chain closes with joint number `joint` at `amount`: two axes are left.
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets on which the chain closes with joint number `joint` at `displacement`: two axes are left.
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let [a1, a2, a3] = self.axes;
         let turned =
             |v: &Vector3<f64>, q: Complex<f64>| rotate_back(&self.axes[joint], q.conj(), v);
-        let turn = amount.unit_direction();
+        let turn = displacement.unit_direction();
         let (fixed, carried, cosine) = match joint {
             // E₂E₃ = E₁⁻¹ R
             0 => (turned(&a2, turn), a3, a2.dot(&a3)),
@@ -145,14 +145,15 @@ impl SphericalChain {
     }
 
     /// The rotation of the outer link: the product of the joints' rotations, base first.
-    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
-        self.axes.iter().zip(amounts).fold(Matrix3::identity(), |r, (axis, amount)| {
-            r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), amount.value()).into_inner()
+    pub fn forward(&self, displacements: &[JointDisplacement; 3]) -> Matrix3<f64> {
+        self.axes.iter().zip(displacements).fold(Matrix3::identity(), |r, (axis, displacement)| {
+            r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), displacement.value())
+                .into_inner()
         })
     }
 
     #[cold]
-    fn gap(&self, w: &Vector3<f64>) -> ReachDeficit {
+    fn deficit(&self, w: &Vector3<f64>) -> ReachDeficit {
         let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
         let [a12, a23] = self.cosines.map(arc);
         let to_first = arc(self.axes[0].dot(w));
@@ -168,8 +169,8 @@ impl ClosedForm for SphericalChain {
     #[inline(always)]
     fn attempt(&self, target: &Matrix3<f64>, branch: Branch) -> Attempt {
         let equation = self.equation(&self.third_axis(target));
-        let amounts = self.with_first(target, equation.solve(branch));
-        Attempt { amounts, holds: equation.has_two(), beyond: equation.has_none() }
+        let displacements = self.with_first(target, equation.solve(branch));
+        Attempt { displacements, holds: equation.has_two(), beyond: equation.has_none() }
     }
 
     #[cold]
@@ -223,12 +224,12 @@ impl Ball {
     /// The three components of the rotation vector of `target`, at most half a turn.
     #[inline]
     pub fn inverse(&self, target: &Matrix3<f64>) -> [JointDisplacement; 3] {
-        self.attempt(target, Branch::Plus).amounts
+        self.attempt(target, Branch::Plus).displacements
     }
 
     /// The rotation with this rotation vector.
-    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
-        let vector = Vector3::from_fn(|i, _| amounts[i].value());
+    pub fn forward(&self, displacements: &[JointDisplacement; 3]) -> Matrix3<f64> {
+        let vector = Vector3::from_fn(|i, _| displacements[i].value());
         Rotation3::new(self.axes.tr_mul(&vector)).into_inner()
     }
 }
@@ -239,12 +240,12 @@ impl ClosedForm for Ball {
     #[inline(always)]
     fn attempt(&self, target: &Matrix3<f64>, _: Branch) -> Attempt {
         let vector = apply(&self.axes, &rotation_vector(target));
-        let amounts = [
+        let displacements = [
             JointDisplacement::Value(vector.x),
             JointDisplacement::Value(vector.y),
             JointDisplacement::Value(vector.z),
         ];
-        Attempt::decided(amounts, true)
+        Attempt::decided(displacements, true)
     }
 }
 

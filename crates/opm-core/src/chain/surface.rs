@@ -1,7 +1,7 @@
 //! Targets on which a chain closes with one joint held, and where a path of the target meets them.
 //!
 //! A joint enters or leaves its limits where it is at one of them, and the branches of a chain meet where
-//! its middle joint is at one of two amounts. Held there, it leaves the chain one freedom less than its
+//! its middle joint is at one of two displacements. Held there, it leaves the chain one freedom less than its
 //! subspace: the targets that it closes on are a surface, the zeros of one function. Along a row of a
 //! sweep, or as a cut moves the target of an upper section, that function is a polynomial or a
 //! harmonic of one number.

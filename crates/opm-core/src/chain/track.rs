@@ -34,13 +34,17 @@ impl Track {
     }
 
     /// Of a chain that holds every joint but `free`.
-    pub fn of_chain(chain: &Chain, free: usize, amounts: &[JointDisplacement; 3]) -> Option<Self> {
+    pub fn of_chain(
+        chain: &Chain,
+        free: usize,
+        displacements: &[JointDisplacement; 3],
+    ) -> Option<Self> {
         match chain {
             Chain::Planar(chain) => {
                 let joints = chain.joints();
                 let held = |range: std::ops::Range<usize>| {
                     range.fold(PlanarDisplacement::IDENTITY, |g, i| {
-                        g.after(&joints[i].displacement(amounts[i]))
+                        g.after(&joints[i].displacement(displacements[i]))
                     })
                 };
                 let (before, after) = (held(0..free), held(free + 1..3));
@@ -59,7 +63,7 @@ impl Track {
                 let axes = chain.axes();
                 let held = |range: std::ops::Range<usize>| {
                     range.fold(Matrix3::identity(), |g, i| {
-                        g * rotation_about(&axes[i], amounts[i].unit_direction())
+                        g * rotation_about(&axes[i], displacements[i].unit_direction())
                     })
                 };
                 let axis = held(free + 1..3) * Vector3::z();

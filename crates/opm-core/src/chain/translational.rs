@@ -39,14 +39,14 @@ impl TranslationalChain {
         Shape::of_places(parallelogram(self.slides, Complex::ZERO, ranges), Complex::ZERO)
     }
 
-    /// The targets with slider number `joint` at `amount`: taken across the other one.
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets with slider number `joint` at `displacement`: taken across the other one.
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let across = self.slides[1 - joint] * Complex::i();
         let slide = self.slides[joint];
-        Surface::Band { across, at: amount.value() * (across.conj() * slide).re }
+        Surface::Band { across, at: displacement.value() * (across.conj() * slide).re }
     }
 
-    /// The sliders' amounts that translate the outer link by `target`.
+    /// The sliders' displacements that translate the outer link by `target`.
     #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
         let (first, second) = along(self.slides[0], self.slides[1], target);
@@ -54,8 +54,8 @@ impl TranslationalChain {
     }
 
     /// The translation of the outer link.
-    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> Complex<f64> {
-        self.slides[0] * amounts[0].value() + self.slides[1] * amounts[1].value()
+    pub fn forward(&self, displacements: &[JointDisplacement; 2]) -> Complex<f64> {
+        self.slides[0] * displacements[0].value() + self.slides[1] * displacements[1].value()
     }
 }
 

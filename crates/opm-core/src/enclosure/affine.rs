@@ -190,7 +190,7 @@ impl<const N: usize> Affine<N> {
     }
 
     /// The unit vector at this angle.
-    pub fn turn(self) -> Plane<N> {
+    pub fn unit_vector(self) -> Plane<N> {
         let radius = self.radius();
         let spread = self.spread();
         if radius > WIDE || radius.is_nan() {
@@ -516,7 +516,7 @@ mod tests {
             prop_assert!(holds(&x.recip(), at, 1.0 / a));
             prop_assert!(a < 0.0 || holds(&x.recip_sqrt(), at, 1.0 / a.sqrt()));
             prop_assert!(holds(&x.atan(), at, a.atan()));
-            let turn = (x * 2.0).turn();
+            let turn = (x * 2.0).unit_vector();
             prop_assert!(holds(&turn.re, at, (2.0 * a).cos()));
             prop_assert!(holds(&turn.im, at, (2.0 * a).sin()));
             let z = Plane { re: x, im: y };

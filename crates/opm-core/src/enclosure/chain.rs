@@ -27,7 +27,7 @@ pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
 }
 
 /// The joints' displacements, as they are for those targets of the box for which the chain closes.
-pub fn amounts<const N: usize>(
+pub fn displacements<const N: usize>(
     chain: &Chain,
     target: &Target<N>,
     branch: Branch,
@@ -41,12 +41,12 @@ pub fn amounts<const N: usize>(
             let [angle, advance] = target.cylindrical();
             let [p, q] = *chain.joints();
             let determinant = p.turn * q.advance - q.turn * p.advance;
-            let amount = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
+            let displacement = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
                 let value = angle * (by_angle / determinant) + advance * (by_advance / determinant);
                 let revolute = joint.turn != 0.0 && joint.advance == 0.0;
                 if revolute { Enclosed::Angle(value) } else { Enclosed::Value(value) }
             };
-            [amount(p, q.advance, -q.turn), amount(q, -p.advance, p.turn), none]
+            [displacement(p, q.advance, -q.turn), displacement(q, -p.advance, p.turn), none]
         }
         Chain::Translational(chain) => {
             let [m, n] = along(*chain.slides(), *target.translational());
@@ -61,9 +61,9 @@ fn along<const N: usize>([u, v]: [Complex<f64>; 2], z: Plane<N>) -> [Affine<N>; 
     [z.cross(Plane::constant(v)) * (1.0 / crossing), Plane::constant(u).cross(z) * (1.0 / crossing)]
 }
 
-/// The amount of a revolute for a rotation to the direction of `r`.
+/// The displacement of a revolute for a rotation to the direction of `r`.
 fn turned<const N: usize>(reversed: bool, r: Plane<N>) -> Enclosed<N> {
-    Enclosed::Turn(if reversed { r.conj() } else { r })
+    Enclosed::Direction(if reversed { r.conj() } else { r })
 }
 
 /// Where the pivot at `at` is taken to, from `from`.
@@ -106,7 +106,7 @@ fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>)
     }
 }
 
-/// The joints' amounts of a planar chain: see the closed forms.
+/// The joints' displacements of a planar chain: see the closed forms.
 fn planar<const N: usize>(
     joints: &[PlanarJoint; 3],
     g: &PlanarTarget<N>,
@@ -319,7 +319,7 @@ impl Arcs {
         let d = -z * self.cosines[0] + self.cosines[1];
         let root = self.dihedral(z)[1] * (self.sines[0] * self.sines[1] * -branch.sign());
         let square = (-z.square() + 1.0) * (self.sines[0] * self.sines[0]);
-        Enclosed::Unit((azimuth * Plane { re: d, im: root }).divided(square.recip()))
+        Enclosed::UnitDirection((azimuth * Plane { re: d, im: root }).divided(square.recip()))
     }
 }
 
@@ -343,7 +343,7 @@ fn spherical<const N: usize>(
         Branch::Minus => Branch::Plus,
     };
     let third = Arcs::of(a3, a2, a1).first(&r.apply_back(&a1), other).inverse();
-    [first, Enclosed::Turn(second), third]
+    [first, Enclosed::Direction(second), third]
 }
 
 /// The rotation vector: its sine, `a` of `R - Rᵀ = 2 [a]`, times `θ / sin θ`.

@@ -117,9 +117,9 @@ impl<const N: usize> Target<N> {
 #[derive(Clone, Copy, Debug)]
 pub enum Enclosed<const N: usize> {
     /// A rotation to this unit vector.
-    Unit(Plane<N>),
+    UnitDirection(Plane<N>),
     /// A rotation to the direction of this vector.
-    Turn(Plane<N>),
+    Direction(Plane<N>),
     /// An angle modulo a turn.
     Angle(Affine<N>),
     /// A length, or an angle that counts whole turns.
@@ -130,26 +130,26 @@ impl<const N: usize> Enclosed<N> {
     /// The opposite displacement.
     pub fn inverse(self) -> Self {
         match self {
-            Self::Unit(e) => Self::Unit(e.conj()),
-            Self::Turn(e) => Self::Turn(e.conj()),
+            Self::UnitDirection(e) => Self::UnitDirection(e.conj()),
+            Self::Direction(e) => Self::Direction(e.conj()),
             Self::Angle(angle) => Self::Angle(-angle),
             Self::Value(value) => Self::Value(-value),
         }
     }
 
     /// The rotation as a unit vector.
-    fn turn(self) -> Plane<N> {
+    fn unit_vector(self) -> Plane<N> {
         match self {
-            Self::Unit(e) => e,
-            Self::Turn(e) => e.direction(),
-            Self::Angle(angle) | Self::Value(angle) => angle.turn(),
+            Self::UnitDirection(e) => e,
+            Self::Direction(e) => e.direction(),
+            Self::Angle(angle) | Self::Value(angle) => angle.unit_vector(),
         }
     }
 
     /// As a number; a turn to a whole number of turns.
     pub fn number(self) -> Affine<N> {
         match self {
-            Self::Unit(e) | Self::Turn(e) => e.argument(),
+            Self::UnitDirection(e) | Self::Direction(e) => e.argument(),
             Self::Angle(number) | Self::Value(number) => number,
         }
     }
@@ -164,7 +164,7 @@ pub fn after<const N: usize>(
     match motion {
         IntersectionMotion::Planar(PlanarMotion::Turn) => {
             let v = v.planar();
-            Target::Planar(PlanarTarget { rotation: v.rotation * tau.turn(), ..*v })
+            Target::Planar(PlanarTarget { rotation: v.rotation * tau.unit_vector(), ..*v })
         }
         IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
             let v = v.planar();
@@ -172,7 +172,7 @@ pub fn after<const N: usize>(
             Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
         }
         IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-            let e = tau.turn();
+            let e = tau.unit_vector();
             Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
                 let first = Affine::products([[x, e.re], [y, e.im]]);
                 [first, Affine::products([[y, e.re], [-x, e.im]]), z]
@@ -200,7 +200,7 @@ pub fn before<const N: usize>(
 ) -> Target<N> {
     match motion {
         IntersectionMotion::Planar(PlanarMotion::Turn) => {
-            let (b, e) = (b.planar(), tau.turn());
+            let (b, e) = (b.planar(), tau.unit_vector());
             Target::Planar(PlanarTarget {
                 rotation: e * b.rotation,
                 translation: e * b.translation,
@@ -212,7 +212,7 @@ pub fn before<const N: usize>(
             Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
         }
         IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-            let (e, [x, y, z]) = (tau.turn(), b.spherical().0);
+            let (e, [x, y, z]) = (tau.unit_vector(), b.spherical().0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
                 row(&|i| Affine::products([[x[i], e.re], [-y[i], e.im]])),
@@ -246,9 +246,9 @@ impl<const N: usize> Coordinate<N> {
     }
 
     /// The unit vector at the angle, less what it is measured from.
-    fn turn(self, home: f64) -> Plane<N> {
+    fn unit_vector(self, home: f64) -> Plane<N> {
         match self {
-            Self::Linear(value) => (value - home).turn(),
+            Self::Linear(value) => (value - home).unit_vector(),
             Self::Polar(e) => e,
         }
     }
@@ -269,12 +269,12 @@ pub mod task {
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
                     PlanarMotion::Turn => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Slide(_) => pose[2].turn(home(2)),
+                    PlanarMotion::Slide(_) => pose[2].unit_vector(home(2)),
                 },
                 translation: Plane { re: q(0), im: q(1) },
             }),
             IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-                Target::Spherical(tilt(pose[0].turn(home(0)), pose[1].turn(home(1))))
+                Target::Spherical(tilt(pose[0].unit_vector(home(0)), pose[1].unit_vector(home(1))))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
@@ -298,17 +298,21 @@ pub mod task {
         let none = Affine::constant(0.0);
         match task.upper_intersection {
             IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-                let absolute = euler(pose[0].turn(0.0), pose[1].turn(0.0), pose[2].turn(0.0));
+                let absolute = euler(
+                    pose[0].unit_vector(0.0),
+                    pose[1].unit_vector(0.0),
+                    pose[2].unit_vector(0.0),
+                );
                 Target::Spherical(match task.home_orientation_inverse() {
                     Some(inverse) => absolute.after(inverse),
                     None => absolute,
                 })
             }
             IntersectionMotion::Planar(PlanarMotion::Turn) => {
-                planar(pose[2].turn(home(2)), q(0), q(1))
+                planar(pose[2].unit_vector(home(2)), q(0), q(1))
             }
             IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
-                planar(pose[1].turn(home(1)), none, q(0))
+                planar(pose[1].unit_vector(home(1)), none, q(0))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
                 Target::Cylindrical(q(0), q(1))

@@ -15,7 +15,7 @@ use super::{Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
-use lanes::{Amounts, Column, Displacements, LANES, Mask};
+use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
 use section::{Found, Side};
 
@@ -101,7 +101,7 @@ struct Block {
     b: Displacements,
     lower: Found,
     upper: Found,
-    tau: Amounts,
+    tau: DisplacementColumns,
     shifted: Displacements,
     /// A column a joint coordinate.
     joints: Vec<Column>,
@@ -131,7 +131,7 @@ impl Manipulator {
                 b: [[0.0; LANES]; 9],
                 lower: Found::new(),
                 upper: Found::new(),
-                tau: Amounts::new(),
+                tau: DisplacementColumns::new(),
                 shifted: [[0.0; LANES]; 9],
                 joints: columns(self.coordinates.len()),
                 imaginary: columns(self.imaginary.len()),
@@ -154,11 +154,11 @@ impl Manipulator {
     /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
     /// let poses = [0.0, 0.0, 0.0, 0.2, 0.0, /* the second one: */ 0.01, 0.0, 0.0, 0.26, 0.0];
     /// let (joints, imaginary) = (manipulator.coordinates().len(), manipulator.imaginary().len());
-    /// let (mut values, mut cuts) = (vec![0.0; 2 * joints], vec![0.0; 2 * imaginary]);
+    /// let (mut values, mut imaginary_values) = (vec![0.0; 2 * joints], vec![0.0; 2 * imaginary]);
     /// let (mut reachable, mut within_limits) = ([false; 2], [false; 2]);
     /// let mut output = BatchOutput {
     ///     joints: &mut values,
-    ///     imaginary: &mut cuts,
+    ///     imaginary: &mut imaginary_values,
     ///     reachable: &mut reachable,
     ///     within_limits: &mut within_limits,
     /// };
@@ -198,7 +198,7 @@ impl Manipulator {
             batch.block.give(widths, &mut block_output);
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
-                self.inverse_row(pose, mode, &mut batch.solution, row, &mut block_output)
+                self.inverse_one(pose, mode, &mut batch.solution, row, &mut block_output)
                     .map_err(|error| refused((row, error)))?;
             }
         }
@@ -218,7 +218,7 @@ impl Manipulator {
     }
 
     /// One row, by itself.
-    fn inverse_row(
+    fn inverse_one(
         &self,
         pose: &[f64],
         mode: Mode,
@@ -344,7 +344,7 @@ impl Block {
         let branches = manipulator.modes.branches(mode, number);
         for section in leg.order() {
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
-            let given = section == leg.cut;
+            let given = section == leg.split_section;
             let (of_section, branch, found, target) = match section {
                 Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
@@ -353,20 +353,20 @@ impl Block {
             section::solve(&of_section.chain, branch, target, found);
             status.note(found);
             if given {
-                let cut = match section {
+                let imaginary_joint = match section {
                     Section::Lower => leg.lower.chain.freedoms() - 1,
                     Section::Upper => 0,
                 };
-                section::unwind(leg.unwinds, &found.amounts[cut], tau);
+                section::unwind(leg.unwinds, &found.displacements[imaginary_joint], tau);
                 match section {
                     Section::Lower => {
-                        let way = (task.upper_intersection, Side::Before);
-                        section::shift(way, b, tau, shifted);
+                        let step = (task.upper_intersection, Side::Before);
+                        section::shift(step, b, tau, shifted);
                         section::invert(tau);
                     }
                     Section::Upper => {
-                        let way = (task.lower_intersection, Side::After);
-                        section::shift(way, v, tau, shifted);
+                        let step = (task.lower_intersection, Side::After);
+                        section::shift(step, v, tau, shifted);
                     }
                 }
             }
@@ -377,12 +377,13 @@ impl Block {
     #[inline(always)]
     fn report(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
         for (section, found) in [(&leg.lower, &self.lower), (&leg.upper, &self.upper)] {
-            for (slot, amounts) in section.slots.iter().zip(&found.amounts) {
-                let Some(slot) = slot else { continue };
-                let number = slot.coordinate;
+            for (coordinate, displacements) in section.coordinates.iter().zip(&found.displacements)
+            {
+                let Some(coordinate) = coordinate else { continue };
+                let number = coordinate.number;
                 section::report(
                     (&manipulator.limits[number], manipulator.coordinates[number].home),
-                    amounts,
+                    displacements,
                     &mut self.joints[number],
                     &mut self.status.within_limits,
                 );

@@ -60,14 +60,14 @@ impl Closure {
             .legs
             .iter()
             .map(|leg| {
-                let mut motions = Vec::new();
+                let mut joints = Vec::new();
                 for joint in &leg.joints {
                     let (actuated, c) = (joint.actuated, &joint.coordinates);
                     if joint.kind == JointKind::Spherical {
                         let home = Vector3::from_fn(|i, _| c[i].home);
-                        motions.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
+                        joints.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
                     } else {
-                        motions.extend(
+                        joints.extend(
                             joint.screws().into_iter().zip(c).map(|(screw, c)| LegJoint::Screw {
                                 screw,
                                 home: c.home,
@@ -76,7 +76,7 @@ impl Closure {
                         );
                     }
                 }
-                motions
+                joints
             })
             .collect();
         Self { legs, platform: mechanism.platform, size: frame(mechanism).length }
@@ -93,9 +93,9 @@ impl Closure {
     }
 
     fn end(&self, leg: &[LegJoint], joints: &[f64], first: &mut usize) -> Isometry3<f64> {
-        leg.iter().fold(Isometry3::identity(), |g, motion| {
-            let g = g * motion.displacement(&joints[*first..]);
-            *first += motion.values();
+        leg.iter().fold(Isometry3::identity(), |g, joint| {
+            let g = g * joint.displacement(&joints[*first..]);
+            *first += joint.values();
             g
         })
     }
@@ -103,8 +103,8 @@ impl Closure {
     fn apart(&self, end: &Isometry3<f64>, target: &Isometry3<f64>) -> f64 {
         // The sine of half the angle, twice: acos would lose half of the digits.
         let turn = end.rotation.rotation_to(&target.rotation).into_inner();
-        let way = (end * self.platform - target * self.platform).norm();
-        2.0 * turn.imag().norm() + way / self.size
+        let distance = (end * self.platform - target * self.platform).norm();
+        2.0 * turn.imag().norm() + distance / self.size
     }
 
     /// Moves the passive joints of every leg so that it closes, the actuated ones held: Newton's steps by
@@ -146,28 +146,28 @@ impl Closure {
                 screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
             Screw { linear: moved.linear / self.size, ..moved }.to_vector()
         };
-        for motion in leg {
-            let moved = g * motion.displacement(&joints[at..]);
-            match motion {
+        for joint in leg {
+            let moved = g * joint.displacement(&joints[at..]);
+            match joint {
                 LegJoint::Screw { screw, actuated: false, .. } => {
                     columns.push(unit(screw.transformed(&g)));
-                    passive.push((at, motion, g.rotation));
+                    passive.push((at, joint, g.rotation));
                 }
                 LegJoint::Ball { point, actuated: false, .. } => {
                     let point = g * Point3::from(*point);
                     let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
                     columns.extend(axes.map(|axis| unit(Screw::rotation(axis, point))));
-                    passive.push((at, motion, g.rotation));
+                    passive.push((at, joint, g.rotation));
                 }
                 LegJoint::Screw { .. } | LegJoint::Ball { .. } => {}
             }
             g = moved;
-            at += motion.values();
+            at += joint.values();
         }
         let error = {
             let turn = (target.rotation * g.rotation.inverse()).scaled_axis();
-            let way = (target * self.platform - g * self.platform) / self.size;
-            Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+            let translation = (target * self.platform - g * self.platform) / self.size;
+            Vector6::new(turn.x, turn.y, turn.z, translation.x, translation.y, translation.z)
         };
         if columns.is_empty() {
             return;
@@ -181,8 +181,8 @@ impl Closure {
         let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { return };
         let mut step = step.iter();
         let mut next = || step.next().copied().unwrap_or(0.0);
-        for (at, motion, before) in passive {
-            match motion {
+        for (at, joint, before) in passive {
+            match joint {
                 LegJoint::Screw { .. } => joints[at] += next(),
                 LegJoint::Ball { home, .. } => {
                     let turn = Vector3::from_fn(|_, _| next());

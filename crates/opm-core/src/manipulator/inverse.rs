@@ -64,9 +64,9 @@ pub struct Solution {
     pub(crate) joints: Vec<f64>,
     pub(crate) imaginary: Vec<f64>,
     /// Every leg's displacement along the intersection motion, reported or not.
-    cuts: Vec<f64>,
+    taus: Vec<f64>,
     /// Where it is a solution: what velocities start from.
-    pub(crate) place: SolvedPose,
+    pub(crate) solved: SolvedPose,
     /// Every leg's displacements from home, as its chains find them.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
@@ -110,7 +110,7 @@ impl Solution {
     /// The pose that this is the solution of, in the order of [`Manipulator::task_coordinates`].
     #[inline]
     pub fn pose(&self) -> &[f64] {
-        &self.place.pose
+        &self.solved.pose
     }
 
     /// Itself, where every leg closes.
@@ -123,9 +123,9 @@ impl Solution {
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         self.imaginary.clone_from(&other.imaginary);
-        self.cuts.clone_from(&other.cuts);
-        self.place.pose.clone_from(&other.place.pose);
-        (self.place.v, self.place.b) = (other.place.v, other.place.b);
+        self.taus.clone_from(&other.taus);
+        self.solved.pose.clone_from(&other.solved.pose);
+        (self.solved.v, self.solved.b) = (other.solved.v, other.solved.b);
         self.legs.clone_from(&other.legs);
         self.within_limits = other.within_limits;
         self.unreachable.clone_from(&other.unreachable);
@@ -165,7 +165,7 @@ impl ActuatedJoints {
 /// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
 #[derive(Clone, Debug)]
 pub struct AllModes {
-    place: SolvedPose,
+    solved: SolvedPose,
     legs: Vec<LegModes>,
 }
 
@@ -180,8 +180,8 @@ impl Manipulator {
         Solution {
             joints: self.coordinates.iter().map(|c| c.home).collect(),
             imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
-            cuts: vec![0.0; self.legs.len()],
-            place: self.place_at_home(),
+            taus: vec![0.0; self.legs.len()],
+            solved: self.solved_at_home(),
             legs: vec![LegSolution::HOME; self.legs.len()],
             within_limits: false,
             unreachable: Vec::with_capacity(self.legs.len()),
@@ -199,10 +199,10 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        AllModes { place: self.place_at_home(), legs: vec![[None; 4]; self.legs.len()] }
+        AllModes { solved: self.solved_at_home(), legs: vec![[None; 4]; self.legs.len()] }
     }
 
-    fn place_at_home(&self) -> SolvedPose {
+    fn solved_at_home(&self) -> SolvedPose {
         let pose = self.task.home();
         let (v, b) = (self.task.lower(&pose), self.task.upper(&pose[self.task.lower_count..]));
         SolvedPose { pose, v, b }
@@ -267,7 +267,7 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
+        self.displace(pose, &mut buffer.solved)?;
         self.solve_legs(mode, buffer, Turns::NearHome);
         Ok(buffer.reached())
     }
@@ -286,7 +286,7 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
+        self.displace(pose, &mut buffer.solved)?;
         self.solve_legs(mode, buffer, Turns::NearHeld);
         Ok(buffer.reached())
     }
@@ -306,7 +306,7 @@ impl Manipulator {
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let tau = if leg.upper_decides {
+            let tau = if leg.upper_constrains {
                 let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
                     return Ok(None);
                 };
@@ -339,8 +339,8 @@ impl Manipulator {
         pose: &[f64],
         buffer: &'a mut AllModes,
     ) -> Result<Option<&'a AllModes>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
-        let SolvedPose { v, b, .. } = buffer.place;
+        self.displace(pose, &mut buffer.solved)?;
+        let SolvedPose { v, b, .. } = buffer.solved;
         for (number, (leg, modes)) in self.legs.iter().zip(&mut buffer.legs).enumerate() {
             *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
@@ -374,9 +374,9 @@ impl Manipulator {
                 None => return None,
             }
         }
-        let SolvedPose { pose, v, b } = &all.place;
-        buffer.place.pose.copy_from_slice(pose);
-        (buffer.place.v, buffer.place.b) = (*v, *b);
+        let SolvedPose { pose, v, b } = &all.solved;
+        buffer.solved.pose.copy_from_slice(pose);
+        (buffer.solved.v, buffer.solved.b) = (*v, *b);
         buffer.reached()
     }
 
@@ -428,9 +428,9 @@ impl Manipulator {
 
     /// Keeps a pose and its displacements, which must have finite coordinates.
     #[inline]
-    fn displace(&self, pose: &[f64], place: &mut SolvedPose) -> Result<(), PoseError> {
-        (place.v, place.b) = self.displacements(pose)?;
-        place.pose.copy_from_slice(pose);
+    fn displace(&self, pose: &[f64], solved: &mut SolvedPose) -> Result<(), PoseError> {
+        (solved.v, solved.b) = self.displacements(pose)?;
+        solved.pose.copy_from_slice(pose);
         Ok(())
     }
 
@@ -438,28 +438,28 @@ impl Manipulator {
     fn write_actuated(
         &self,
         section: &CompiledSection,
-        amounts: &[JointDisplacement; 3],
+        displacements: &[JointDisplacement; 3],
         out: &mut ActuatedJoints,
     ) {
-        out.within_limits &= section.admits(&self.limits, amounts);
+        out.within_limits &= section.admits(&self.limits, displacements);
         if !section.driven {
             return;
         }
-        for (slot, &amount) in section.slots.iter().zip(amounts) {
-            if let Some(ChainCoordinate { coordinate, drive: Some(drive) }) = *slot {
-                let home = self.coordinates[coordinate].home;
-                out.actuated[drive] = home + self.limits[coordinate].report(amount);
+        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
+            if let Some(ChainCoordinate { number, actuated: Some(actuated) }) = *coordinate {
+                let home = self.coordinates[number].home;
+                out.actuated[actuated] = home + self.limits[number].report(displacement);
             }
         }
     }
 
     fn solve_legs(&self, mode: Mode, out: &mut Solution, turns: Turns) {
-        let SolvedPose { v, b, .. } = out.place;
+        let SolvedPose { v, b, .. } = out.solved;
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let near = turns.near(out.cuts[number], 0.0);
+            let near = turns.near(out.taus[number], 0.0);
             match leg.solve(&self.task, [&v, &b], branches, near) {
                 Ok(solution) => self.write(number, &solution, out, turns),
                 Err((section, deficit)) => {
@@ -481,7 +481,7 @@ impl Manipulator {
         out.legs[number] = *solution;
         self.write_section(&leg.lower, &solution.lower, out, turns);
         self.write_section(&leg.upper, &solution.upper, out, turns);
-        out.cuts[number] = solution.tau.nearest(turns.near(out.cuts[number], 0.0));
+        out.taus[number] = solution.tau.nearest(turns.near(out.taus[number], 0.0));
         if let Some(imaginary) = leg.imaginary {
             let joint = &self.imaginary[imaginary];
             let near = turns.near(out.imaginary[imaginary], joint.home);
@@ -493,16 +493,16 @@ impl Manipulator {
     fn write_section(
         &self,
         section: &CompiledSection,
-        amounts: &[JointDisplacement; 3],
+        displacements: &[JointDisplacement; 3],
         out: &mut Solution,
         turns: Turns,
     ) {
-        let home = |coordinate: usize| self.coordinates[coordinate].home;
+        let home = |number: usize| self.coordinates[number].home;
         // At most half a turn, a rotation vector is the nearest to none.
         if matches!(section.chain, Chain::Ball(_)) && turns == Turns::NearHeld {
-            let first = section.slots[0].map_or(0, |slot| slot.coordinate);
+            let first = section.coordinates[0].map_or(0, |coordinate| coordinate.number);
             let near = Vector3::from_fn(|i, _| out.joints[first + i] - home(first + i));
-            let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
+            let vector = nearest_rotation(Vector3::from_fn(|i, _| displacements[i].value()), &near);
             for i in 0..3 {
                 out.within_limits &=
                     self.limits[first + i].admits(JointDisplacement::Value(vector[i]));
@@ -510,12 +510,12 @@ impl Manipulator {
             }
             return;
         }
-        for (slot, &amount) in section.slots.iter().zip(amounts) {
-            let Some(ChainCoordinate { coordinate, .. }) = *slot else { continue };
-            let home = home(coordinate);
-            let held = (turns == Turns::NearHeld).then(|| out.joints[coordinate] - home);
-            let (value, within) = self.limits[coordinate].place(amount, held);
-            out.joints[coordinate] = home + value;
+        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
+            let Some(ChainCoordinate { number, .. }) = *coordinate else { continue };
+            let home = home(number);
+            let held = (turns == Turns::NearHeld).then(|| out.joints[number] - home);
+            let (value, within) = self.limits[number].place(displacement, held);
+            out.joints[number] = home + value;
             out.within_limits &= within;
         }
     }
@@ -544,7 +544,7 @@ impl AllModes {
     /// The legs that are out of reach in every mode.
     pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
         // Of the first combination, where none closes.
-        let closes = |leg: &LegModes| leg.iter().any(|way| matches!(way, Some(Ok(_))));
+        let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
         self.legs.iter().filter(move |leg| !closes(leg)).filter_map(|leg| leg[0]?.err())
     }
 

@@ -40,16 +40,16 @@ pub enum RefusedLeg {
     },
 }
 
-/// Where a chain's amount goes.
+/// Where a chain's displacement goes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChainCoordinate {
     /// Number of the joint coordinate in the mechanism.
-    pub coordinate: usize,
+    pub number: usize,
     /// Its number among the actuated ones.
-    pub drive: Option<usize>,
+    pub actuated: Option<usize>,
 }
 
-/// One section: its chain, and where the chain's amounts go (`None`: the cut).
+/// One section: its chain, and where the chain's displacements go (`None`: the cut).
 #[derive(Clone, Debug)]
 pub(crate) struct CompiledSection {
     pub chain: Chain,
@@ -57,7 +57,7 @@ pub(crate) struct CompiledSection {
     pub screws: [Vector3<f64>; 3],
     /// What the determinant of the screws is measured in.
     pub scale: f64,
-    pub slots: [Option<ChainCoordinate>; 3],
+    pub coordinates: [Option<ChainCoordinate>; 3],
     /// Any of its coordinates has limits.
     pub limited: bool,
     /// Any of its coordinates is actuated.
@@ -70,13 +70,13 @@ pub(crate) struct CompiledLeg {
     pub lower: CompiledSection,
     pub upper: CompiledSection,
     /// The section that takes the cut, and so is solved first when it is the upper one.
-    pub cut: Section,
+    pub split_section: Section,
     /// Number of its imaginary joint.
     pub imaginary: Option<usize>,
     /// Where the lower section closes, on each branch, if that is a region of the plane.
     pub shapes: [Option<Shape>; 2],
     /// The upper section has a say in whether the leg follows, or drives it.
-    pub upper_decides: bool,
+    pub upper_constrains: bool,
     /// The cut is a turn, and the section that it is handed on to counts whole turns.
     pub unwinds: bool,
 }
@@ -86,7 +86,7 @@ pub(crate) struct CompiledLeg {
 pub(crate) struct CompileContext<'a> {
     pub task: &'a Task,
     /// Each coordinate's number among the actuated ones.
-    pub drives: &'a [Option<usize>],
+    pub actuated: &'a [Option<usize>],
     pub limits: &'a [Limits],
     /// Of the mechanism, metres.
     pub size: f64,
@@ -115,67 +115,69 @@ impl CompiledLeg {
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        CompileContext { task, drives, limits, size }: CompileContext<'_>,
+        CompileContext { task, actuated, limits, size }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
-        let cut = if (lower, upper) == (dim_lower, dim_upper - 1) {
+        let split_section = if (lower, upper) == (dim_lower, dim_upper - 1) {
             Section::Upper
         } else if (lower, upper) == (dim_lower - 1, dim_upper) {
             Section::Lower
         } else {
             return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper });
         };
-        let cut_joint = match task.cut_point {
+        let imaginary_joint = match task.intersection_point {
             Some(point) => ChainJoint::Screw { axis: task.direction, point, pitch: 0.0 },
             None => ChainJoint::Slide { axis: task.direction },
         };
         let compile = |section: Section, subspace: &Subspace, freedoms: &[Freedom]| {
             let mut joints = chain_joints(leg, freedoms);
-            let mut slots = [None; 3];
-            let shift = usize::from(section == Section::Upper && cut == Section::Upper);
-            for (slot, freedom) in slots[shift..].iter_mut().zip(freedoms) {
-                let coordinate = first + coordinate_number(leg, *freedom);
-                *slot = Some(ChainCoordinate { coordinate, drive: drives[coordinate] });
+            let mut coordinates = [None; 3];
+            let shift = usize::from(section == Section::Upper && split_section == Section::Upper);
+            for (slot, freedom) in coordinates[shift..].iter_mut().zip(freedoms) {
+                let number = first + coordinate_number(leg, *freedom);
+                *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
             }
-            if section == cut {
-                joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);
+            if section == split_section {
+                joints.insert(
+                    if section == Section::Upper { 0 } else { joints.len() },
+                    imaginary_joint,
+                );
             }
             let refused = |error| RefusedLeg::Chain { section, error };
             let chain = Chain::new(subspace, &joints).map_err(refused)?;
             let screws = screws(subspace, &joints).map_err(refused)?;
-            let slot = || slots.iter().flatten();
+            let own = || coordinates.iter().flatten();
             Ok(CompiledSection {
                 chain,
                 screws,
                 scale: determinant_scale(subspace.kind, &screws, size),
-                slots,
-                limited: slot().any(|s| limits[s.coordinate].any()),
-                driven: slot().any(|s| s.drive.is_some()),
+                coordinates,
+                limited: own().any(|c| limits[c.number].any()),
+                driven: own().any(|c| c.actuated.is_some()),
             })
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let of_joint =
-            lower.slots.map(|slot| slot.map_or(&Limits::Free, |s| &limits[s.coordinate]));
+        let of_joint = lower.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
         let shapes = Branch::BOTH.map(|branch| lower.chain.shape(branch, of_joint));
         // Solved second, an upper section may be out of reach; a ball never is.
-        let may_fail = cut == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
+        let may_fail = split_section == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
         Ok(Self {
-            upper_decides: upper.limited || upper.driven || may_fail,
+            upper_constrains: upper.limited || upper.driven || may_fail,
             lower,
             upper,
-            cut,
+            split_section,
             shapes,
             imaginary: None,
-            unwinds: task.cut_point.is_some()
+            unwinds: task.intersection_point.is_some()
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
     }
 
     /// The sections in the order in which they are solved.
     pub fn order(&self) -> [Section; 2] {
-        match self.cut {
+        match self.split_section {
             Section::Upper => [Section::Upper, Section::Lower],
             Section::Lower => [Section::Lower, Section::Upper],
         }
@@ -197,7 +199,7 @@ impl CompiledLeg {
         [v, b]: [&Displacement; 2],
         branches: LegBranches,
     ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
-        match self.cut {
+        match self.split_section {
             Section::Upper => {
                 let tau = self.unwound(self.upper.chain.first(b, branches.upper)?, 0.0);
                 let lower = self.solve_lower(task, v, tau, branches.lower)?;
@@ -219,8 +221,8 @@ impl CompiledLeg {
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
-        let of = |section: Section| move |gap: ReachDeficit| (section, gap);
-        match self.cut {
+        let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
+        match self.split_section {
             Section::Upper => {
                 let upper =
                     self.upper.chain.inverse(b, branches.upper).map_err(of(Section::Upper))?;
@@ -232,15 +234,15 @@ impl CompiledLeg {
             Section::Lower => {
                 let lower =
                     self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
-                // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
-                let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
-                let target = task.upper_intersection.before(b, cut);
+                // L · exp(I c) = v, with c the cut's displacement: τ = -c and U = exp(I c) · b.
+                let step = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
+                let target = task.upper_intersection.before(b, step);
                 let upper = self
                     .upper
                     .chain
                     .inverse(&target, branches.upper)
                     .map_err(of(Section::Upper))?;
-                Ok(LegSolution { lower, upper, tau: cut.inverse() })
+                Ok(LegSolution { lower, upper, tau: step.inverse() })
             }
         }
     }
@@ -260,8 +262,8 @@ impl CompiledLeg {
     }
 
     #[inline(always)]
-    pub fn unwound(&self, cut: JointDisplacement, near: f64) -> JointDisplacement {
-        if self.unwinds { JointDisplacement::Value(cut.nearest(near)) } else { cut }
+    pub fn unwound(&self, tau: JointDisplacement, near: f64) -> JointDisplacement {
+        if self.unwinds { JointDisplacement::Value(tau.nearest(near)) } else { tau }
     }
 
     /// `L = v · exp(I τ)`: the lower joints.
@@ -278,13 +280,15 @@ impl CompiledLeg {
 }
 
 impl CompiledSection {
-    /// Whether the amounts of this section's chain are within the limits.
+    /// Whether the displacements of this section's chain are within the limits.
     #[inline]
-    pub fn admits(&self, limits: &[Limits], amounts: &[JointDisplacement; 3]) -> bool {
+    pub fn admits(&self, limits: &[Limits], displacements: &[JointDisplacement; 3]) -> bool {
         !self.limited
-            || self.slots.iter().zip(amounts).all(|(slot, &amount)| match slot {
-                Some(slot) => limits[slot.coordinate].admits(amount),
-                None => true,
+            || self.coordinates.iter().zip(displacements).all(|(coordinate, &displacement)| {
+                match coordinate {
+                    Some(coordinate) => limits[coordinate.number].admits(displacement),
+                    None => true,
+                }
             })
     }
 }

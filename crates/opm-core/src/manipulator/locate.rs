@@ -145,7 +145,7 @@ impl Manipulator {
     /// The same pose with angles within half a turn of home, but those whose whole turns matter.
     fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
         for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
-            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
+            if c.quantity == Quantity::Angle && !self.counts_turns(c.kind()) {
                 *q -= TAU * whole_turns(*q - c.home);
             }
         }
@@ -202,8 +202,9 @@ impl Manipulator {
     fn miss(&self, target: &Isometry3<f64>, pose: &[f64], weight: f64) -> Vector6<f64> {
         let here = self.task.displacement(pose);
         let turn = (target.rotation * here.rotation.inverse()).scaled_axis();
-        let way = (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
-        Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+        let translation =
+            (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
+        Vector6::new(turn.x, turn.y, turn.z, translation.x, translation.y, translation.z)
     }
 
     /// Derivative of the miss by the coordinates, central differences: exact enough, since what is

@@ -64,8 +64,11 @@ impl ModeLayout {
         let legs = legs
             .iter()
             .map(|leg| {
-                let mut choices =
-                    LegChoices { lower: None, upper: None, upper_first: leg.cut == Section::Upper };
+                let mut choices = LegChoices {
+                    lower: None,
+                    upper: None,
+                    upper_first: leg.split_section == Section::Upper,
+                };
                 for section in leg.order() {
                     if leg.section(section).chain.has_choice() {
                         let bit = match section {

@@ -51,8 +51,8 @@ pub enum Anchor {
     Leg(usize),
     /// Two legs, each of which keeps the axis of the shared rotation on a track.
     Tracks([Tracked; 2]),
-    /// A leg that keeps `v` on a level along which the intersection motion moves: the slot that does.
-    Level { leg: usize, slot: usize },
+    /// A leg that keeps `v` on a level along which the intersection motion moves: the joint that does.
+    Level { leg: usize, joint: usize },
     /// Legs whose imaginary joints move as one, `functional · b`: taken as the origin of the intersection
     /// motion, it leaves as many conditions on `v` as there are freedoms.
     CoupledLegs { functional: [f64; 2], legs: Vec<usize> },
@@ -64,8 +64,8 @@ pub enum Anchor {
 #[derive(Clone, Copy, Debug)]
 pub struct Tracked {
     pub leg: usize,
-    /// The one lower slot that is free, of a leg without the cut there; the one that is held, with it.
-    pub slot: usize,
+    /// The one lower joint that is free, of a leg without the cut there; the one that is held, with it.
+    pub joint: usize,
 }
 
 impl Plan {
@@ -119,13 +119,14 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             Section::Upper => &held.upper,
         };
         screws |= joints.iter().any(|joint| joint.turn != 0.0 && joint.advance != 0.0);
-        driven |= held.iter().any(|&slot| joints[slot].advance == 0.0);
+        driven |= held.iter().any(|&joint| joints[joint].advance == 0.0);
     }
     screws && driven
 }
 
 fn held(section: &CompiledSection) -> Vec<usize> {
-    let driven = |slot: &usize| section.slots[*slot].is_some_and(|slot| slot.drive.is_some());
+    let driven =
+        |joint: &usize| section.coordinates[*joint].is_some_and(|joint| joint.actuated.is_some());
     (0..3).filter(driven).collect()
 }
 
@@ -133,25 +134,25 @@ fn held(section: &CompiledSection) -> Vec<usize> {
 fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
     let mut found = Vec::new();
     let whole = |(leg, held): (&CompiledLeg, &HeldLeg)| {
-        let real = leg.lower.chain.freedoms() - usize::from(leg.cut == Section::Lower);
+        let real = leg.lower.chain.freedoms() - usize::from(leg.split_section == Section::Lower);
         held.lower.len() == real
     };
     found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
     if task.lower.kind.commutes() {
-        let cut = task.lower_intersection.sum();
+        let along = task.lower_intersection.sum();
         found.extend((0..legs.len()).find_map(|leg| {
-            let level = |slot: &&usize| {
+            let level = |joint: &&usize| {
                 let c =
-                    Condition::new(&legs[leg].lower.chain, **slot, JointDisplacement::Value(0.0));
+                    Condition::new(&legs[leg].lower.chain, **joint, JointDisplacement::Value(0.0));
                 matches!(c, Some(Condition::Flat { normal: [a, b], .. })
-                    if (a * cut[0] + b * cut[1]).abs() <= LEVEL * a.hypot(b))
+                    if (a * along[0] + b * along[1]).abs() <= LEVEL * a.hypot(b))
             };
-            let slot = *held[leg].lower.iter().find(level)?;
-            Some(Anchor::Level { leg, slot })
+            let joint = *held[leg].lower.iter().find(level)?;
+            Some(Anchor::Level { leg, joint })
         }));
         return found;
     }
-    if task.cut_point.is_some() {
+    if task.intersection_point.is_some() {
         let tracked: Vec<Tracked> =
             (0..legs.len()).filter_map(|leg| tracked(leg, &legs[leg], &held[leg])).collect();
         if let [first, second, ..] = *tracked {
@@ -159,7 +160,7 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
         }
     }
     if task.upper.kind.commutes() {
-        found.extend(together(task, legs, held));
+        found.extend(coupled_legs(task, legs, held));
     }
     found
 }
@@ -169,40 +170,40 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
 const LEVEL: f64 = 1e-12;
 
 fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> {
-    let slot = match leg.cut {
+    let joint = match leg.split_section {
         Section::Upper if held.lower.len() == 2 => {
-            (0..3).find(|slot| !held.lower.contains(slot))?
+            (0..3).find(|joint| !held.lower.contains(joint))?
         }
         Section::Lower if held.lower.len() == 1 => held.lower[0],
         _ => return None,
     };
     // Of a chain with the cut there may be one that leaves the axis where it likes.
-    let amounts = [JointDisplacement::Value(0.0); 3];
-    let track = match leg.cut {
-        Section::Upper => Track::of_chain(&leg.lower.chain, slot, &amounts),
+    let displacements = [JointDisplacement::Value(0.0); 3];
+    let track = match leg.split_section {
+        Section::Upper => Track::of_chain(&leg.lower.chain, joint, &displacements),
         Section::Lower => {
-            let condition = Condition::new(&leg.lower.chain, slot, amounts[0])?;
+            let condition = Condition::new(&leg.lower.chain, joint, displacements[0])?;
             Track::of_condition(&condition)
         }
     };
-    track.map(|_| Tracked { leg: number, slot })
+    track.map(|_| Tracked { leg: number, joint })
 }
 
 /// The functional of `b` that the cuts of most legs follow.
-fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
-    let cut = task.upper_intersection.sum();
+fn coupled_legs(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
+    let along = task.upper_intersection.sum();
     // With its one upper joint passive, a leg's cut is what b has beside that joint's motion.
     let functional = |leg: &CompiledLeg, held: &HeldLeg| {
-        if leg.cut == Section::Lower || !held.upper.is_empty() {
+        if leg.split_section == Section::Lower || !held.upper.is_empty() {
             return None;
         }
         let [_, [p, q]] = flat_joints(&leg.upper.chain)?;
-        let along = q * cut[0] - p * cut[1];
-        Some([q / along, -p / along])
+        let across = q * along[0] - p * along[1];
+        Some([q / across, -p / across])
     };
     let functionals: Vec<_> =
         legs.iter().zip(held).map(|(leg, held)| functional(leg, held)).collect();
-    let follows = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
+    let matches_functional = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
         other.is_some_and(|[a, b]| {
             (a - wanted[0]).abs().max((b - wanted[1]).abs()) <= LEVEL * wanted[0].hypot(wanted[1])
         })
@@ -210,13 +211,13 @@ fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Ancho
     let group = |wanted: &[f64; 2]| -> Vec<usize> {
         (0..legs.len())
             .filter(|&i| {
-                let driven = legs[i].cut == Section::Upper && !held[i].upper.is_empty();
-                follows(&functionals[i], wanted) || driven
+                let driven = legs[i].split_section == Section::Upper && !held[i].upper.is_empty();
+                matches_functional(&functionals[i], wanted) || driven
             })
             .collect()
     };
     let conditions = |group: &[usize]| -> usize {
-        let own = |i: &usize| legs[*i].cut == Section::Lower || group.contains(i);
+        let own = |i: &usize| legs[*i].split_section == Section::Lower || group.contains(i);
         (0..legs.len()).filter(own).map(|i| held[i].lower.len()).sum()
     };
     let best = functionals.iter().flatten().max_by_key(|wanted| conditions(&group(wanted)))?;
@@ -235,11 +236,11 @@ fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anc
             Anchor::CoupledLegs { legs, .. } if legs.contains(&number) => true,
             _ => !held.lower.is_empty(),
         };
-        let cut = (leg.cut == Section::Upper && known).then_some(0);
-        for slot in cut.into_iter().chain(held.upper.iter().copied()) {
+        let split = (leg.split_section == Section::Upper && known).then_some(0);
+        for joint in split.into_iter().chain(held.upper.iter().copied()) {
             count += 1;
             if let Some(Condition::Flat { normal, .. }) =
-                Condition::new(&leg.upper.chain, slot, JointDisplacement::Value(0.0))
+                Condition::new(&leg.upper.chain, joint, JointDisplacement::Value(0.0))
             {
                 normals.push(normal);
             }

@@ -32,7 +32,7 @@ pub struct LegBranch {
 impl LegBranch {
     /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where whole turns
     /// do not matter) or metres; `None` of a leg that is cut in its lower section.
-    pub fn cut(&self) -> Option<f64> {
+    pub fn intersection_displacement(&self) -> Option<f64> {
         self.tau.map(JointDisplacement::value)
     }
 
@@ -68,19 +68,20 @@ impl Manipulator {
         leg: usize,
         b: &Displacement,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) {
         let compiled = &self.legs[leg];
         let mut solve = |branches: LegBranches| {
-            let tau = match compiled.cut {
+            let tau = match compiled.split_section {
                 Section::Lower => None,
                 Section::Upper => {
                     let chain = &compiled.upper.chain;
                     let tau = if compiled.upper.limited {
                         let admitted = chain.inverse(b, branches.upper).ok();
-                        let admitted =
-                            admitted.filter(|amounts| compiled.upper.admits(&self.limits, amounts));
-                        admitted.map(|amounts| amounts[0])
+                        let admitted = admitted.filter(|displacements| {
+                            compiled.upper.admits(&self.limits, displacements)
+                        });
+                        admitted.map(|displacements| displacements[0])
                     } else {
                         chain.first(b, branches.upper).ok()
                     };
@@ -90,8 +91,8 @@ impl Manipulator {
                     }
                 }
             };
-            let with_upper = (tau.is_none() && compiled.upper_decides).then_some(*b);
-            ways.push(LegBranch { leg, branches, tau, with_upper });
+            let with_upper = (tau.is_none() && compiled.upper_constrains).then_some(*b);
+            found.push(LegBranch { leg, branches, tau, with_upper });
         };
         match mode {
             Some(mode) => solve(self.modes.branches(mode, leg)),
@@ -106,15 +107,15 @@ impl Manipulator {
     /// What the lower section alone may choose beside `v`: the displacement along the intersection
     /// motion of every leg that is cut in its upper section, as an imaginary joint. Those that
     /// [`Manipulator::imaginary`] has are among them; the others follow from these, or stay at home.
-    pub fn cuts(&self) -> Vec<ImaginaryJoint> {
+    pub fn intersection_joints(&self) -> Vec<ImaginaryJoint> {
         let legs = self.mechanism.legs.iter().enumerate();
-        legs.filter(|&(number, _)| self.legs[number].cut == Section::Upper)
+        legs.filter(|&(number, _)| self.legs[number].split_section == Section::Upper)
             .map(|(number, leg)| ImaginaryJoint::new(leg, number, &self.task))
             .collect()
     }
 
     /// Whether whole turns of the cuts matter: a helical joint follows them.
-    pub fn cuts_count_turns(&self) -> bool {
+    pub fn intersection_counts_turns(&self) -> bool {
         let counts =
             |leg: &CompiledLeg| leg.lower.chain.counts_turns() || leg.upper.chain.counts_turns();
         self.legs.iter().any(counts)
@@ -128,14 +129,15 @@ impl Manipulator {
         leg: usize,
         tau: f64,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) {
         let compiled = &self.legs[leg];
-        let tau = (compiled.cut == Section::Upper).then_some(JointDisplacement::Value(tau));
+        let tau =
+            (compiled.split_section == Section::Upper).then_some(JointDisplacement::Value(tau));
         let mut push = |branches: LegBranches| {
             // Choices of the upper section make no difference.
-            if ways.iter().all(|way| way.branches.lower != branches.lower) {
-                ways.push(LegBranch { leg, branches, tau, with_upper: None });
+            if found.iter().all(|branch| branch.branches.lower != branches.lower) {
+                found.push(LegBranch { leg, branches, tau, with_upper: None });
             }
         };
         match mode {
@@ -154,43 +156,43 @@ impl Manipulator {
         &self,
         b: &Displacement,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) -> bool {
         (0..self.legs.len()).all(|leg| {
-            ways.clear();
-            self.leg_branches(leg, b, mode, ways);
-            !ways.is_empty()
+            found.clear();
+            self.leg_branches(leg, b, mode, found);
+            !found.is_empty()
         })
     }
 
     /// Whether the two sections alone decide on every pose: no leg that is cut in its lower section
     /// has upper joints that are limited, actuated, or may be out of reach.
     pub fn workspace_factorises(&self) -> bool {
-        self.legs.iter().all(|leg| leg.cut == Section::Upper || !leg.upper_decides)
+        self.legs.iter().all(|leg| leg.split_section == Section::Upper || !leg.upper_constrains)
     }
 
     /// The imaginary joint's number and value, for a leg that has one.
-    pub fn imaginary_value(&self, way: &LegBranch) -> Option<(usize, f64)> {
-        let number = self.legs[way.leg].imaginary?;
+    pub fn imaginary_value(&self, branch: &LegBranch) -> Option<(usize, f64)> {
+        let number = self.legs[branch.leg].imaginary?;
         let joint = &self.imaginary[number];
-        Some((number, joint.value(way.tau?, joint.home)))
+        Some((number, joint.value(branch.tau?, joint.home)))
     }
 
     /// Whether a leg follows to `v`, within its limits.
     #[inline]
-    pub fn reaches(&self, way: &LegBranch, v: &Displacement) -> bool {
-        let leg = &self.legs[way.leg];
-        match (way.tau, &way.with_upper) {
+    pub fn reaches(&self, branch: &LegBranch, v: &Displacement) -> bool {
+        let leg = &self.legs[branch.leg];
+        match (branch.tau, &branch.with_upper) {
             (Some(tau), _) => leg
-                .solve_lower(&self.task, v, tau, way.branches.lower)
-                .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
+                .solve_lower(&self.task, v, tau, branch.branches.lower)
+                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, None) => leg
                 .lower
                 .chain
-                .inverse(v, way.branches.lower)
-                .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
+                .inverse(v, branch.branches.lower)
+                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, Some(b)) => {
-                leg.solve(&self.task, [v, b], way.branches, 0.0).is_ok_and(|solution| {
+                leg.solve(&self.task, [v, b], branch.branches, 0.0).is_ok_and(|solution| {
                     leg.lower.admits(&self.limits, &solution.lower)
                         && leg.upper.admits(&self.limits, &solution.upper)
                 })
@@ -203,12 +205,12 @@ impl Manipulator {
     /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
     /// shape.
     #[inline(always)]
-    pub fn region(&self, way: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
-        if way.with_upper.is_some() {
+    pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
+        if branch.with_upper.is_some() {
             return None;
         }
-        let shape = self.legs[way.leg].shape(way.branches.lower)?;
-        let target = match way.tau {
+        let shape = self.legs[branch.leg].shape(branch.branches.lower)?;
+        let target = match branch.tau {
             Some(tau) => &self.task.lower_intersection.after(v, tau),
             None => v,
         };

@@ -83,6 +83,7 @@ impl CoordinateKind {
 /// One coordinate of the pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskCoordinate {
+    kind: CoordinateKind,
     /// Name, unique among the mechanism's task coordinates: that of its [`kind`](Self::kind).
     pub name: &'static str,
     /// Angle or length.
@@ -94,15 +95,12 @@ pub struct TaskCoordinate {
 impl TaskCoordinate {
     /// A coordinate with its value at home, radians or metres.
     pub const fn new(kind: CoordinateKind, home: f64) -> Self {
-        Self { name: kind.name(), quantity: kind.quantity(), home }
+        Self { kind, name: kind.name(), quantity: kind.quantity(), home }
     }
 
-    /// What it measures.
-    ///
-    /// # Panics
-    /// If it was not made by [`TaskCoordinate::new`] and has a name that no kind has.
-    pub fn kind(&self) -> CoordinateKind {
-        CoordinateKind::from_name(self.name).expect("a task coordinate has the name of its kind")
+    /// What the coordinate measures.
+    pub const fn kind(&self) -> CoordinateKind {
+        self.kind
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::{Complex, Matrix3};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Form {
     pub kind: SubspaceKind,
-    pub turn: bool,
+    pub rotation: bool,
 }
 
 /// `v` for its coordinates and their values at home: straight arithmetic where `form` is a constant.
@@ -20,7 +20,7 @@ pub(crate) fn lower_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
+    match (form.kind, form.rotation) {
         (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
         (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
         (SubspaceKind::Spherical, _) => {
@@ -43,7 +43,7 @@ pub(crate) fn upper_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
+    match (form.kind, form.rotation) {
         (SubspaceKind::Spherical, _) => {
             // Three calls, where a map would not be inlined.
             let [zeta, xi, psi] = at;

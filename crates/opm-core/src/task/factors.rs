@@ -14,7 +14,11 @@ impl Task {
     /// `v` and `b` with `v · b = g`, up to a share of the intersection motion, where `g` is in the motion.
     /// Elsewhere two displacements whose product is not `g`.
     pub(crate) fn factors(&self, g: &Isometry3<f64>) -> [Displacement; 2] {
-        let v = if self.cut_point.is_some() { self.beside_turn(g) } else { self.beside_slide(g) };
+        let v = if self.intersection_point.is_some() {
+            self.beside_turn(g)
+        } else {
+            self.beside_slide(g)
+        };
         let b = self.upper.local(&(self.lower.isometry(&v).inverse() * g));
         [v, b]
     }
@@ -25,8 +29,8 @@ impl Task {
         match lower.kind {
             // `b` moves that point along the axis, or, a plane's, across it.
             SubspaceKind::Planar | SubspaceKind::TranslationalPlane => {
-                let way = lower.direction(&(g * point - point));
-                planar(Complex::new(1.0, 0.0), way.x, way.y)
+                let moved = lower.direction(&(g * point - point));
+                planar(Complex::new(1.0, 0.0), moved.x, moved.y)
             }
             SubspaceKind::Cylindrical => cylindrical(0.0, lower.direction(&(g * point - point)).z),
             SubspaceKind::Spherical => {
@@ -57,24 +61,25 @@ impl Task {
             let z = turn * Complex::new(p.x, p.y);
             Vector3::new(z.re, z.im, p.z)
         };
-        let way = lower.point(&(g * upper.origin)) - turned(&lower.point(&upper.origin));
+        let moved = lower.point(&(g * upper.origin)) - turned(&lower.point(&upper.origin));
         // The one direction that `b` moves it in beside the intersection motion's.
         let across = turned(&lower.direction(&upper.axes.column(1).into_owned()));
         let by_upper = match upper.kind {
             SubspaceKind::Planar | SubspaceKind::TranslationalPlane => {
-                across * if across.z == 0.0 { 0.0 } else { way.z / across.z }
+                across * if across.z == 0.0 { 0.0 } else { moved.z / across.z }
             }
             SubspaceKind::Spherical | SubspaceKind::Cylindrical => Vector3::zeros(),
         };
         match lower.kind {
             SubspaceKind::Planar | SubspaceKind::Spherical => {
-                planar(turn, way.x - by_upper.x, way.y - by_upper.y)
+                planar(turn, moved.x - by_upper.x, moved.y - by_upper.y)
             }
             // The plane of `b` holds the axis: across it, `b` alone moves.
-            SubspaceKind::Cylindrical => cylindrical(turn.arg(), way.z),
-            SubspaceKind::TranslationalPlane => {
-                Displacement::Translational(Complex::new(way.x - by_upper.x, way.y - by_upper.y))
-            }
+            SubspaceKind::Cylindrical => cylindrical(turn.arg(), moved.z),
+            SubspaceKind::TranslationalPlane => Displacement::Translational(Complex::new(
+                moved.x - by_upper.x,
+                moved.y - by_upper.y,
+            )),
         }
     }
 
@@ -111,13 +116,13 @@ impl Subspace {
     /// the subspace holds.
     fn local(&self, g: &Isometry3<f64>) -> Displacement {
         let rotation = self.rotation(g);
-        let way = self.point(&(g * self.origin));
+        let moved = self.point(&(g * self.origin));
         match self.kind {
-            SubspaceKind::Planar => planar(about_third(&rotation), way.x, way.y),
+            SubspaceKind::Planar => planar(about_third(&rotation), moved.x, moved.y),
             SubspaceKind::Spherical => Displacement::Spherical(rotation),
-            SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), way.z),
+            SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), moved.z),
             SubspaceKind::TranslationalPlane => {
-                Displacement::Translational(Complex::new(way.x, way.y))
+                Displacement::Translational(Complex::new(moved.x, moved.y))
             }
         }
     }

@@ -180,7 +180,10 @@ impl Checked<'_> {
         let Some(given) = self.given(key) else { return Ok(None) };
         if given.dot(&to).abs() > TOLERANCE {
             let (given, to) = (given.into_inner().into(), to.into_inner().into());
-            return Err(TaskError::Frame { key, problem: FrameProblem::NotSquare { given, to } });
+            return Err(TaskError::Frame {
+                key,
+                problem: FrameProblem::NotPerpendicular { given, to },
+            });
         }
         Ok(Some(Unit::new_normalize(given.into_inner() - to.into_inner() * to.dot(&given))))
     }

@@ -24,7 +24,7 @@ impl Task {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
         let home = |i: usize| self.coordinates[i].home;
         // b takes, or gives, all of the intersection motion that is to be in it.
-        let rotation = self.cut_point.is_some();
+        let rotation = self.intersection_point.is_some();
         let (v, handed) = if rotation {
             self.without_turn(v)
         } else {
@@ -89,7 +89,7 @@ impl Task {
     /// `v` without the turn about the shared axis that its coordinates do not have, and that turn: it was
     /// applied first. Where the intersection motion is a translation, `v` itself.
     pub(crate) fn without_turn(&self, v: &Displacement) -> (Displacement, JointDisplacement) {
-        if self.cut_point.is_none() {
+        if self.intersection_point.is_none() {
             return (*v, JointDisplacement::Value(0.0));
         }
         let turned = self.turned(v);

@@ -7,10 +7,10 @@ use PlanarJoint::{Prismatic, Revolute};
 use nalgebra::Complex;
 
 impl PlanarChain {
-    /// The targets on which the chain closes with joint number `joint` at `amount`.
-    pub(in crate::chain) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets on which the chain closes with joint number `joint` at `displacement`.
+    pub(in crate::chain) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let joints = self.joints();
-        let hold = joints[joint].displacement(amount);
+        let hold = joints[joint].displacement(displacement);
         let free = PlanarDisplacement::IDENTITY;
         match joint {
             // E₂E₃ = E₁⁻¹ g
@@ -22,7 +22,7 @@ impl PlanarChain {
         }
     }
 
-    /// The amounts of the middle joint at which the two branches meet, or two slides are parallel.
+    /// The displacements of the middle joint at which the two branches meet, or two slides are parallel.
     pub(in crate::chain) fn folds(&self) -> Vec<JointDisplacement> {
         // A rotation that lays one direction along another, and that against it.
         let laid = |from: Complex<f64>, to: Complex<f64>, reversed: bool| {
@@ -54,8 +54,8 @@ impl PlanarChain {
         }
     }
 
-    /// Whether an amount of a joint is a turn.
-    pub(in crate::chain) fn turns(&self, joint: usize) -> bool {
+    /// Whether an displacement of a joint is a turn.
+    pub(in crate::chain) fn is_rotation(&self, joint: usize) -> bool {
         matches!(self.joints()[joint], Revolute { .. })
     }
 

@@ -55,10 +55,10 @@ impl ClosedForm for Prp {
     fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
         let turned = target.rotation * self.slides[1];
         let (s1, s3) = along(self.slides[0], turned, self.moved(target));
-        let turn = self.pivot.amount(target.rotation);
+        let turn = self.pivot.displacement(target.rotation);
         let crossing = cross(self.slides[0], turned).abs() > REACH_TOLERANCE;
-        let amounts = [JointDisplacement::Value(s1), turn, JointDisplacement::Value(s3)];
-        Attempt { amounts, holds: crossing, beyond: false }
+        let displacements = [JointDisplacement::Value(s1), turn, JointDisplacement::Value(s3)];
+        Attempt { displacements, holds: crossing, beyond: false }
     }
 
     /// With the slides parallel only one line is in reach, and on it the sliders are free: they are then
@@ -75,6 +75,6 @@ impl ClosedForm for Prp {
             return Err(ReachDeficit::length(aside));
         }
         let along = JointDisplacement::Value((moved * self.slides[0].conj()).re);
-        Ok([along, self.pivot.amount(target.rotation), JointDisplacement::Value(0.0)])
+        Ok([along, self.pivot.displacement(target.rotation), JointDisplacement::Value(0.0)])
     }
 }

@@ -88,12 +88,12 @@ impl ClosedForm for Prr {
         let link = outer - self.pivots[0].at - self.slide * slider;
         let r2 = link * self.link.conj();
         let r3 = target.rotation * r2.conj();
-        let amounts = [
+        let displacements = [
             JointDisplacement::Value(slider),
-            self.pivots[0].amount(r2),
-            self.pivots[1].amount(r3),
+            self.pivots[0].displacement(r2),
+            self.pivots[1].displacement(r3),
         ];
-        Attempt::decided(amounts, self.closes(square))
+        Attempt::decided(displacements, self.closes(square))
     }
 
     #[cold]

@@ -47,7 +47,7 @@ impl ClosedForm for Rpp {
         // The pivot's own point of the outer link, turned back to home.
         let moved = target.apply(self.pivot.at) - self.pivot.at;
         let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
-        let turn = self.pivot.amount(target.rotation);
+        let turn = self.pivot.displacement(target.rotation);
         Attempt::decided([turn, JointDisplacement::Value(s2), JointDisplacement::Value(s3)], true)
     }
 }

@@ -65,12 +65,12 @@ impl ClosedForm for Rpr {
         let telescope = Complex::new(ahead, self.offset.im) * self.slide;
         let r1 = direction(reach * telescope.conj(), self.offset.norm_sqr());
         let r3 = target.rotation * r1.conj();
-        let amounts = [
-            self.pivots[0].amount(r1),
+        let displacements = [
+            self.pivots[0].displacement(r1),
             JointDisplacement::Value(ahead - self.offset.re),
-            self.pivots[1].amount(r3),
+            self.pivots[1].displacement(r3),
         ];
-        Attempt::decided(amounts, square >= -2.0 * REACH_TOLERANCE * aside)
+        Attempt::decided(displacements, square >= -2.0 * REACH_TOLERANCE * aside)
     }
 
     #[cold]

@@ -88,7 +88,7 @@ impl ClosedForm for Rrr {
         let r1 = direction(reach * bent.conj(), self.mean_square);
         let r3 = target.rotation * (r1 * r2).conj();
         let [p1, p2, p3] = self.pivots;
-        Attempt::decided([p1.amount(r1), p2.amount(r2), p3.amount(r3)], closes)
+        Attempt::decided([p1.displacement(r1), p2.displacement(r2), p3.displacement(r3)], closes)
     }
 
     #[cold]

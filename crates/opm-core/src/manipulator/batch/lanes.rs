@@ -76,22 +76,22 @@ impl Lane for Matrix3<f64> {
     }
 }
 
-/// An amount of each, all of one kind.
+/// An displacement of each, all of one kind.
 #[derive(Clone, Debug)]
-pub struct Amounts {
+pub struct DisplacementColumns {
     /// They are turns, else values.
-    pub turns: bool,
+    pub are_directions: bool,
     /// Of turns the two components; of values, which are the first, the second is not to be read.
     columns: [Column; 2],
 }
 
-impl Amounts {
+impl DisplacementColumns {
     pub fn new() -> Self {
-        Self { turns: false, columns: [[0.0; LANES]; 2] }
+        Self { are_directions: false, columns: [[0.0; LANES]; 2] }
     }
 
     #[inline(always)]
-    pub fn turn(&self, lane: usize) -> JointDisplacement {
+    pub fn direction(&self, lane: usize) -> JointDisplacement {
         JointDisplacement::Direction(Complex::new(self.columns[0][lane], self.columns[1][lane]))
     }
 
@@ -102,8 +102,8 @@ impl Amounts {
 
     /// Of the kind that `turns` says.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, amount: JointDisplacement) {
-        match amount {
+    pub fn set(&mut self, lane: usize, displacement: JointDisplacement) {
+        match displacement {
             JointDisplacement::Direction(e) => {
                 (self.columns[0][lane], self.columns[1][lane]) = (e.re, e.im);
             }

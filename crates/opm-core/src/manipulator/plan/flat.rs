@@ -28,7 +28,7 @@ struct Row {
 impl Flat {
     /// Solves the system; `None` where the legs do not fix the pose.
     pub fn new(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], size: f64) -> Option<Self> {
-        let drives = held.iter().map(|leg| leg.lower.len() + leg.upper.len()).sum();
+        let actuated_count = held.iter().map(|leg| leg.lower.len() + leg.upper.len()).sum();
         let mut rows = vec![Row {
             // b has no share of the intersection motion: v takes it all.
             left: {
@@ -36,34 +36,36 @@ impl Flat {
                 left[2..4].copy_from_slice(&task.upper_intersection.sum());
                 left
             },
-            right: vec![0.0; drives],
+            right: vec![0.0; actuated_count],
         }];
         for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
             for section in [Section::Lower, Section::Upper] {
                 let compiled = leg.section(section);
-                let (first, held, cut, sign) = match section {
+                let (first, held, motion, sign) = match section {
                     Section::Lower => (0, &held.lower, &task.lower_intersection, 1.0),
                     Section::Upper => (2, &held.upper, &task.upper_intersection, -1.0),
                 };
                 let joints = flat_joints(&compiled.chain)?;
-                let cut_slot = (section == leg.cut).then_some(match section {
+                let imaginary_joint = (section == leg.split_section).then_some(match section {
                     Section::Lower => 1,
                     Section::Upper => 0,
                 });
-                for slot in held.iter().copied().chain(cut_slot) {
-                    let one = Condition::new(&compiled.chain, slot, JointDisplacement::Value(1.0))?;
+                for joint in held.iter().copied().chain(imaginary_joint) {
+                    let one =
+                        Condition::new(&compiled.chain, joint, JointDisplacement::Value(1.0))?;
                     let Condition::Flat { normal: [a, b], .. } = one else { return None };
-                    let mut row = Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; drives] };
+                    let mut row =
+                        Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; actuated_count] };
                     row.left[first] = a;
                     row.left[first + 1] = b;
-                    let [p, q] = cut.sum();
+                    let [p, q] = motion.sum();
                     // v + I τ, or b − I τ, is what the real joints make; in a chain with the cut, the
                     // row of its other joint is perpendicular to I.
                     row.left[4 + number] = sign * (a * p + b * q);
-                    if Some(slot) != cut_slot {
-                        let drive = compiled.slots[slot]?.drive?;
-                        let [p, q] = joints[slot];
-                        row.right[drive] = a * p + b * q;
+                    if Some(joint) != imaginary_joint {
+                        let number = compiled.coordinates[joint]?.actuated?;
+                        let [p, q] = joints[joint];
+                        row.right[number] = a * p + b * q;
                     }
                     rows.push(row);
                 }
@@ -75,7 +77,7 @@ impl Flat {
         scale.extend(vec![size; legs.len()]);
         let columns = scale.len();
         let mut left = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i].left[j] * scale[j]);
-        let mut right = DMatrix::from_fn(rows.len(), drives, |i, j| rows[i].right[j]);
+        let mut right = DMatrix::from_fn(rows.len(), actuated_count, |i, j| rows[i].right[j]);
         for i in 0..rows.len() {
             let largest = left.row(i).amax();
             if largest > 0.0 {
@@ -93,7 +95,9 @@ impl Flat {
             return None;
         }
         let solution = triangle.solve_upper_triangular(&qr.q().tr_mul(&right))?;
-        Some(Self { matrix: DMatrix::from_fn(4, drives, |i, j| solution[(i, j)] * scale[i]) })
+        Some(Self {
+            matrix: DMatrix::from_fn(4, actuated_count, |i, j| solution[(i, j)] * scale[i]),
+        })
     }
 
     /// `v` and `b` for displacements of the actuated joints from home.
