@@ -9,14 +9,14 @@ use crate::chain::limits::Limits;
 use crate::group::JointDisplacement;
 use nalgebra::Complex;
 
-/// Two sliders, each a unit direction of the plane: one solution.
+/// Two sliders in a plane. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TranslationalChain {
     slides: [Complex<f64>; 2],
 }
 
 impl TranslationalChain {
-    /// The closed form of two sliders.
+    /// The closed form of two sliders along these unit directions.
     ///
     /// # Errors
     /// Where they are parallel.
@@ -28,7 +28,7 @@ impl TranslationalChain {
         Ok(Self { slides })
     }
 
-    /// The sliders' directions, base first.
+    /// The sliders' unit directions, base first.
     pub fn slides(&self) -> &[Complex<f64>; 2] {
         &self.slides
     }
@@ -39,14 +39,14 @@ impl TranslationalChain {
         Shape::of_places(parallelogram(self.slides, Complex::ZERO, ranges), Complex::ZERO)
     }
 
-    /// The targets with slider number `joint` at `displacement`: taken across the other one.
+    /// The targets at which slider number `joint` is held at `displacement`, measured across the other slider.
     pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let across = self.slides[1 - joint] * Complex::i();
         let slide = self.slides[joint];
         Surface::Band { across, at: displacement.value() * (across.conj() * slide).re }
     }
 
-    /// The sliders' displacements that translate the outer link by `target`.
+    /// The sliders' displacements that translate the outer link by `target`, metres.
     #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
         let (first, second) = along(self.slides[0], self.slides[1], target);

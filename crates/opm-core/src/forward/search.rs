@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
     /// With `v` known: every combination of the legs' τ.
     fn with_lower(&mut self, v: &Displacement, known: &[Option<JointDisplacement>]) {
         // As the pose has it: then what is within half a turn here is so there.
-        let (v, turned) = self.manipulator.task().without_turn(v);
+        let (v, turned) = self.manipulator.task().without_shared_rotation(v);
         let v = &v;
         let mut options: Vec<[Option<JointDisplacement>; 2]> = Vec::with_capacity(known.len());
         let mut closes = true;

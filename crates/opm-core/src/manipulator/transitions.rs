@@ -1,11 +1,11 @@
-//! Where along a row of a sweep a leg may begin or cease to follow.
+//! The transitions of a leg along a row of a sweep: where it may begin or cease to reach the pose.
 //!
-//! In a row all coordinates but the first are fixed, and the target of the leg's lower chain moves along
-//! a [`Path`](crate::group::Path). What the leg does changes only where the path meets the [`Surface`]s of
-//! its chain: a joint at its limit, two branches that meet. A leg may take the cut in its lower section,
-//! with an upper section that constrains it. In a slice only the cut moves the upper section's target, so
-//! that what the upper section allows is arcs of the cut's displacement. Their ends are limits of the cut,
-//! the last joint of the lower chain.
+//! In a row all coordinates except the first are fixed, and the target of the leg's lower chain moves along
+//! a [`Path`](crate::group::Path). Feasibility changes only where the path meets the [`Surface`]s of the
+//! chain: where a joint is at its limit, or two branches meet. A leg may be split in its lower section, with
+//! an upper section that constrains it. In a slice only the imaginary joint moves the upper section's
+//! target, so that the upper section allows intervals of that joint's displacement. Their ends are limits of
+//! the imaginary joint, the last joint of the lower chain.
 
 use super::leg::CompiledSection;
 use super::{LegBranch, Manipulator};
@@ -17,25 +17,27 @@ use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
 use std::f64::consts::PI;
 
-/// How far a cut may slide, in sizes of the leg, and its upper section still be asked for: beyond, its
-/// rounding is no longer that of a number of that size.
+/// The largest translation of the imaginary joint for which transitions are computed, in sizes of the leg:
+/// beyond it, the rounding is larger than that of the leg's lengths.
 const FAR: f64 = 1e4;
 
-/// What can change a leg's mind within a slice.
+/// The targets at which a leg's feasibility can change within a slice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transitions {
     surfaces: Vec<Surface>,
-    /// Ends of what the upper section allows, each known to within a share.
+    /// The targets at which the imaginary joint is at an end of what the upper section allows, each with the
+    /// uncertainty of that end.
     tau_limits: Vec<(Surface, f64)>,
-    /// No number of the leg is larger, metres.
+    /// An upper bound of the leg's lengths, metres.
     size: f64,
-    /// How far the cut may slide for the above to hold, metres.
+    /// The largest translation of the imaginary joint for which the surfaces are complete, metres; `None`
+    /// where it is not limited.
     largest_tau: Option<f64>,
 }
 
 impl CompiledSection {
-    /// Where the section's chain enters and leaves its limits, and where its branches meet; `None` where
-    /// there is no closed form for that.
+    /// The surfaces at which the section's chain enters and leaves its limits, and at which its branches
+    /// meet; `None` where they have no closed form.
     fn surfaces(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
         let mut surfaces = self.chain.folds();
         for (joint, coordinate) in self.coordinates.iter().enumerate() {
@@ -47,7 +49,7 @@ impl CompiledSection {
         Some(surfaces)
     }
 
-    /// The sum of its lengths, limits included.
+    /// The sum of the section's lengths, limits included, metres.
     fn size(&self, manipulator: &Manipulator) -> f64 {
         let limit = |coordinate: usize| {
             let (low, high) = manipulator.limits[coordinate].range();
@@ -61,8 +63,8 @@ impl CompiledSection {
 }
 
 impl Manipulator {
-    /// What can change a leg's mind within the slice. `None` where no closed form tells: limits on
-    /// the rotation vector of a spherical joint.
+    /// The transitions of a leg within a slice. `None` where they have no closed form: with limits on the
+    /// rotation vector of a spherical joint.
     pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
@@ -78,7 +80,7 @@ impl Manipulator {
         Some(transitions)
     }
 
-    /// What the upper section allows, as limits of the cut.
+    /// Adds the ends of what the upper section allows, as limits of the imaginary joint.
     fn add_tau_limits(
         &self,
         branch: &LegBranch,
@@ -111,15 +113,15 @@ impl Manipulator {
             });
         }
         if leg.unwinds {
-            // Where it is unwound to the other side.
+            // Where the angle within π of home jumps.
             tau_limits.extend(hold(PI).map(|surface| (surface, 0.0)));
         }
         Some(())
     }
 
-    /// Gives the intervals of a span of the first coordinate in which the leg may change its mind, when
-    /// the other coordinates of `v` are `others`: outside of them, it follows everywhere between two or
-    /// nowhere, as [`Manipulator::reaches`] says.
+    /// Calls `found` with the intervals of a span of the first coordinate in which the leg's feasibility may
+    /// change, with the other coordinates of `v` at `others`. Between two of them, [`Manipulator::reaches`] is
+    /// the same everywhere.
     pub fn changes(
         &self,
         (branch, transitions): (&LegBranch, &Transitions),
@@ -145,7 +147,7 @@ impl Manipulator {
         for surface in &transitions.surfaces {
             surface.meet(&path, &moved, [size, 0.0], &mut found);
         }
-        // A cut that slides farther than the leg is long is linear along the row: most at one of its ends.
+        // A translation far longer than the leg is linear along the row: it is largest at one of the ends.
         let beyond = |most: f64| {
             [span.from, span.to].into_iter().any(|first| {
                 let displacements = leg.lower.chain.inverse(&at(first), branch.branches.lower);
