@@ -256,7 +256,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
         let mut cut = |pose: &[f64]| {
             ways.clear();
             m.leg_branches(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
-            ways.first().and_then(LegBranch::cut).unwrap_or(0.0)
+            ways.first().and_then(LegBranch::intersection_displacement).unwrap_or(0.0)
         };
         let mut draw = || -> Vec<f64> {
             let home = m.task().home().into_iter();

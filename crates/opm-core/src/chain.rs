@@ -17,14 +17,22 @@
 
 pub(crate) mod condition;
 pub mod cylindrical;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod equation;
 mod joint;
 pub mod limits;
 pub mod planar;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod region;
 pub(crate) mod screws;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod shape;
 pub mod spherical;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod surface;
 pub(crate) mod track;
 pub mod translational;
@@ -102,6 +110,7 @@ impl ReachDeficit {
 
 /// Why joints do not make a closed-form chain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChainError {
     /// The freedoms are dependent in every configuration.
     #[error("{0}")]
@@ -237,6 +246,7 @@ impl Chain {
     /// The translations of a planar target at which the chain closes within its limits. `None` for chains
     /// of other subspaces, and where limits on angles make the region more than a convex set with a convex
     /// hole.
+    #[doc(hidden)]
     pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
         match self {
             Self::Planar(chain) => chain.shape(branch, limits),

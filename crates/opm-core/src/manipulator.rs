@@ -28,8 +28,12 @@ pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub use reach::LegBranch;
 pub use read::ReadError;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;

@@ -181,6 +181,7 @@ impl OddJoint {
 
 /// Why a hint on a frame does not fit the geometry. Directions have unit length.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FrameProblem {
     /// The geometry, or another hint, leaves nothing to choose.
     NotFree {
@@ -220,7 +221,12 @@ impl fmt::Display for FrameProblem {
                 write!(f, "is {given}, expected {} or {back}", triple(line))
             }
             Self::NotPerpendicular { given, to } => {
-                write!(f, "is {}, expected a direction perpendicular to {}", triple(given), triple(to))
+                write!(
+                    f,
+                    "is {}, expected a direction perpendicular to {}",
+                    triple(given),
+                    triple(to)
+                )
             }
         }
     }

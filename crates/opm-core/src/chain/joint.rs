@@ -101,7 +101,9 @@ fn in_plane(subspace: &Subspace, axis: &Vector3<f64>) -> Result<Complex<f64>, Ch
     let along = Complex::new(d.x, d.y);
     let length = along.norm();
     if length <= DEGENERATE {
-        return Err(ChainError::Dependent("a slider is perpendicular to the plane of its subspace"));
+        return Err(ChainError::Dependent(
+            "a slider is perpendicular to the plane of its subspace",
+        ));
     }
     Ok(along / length)
 }

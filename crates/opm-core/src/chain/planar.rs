@@ -181,11 +181,14 @@ impl PlanarChain {
 
     /// The translations of the target at which the chain closes within its limits; `None` where limits on
     /// angles make the region more than a convex set with a convex hole.
+    #[doc(hidden)]
     pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
         let free = |turns: &[usize]| turns.iter().all(|&i| *limits[i] == Limits::Free);
         let range = |slider: usize| <[f64; 2]>::from(limits[slider].range());
         // The rotation of a chain with two sliders is that of its pivot.
-        let within = |rotation: usize, shape: Shape| shape.within(&self.joints()[rotation], limits[rotation]);
+        let within = |rotation: usize, shape: Shape| {
+            shape.within(&self.joints()[rotation], limits[rotation])
+        };
         Some(match self {
             Self::Rrr(chain) if free(&[0, 1, 2]) => chain.shape(),
             Self::Prr(chain) if free(&[1, 2]) => chain.shape(branch, range(0)),

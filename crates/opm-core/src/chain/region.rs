@@ -112,7 +112,10 @@ impl Region {
     /// The region rotated about the origin; `rotation` is a unit vector in the direction of the angle.
     #[must_use]
     pub fn turned(&self, rotation: Complex<f64>) -> Self {
-        Self { whole: self.whole.turned(rotation), hole: self.hole.map(|hole| hole.turned(rotation)) }
+        Self {
+            whole: self.whole.turned(rotation),
+            hole: self.hole.map(|hole| hole.turned(rotation)),
+        }
     }
 
     /// The region after every one of its points `z` has moved to `scale · (z + shift)`.
@@ -216,7 +219,10 @@ impl Band {
 
     fn turned(&self, rotation: Complex<f64>) -> Self {
         let [near, far] = self.met;
-        Self::new(rotation * self.across, if self.inverse > 0.0 { [near, far] } else { [far, near] })
+        Self::new(
+            rotation * self.across,
+            if self.inverse > 0.0 { [near, far] } else { [far, near] },
+        )
     }
 
     #[inline(always)]

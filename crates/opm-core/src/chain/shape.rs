@@ -67,7 +67,8 @@ impl Shape {
     #[must_use]
     pub(super) fn within(self, pivot: &PlanarJoint, limits: &Limits) -> Self {
         let reversed = matches!(pivot, PlanarJoint::Revolute { reversed: true, .. });
-        let rotation_limits = (*limits != Limits::Free).then_some(RotationLimits { reversed, limits: *limits });
+        let rotation_limits =
+            (*limits != Limits::Free).then_some(RotationLimits { reversed, limits: *limits });
         Self { rotation_limits, ..self }
     }
 

@@ -34,6 +34,7 @@ impl TranslationalChain {
     }
 
     /// The translations at which the sliders are in their ranges.
+    #[doc(hidden)]
     pub fn shape(&self, limits: [&Limits; 3]) -> Shape {
         let ranges = [0, 1].map(|slider| limits[slider].range().into());
         Shape::of_places(parallelogram(self.slides, Complex::ZERO, ranges), Complex::ZERO)

@@ -166,7 +166,14 @@ impl Closure {
         let error = {
             let rotation = (target.rotation * g.rotation.inverse()).scaled_axis();
             let translation = (target * self.platform - g * self.platform) / self.size;
-            Vector6::new(rotation.x, rotation.y, rotation.z, translation.x, translation.y, translation.z)
+            Vector6::new(
+                rotation.x,
+                rotation.y,
+                rotation.z,
+                translation.x,
+                translation.y,
+                translation.z,
+            )
         };
         if columns.is_empty() {
             return;

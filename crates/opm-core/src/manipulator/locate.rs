@@ -205,7 +205,14 @@ impl Manipulator {
         let rotation = (target.rotation * here.rotation.inverse()).scaled_axis();
         let translation =
             (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
-        Vector6::new(rotation.x, rotation.y, rotation.z, translation.x, translation.y, translation.z)
+        Vector6::new(
+            rotation.x,
+            rotation.y,
+            rotation.z,
+            translation.x,
+            translation.y,
+            translation.z,
+        )
     }
 
     /// The derivative of [`Manipulator::miss`] by the coordinates, by central differences. They are accurate

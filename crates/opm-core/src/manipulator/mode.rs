@@ -52,8 +52,7 @@ struct LegChoices {
 impl LegChoices {
     /// The bits in the order of the mode's text, which is the order in which the sections are solved.
     fn written(&self) -> impl Iterator<Item = u32> {
-        let order =
-            match self.first {
+        let order = match self.first {
             Section::Upper => [self.upper, self.lower],
             Section::Lower => [self.lower, self.upper],
         };
@@ -67,11 +66,7 @@ impl ModeLayout {
         let legs = legs
             .iter()
             .map(|leg| {
-                let mut choices = LegChoices {
-                    lower: None,
-                    upper: None,
-                    first: leg.split_section,
-                };
+                let mut choices = LegChoices { lower: None, upper: None, first: leg.split_section };
                 for section in leg.order() {
                     if leg.section(section).chain.has_choice() {
                         let bit = match section {

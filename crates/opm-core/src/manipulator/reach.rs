@@ -64,6 +64,7 @@ impl Manipulator {
     /// Adds to `found` the branches of a leg over the slice of poses with this `b`, in one working mode, or
     /// (`None`) in all of them. There are at most four, and none where the leg is split in its upper section
     /// and that does not close.
+    #[doc(hidden)]
     pub fn leg_branches(
         &self,
         leg: usize,
@@ -108,6 +109,7 @@ impl Manipulator {
     /// The free displacements of the lower section alone, other than `v`: the displacement along the
     /// intersection motion of every leg that is split in its upper section, as an imaginary joint. They include
     /// the joints of [`Manipulator::imaginary`] of those legs; the others depend on these, or stay at home.
+    #[doc(hidden)]
     pub fn intersection_joints(&self) -> Vec<ImaginaryJoint> {
         let legs = self.mechanism.legs.iter().enumerate();
         legs.filter(|&(number, _)| self.legs[number].split_section == Section::Upper)
@@ -116,6 +118,7 @@ impl Manipulator {
     }
 
     /// Whether the full revolutions of these displacements matter, since a helical joint turns with them.
+    #[doc(hidden)]
     pub fn intersection_counts_turns(&self) -> bool {
         let counts =
             |leg: &CompiledLeg| leg.lower.chain.counts_turns() || leg.upper.chain.counts_turns();
@@ -125,6 +128,7 @@ impl Manipulator {
     /// Adds to `found` the branches of a leg's lower section alone, with the leg displaced by `tau` along the
     /// intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in one working mode, or
     /// (`None`) in all of them. For a leg that is split in its lower section, `tau` is ignored.
+    #[doc(hidden)]
     pub fn lower_leg_branches(
         &self,
         leg: usize,
@@ -153,6 +157,7 @@ impl Manipulator {
 
     /// Whether every leg that is split in its upper section closes there at `b` within its limits, in one
     /// working mode, or (`None`) in any. `found` is working memory.
+    #[doc(hidden)]
     pub fn upper_closes(
         &self,
         b: &Displacement,
@@ -174,6 +179,7 @@ impl Manipulator {
 
     /// The number and the value (radians or metres) of the imaginary joint of a branch; `None` where its leg
     /// has no reported one.
+    #[doc(hidden)]
     pub fn imaginary_value(&self, branch: &LegBranch) -> Option<(usize, f64)> {
         let number = self.legs[branch.leg].imaginary?;
         let joint = &self.imaginary[number];
@@ -181,6 +187,7 @@ impl Manipulator {
     }
 
     /// Whether a leg closes at `v` on a branch within its limits.
+    #[doc(hidden)]
     #[inline]
     pub fn reaches(&self, branch: &LegBranch, v: &Displacement) -> bool {
         let leg = &self.legs[branch.leg];
@@ -206,6 +213,7 @@ impl Manipulator {
     /// of `1 / scale`. It agrees with [`Manipulator::reaches`] up to rounding. `None` where `v` is not a
     /// displacement of a plane, or where the leg's limits make the translations more than a convex set with a
     /// convex hole.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
         if branch.with_upper.is_some() {

@@ -65,6 +65,7 @@ impl CompiledSection {
 impl Manipulator {
     /// The transitions of a leg within a slice. `None` where they have no closed form: with limits on the
     /// rotation vector of a spherical joint.
+    #[doc(hidden)]
     pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
@@ -122,6 +123,7 @@ impl Manipulator {
     /// Calls `found` with the intervals of a span of the first coordinate in which the leg's feasibility may
     /// change, with the other coordinates of `v` at `others`. Between two of them, [`Manipulator::reaches`] is
     /// the same everywhere.
+    #[doc(hidden)]
     pub fn changes(
         &self,
         (branch, transitions): (&LegBranch, &Transitions),

@@ -90,7 +90,10 @@ impl Task {
     /// The factors of `v`: the displacement that its coordinates describe, and the rotation about the shared
     /// axis that is applied before it. Where the intersection motion is a translation, they are `v` itself and
     /// zero.
-    pub(crate) fn without_shared_rotation(&self, v: &Displacement) -> (Displacement, JointDisplacement) {
+    pub(crate) fn without_shared_rotation(
+        &self,
+        v: &Displacement,
+    ) -> (Displacement, JointDisplacement) {
         if self.intersection_point.is_none() {
             return (*v, JointDisplacement::Value(0.0));
         }

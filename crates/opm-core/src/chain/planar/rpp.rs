@@ -49,6 +49,9 @@ impl ClosedForm for Rpp {
         let moved = target.apply(self.pivot.at) - self.pivot.at;
         let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
         let rotation = self.pivot.displacement(target.rotation);
-        Attempt::decided([rotation, JointDisplacement::Value(s2), JointDisplacement::Value(s3)], true)
+        Attempt::decided(
+            [rotation, JointDisplacement::Value(s2), JointDisplacement::Value(s3)],
+            true,
+        )
     }
 }

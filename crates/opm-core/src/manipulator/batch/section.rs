@@ -1,5 +1,5 @@
-//! The steps of inverse kinematics, each a loop over the poses of a block: what kind of chain, cut or limits
-//! it is is decided outside of the loop, and what it does is what it does for one pose.
+//! The steps of inverse kinematics, each a loop over the poses of a block. The kind of chain, intersection
+//! motion or limits is decided outside of the loop; the loop does the same arithmetic as for one pose.
 
 use super::lanes::{Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
 use crate::chain::cylindrical::WithRevolute;
@@ -17,12 +17,13 @@ use crate::numeric::angle::sin_cos_reduced;
 use crate::task::{Form, Task, lower_displacement, upper_displacement};
 use nalgebra::Matrix3;
 
-/// What a section's chain finds.
+/// The result of a section's chain for every pose of a block.
 #[derive(Clone, Debug)]
 pub struct Found {
     pub displacements: [DisplacementColumns; 3],
-    /// See [`Attempt`].
+    /// See [`Attempt::holds`].
     pub holds: Mask,
+    /// See [`Attempt::beyond`].
     pub beyond: Mask,
 }
 
@@ -43,7 +44,7 @@ pub fn displace(
     home: [f64; 3],
     to: &mut Displacements,
 ) {
-    // With a constant form, the loop is straight.
+    // With a constant form, the loop has no branches.
     macro_rules! each {
         ($kind:ident, $rotation:expr) => {{
             let form = Form { kind: SubspaceKind::$kind, rotation: $rotation };
@@ -74,7 +75,7 @@ pub fn displace(
 }
 
 impl Displacement {
-    /// Into the columns of its kind.
+    /// Stores a displacement in the columns of its kind.
     #[inline(always)]
     fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
@@ -115,7 +116,7 @@ where
     C::Target: Lane,
 {
     let chain = *chain;
-    // The kinds of the displacements are the chain's, whatever the target.
+    // The variants of the displacements depend on the chain alone.
     let first = chain.attempt(&C::Target::load(targets, 0), branch);
     let [a, b, c] = &mut found.displacements;
     for (displacements, displacement) in
@@ -134,12 +135,12 @@ where
     }
 }
 
-/// Where a displacement `τ` along the intersection motion comes in.
+/// The side on which a displacement `τ` along the intersection motion is multiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// `v · exp(I τ)`.
+    /// The product `v · exp(I τ)`.
     After,
-    /// `exp(I τ) · b`.
+    /// The product `exp(I τ) · b`.
     Before,
 }
 
@@ -195,7 +196,7 @@ pub fn shift(
     }
 }
 
-/// The values to report of displacements, and which of them are within the limits: cleared where not.
+/// Computes the values to report of displacements, and clears `within` where they are not within the limits.
 #[inline(always)]
 pub fn report(
     (limits, home): (&Limits, f64),
@@ -228,7 +229,7 @@ pub fn report(
     }
 }
 
-/// An imaginary joint's values for displacements along the intersection motion.
+/// Computes an imaginary joint's values for displacements along the intersection motion.
 #[inline(always)]
 pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut Column) {
     let (home, sign) = (joint.home, joint.sign);
@@ -244,7 +245,7 @@ pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut
     }
 }
 
-/// The cut, as an angle within half a turn of home where whole turns count.
+/// The imaginary joint's displacements, as angles within π of home where revolutions are counted.
 #[inline(always)]
 pub fn unwind(counts: bool, found: &DisplacementColumns, tau: &mut DisplacementColumns) {
     if counts && found.are_directions {
@@ -257,7 +258,7 @@ pub fn unwind(counts: bool, found: &DisplacementColumns, tau: &mut DisplacementC
     }
 }
 
-/// The displacements back.
+/// Replaces the displacements by their inverses.
 #[inline(always)]
 pub fn invert(tau: &mut DisplacementColumns) {
     if tau.are_directions {
