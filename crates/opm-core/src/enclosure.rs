@@ -95,7 +95,7 @@ pub enum BoxQuery {
 pub struct Verdict {
     /// At least this share of the box meets the query; 1 where all of it does.
     pub lower: f64,
-    /// At most this share does; 0 where nothing does.
+    /// At most this share of the box meets the query; 0 where no part of it does.
     pub upper: f64,
     /// The number of the side to bisect so that the bounds get closer; `None` where no bisection helps.
     pub split: Option<usize>,

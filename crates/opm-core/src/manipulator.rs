@@ -133,7 +133,7 @@ impl Manipulator {
     /// Compiles a mechanism by one of its decompositions.
     ///
     /// # Errors
-    /// A leg that no pair of chains covers, or subspaces without coordinates.
+    /// A leg has no closed form, or the pose has no task coordinates.
     pub fn with_decomposition(
         mechanism: Mechanism,
         decomposition: Decomposition,
@@ -224,7 +224,7 @@ impl Manipulator {
     /// Parses a working mode: one sign (`+` or `-`) for every choice. Spaces are ignored.
     ///
     /// # Errors
-    /// A character that is not a sign, or another number of signs.
+    /// The text has a character that is not a sign, or a wrong number of signs.
     pub fn parse_mode(&self, text: &str) -> Result<Mode, ModeError> {
         self.modes.parse(text)
     }

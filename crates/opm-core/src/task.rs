@@ -183,7 +183,7 @@ impl OddJoint {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FrameProblem {
-    /// The geometry, or another hint, leaves nothing to choose.
+    /// The hint sets a direction or point that the geometry already determines.
     NotFree {
         /// The kind of the subspace.
         kind: SubspaceKind,

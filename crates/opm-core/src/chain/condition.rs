@@ -77,7 +77,9 @@ pub enum Condition {
 /// subspace; `None` for other chains.
 pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
     match chain {
-        Chain::Cylindrical(chain) => Some(chain.joints().map(|joint| [joint.turn, joint.advance])),
+        Chain::Cylindrical(chain) => {
+            Some(chain.joints().map(|joint| [joint.rotation, joint.advance]))
+        }
         Chain::Translational(chain) => Some(chain.slides().map(|slide| [slide.re, slide.im])),
         Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
     }

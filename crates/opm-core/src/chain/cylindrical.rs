@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoaxialJoint {
     /// The rotation, radians per unit: ±1 for a revolute or helical joint, 0 for a prismatic one.
-    pub turn: f64,
+    pub rotation: f64,
     /// The advance, metres per unit: 0 for a revolute joint, ±1 for a prismatic one, ± the pitch for a helical
     /// one.
     pub advance: f64,
@@ -21,7 +21,7 @@ pub struct CoaxialJoint {
 
 impl CoaxialJoint {
     fn is_revolute(&self) -> bool {
-        self.turn != 0.0 && self.advance == 0.0
+        self.rotation != 0.0 && self.advance == 0.0
     }
 }
 
@@ -36,10 +36,10 @@ impl CylindricalChain {
     /// The closed form of two joints on one axis.
     ///
     /// # Errors
-    /// Two revolute joints, two prismatic joints, or two helical joints of the same pitch.
+    /// The joints are two revolute joints, two prismatic joints, or two helical joints of the same pitch.
     pub fn new(joints: [CoaxialJoint; 2]) -> Result<Self, ChainError> {
         let [p, q] = joints;
-        let determinant = p.turn * q.advance - q.turn * p.advance;
+        let determinant = p.rotation * q.advance - q.rotation * p.advance;
         let size = p.advance.abs().max(q.advance.abs());
         if determinant.abs() <= DEGENERATE * size {
             return Err(ChainError::Dependent("two coaxial joints have the same pitch"));
@@ -72,9 +72,10 @@ impl CylindricalChain {
     /// The targets for which [`CylindricalChain::inverse`] gives `displacement` for joint number `joint`.
     pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let [p, q] = self.joints;
-        let (turn, advance) = if joint == 0 { (q.advance, -q.turn) } else { (-p.advance, p.turn) };
+        let (rotation, advance) =
+            if joint == 0 { (q.advance, -q.rotation) } else { (-p.advance, p.rotation) };
         let period = self.is_rotation(joint).then_some(TAU * self.determinant);
-        Surface::Coaxial { turn, advance, at: displacement.value() * self.determinant, period }
+        Surface::Coaxial { rotation, advance, at: displacement.value() * self.determinant, period }
     }
 
     /// The joints' displacements that displace the outer link by `target`.
@@ -92,8 +93,8 @@ impl CylindricalChain {
     #[inline(always)]
     fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
         let [p, q] = self.joints;
-        let first = (target.angle * q.advance - q.turn * target.advance) / self.determinant;
-        let second = (p.turn * target.advance - target.angle * p.advance) / self.determinant;
+        let first = (target.angle * q.advance - q.rotation * target.advance) / self.determinant;
+        let second = (p.rotation * target.advance - target.angle * p.advance) / self.determinant;
         [first, second]
     }
 
@@ -102,7 +103,7 @@ impl CylindricalChain {
         let [p, q] = self.joints;
         let [a, b] = displacements.map(JointDisplacement::value);
         CylindricalDisplacement {
-            angle: p.turn * a + q.turn * b,
+            angle: p.rotation * a + q.rotation * b,
             advance: p.advance * a + q.advance * b,
         }
     }

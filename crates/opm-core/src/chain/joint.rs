@@ -69,14 +69,14 @@ pub(super) fn coaxial_joints(
     subspace: &Subspace,
     joints: &[ChainJoint; 2],
 ) -> Result<[CoaxialJoint; 2], ChainError> {
-    let mut coaxial = [CoaxialJoint { turn: 0.0, advance: 0.0 }; 2];
+    let mut coaxial = [CoaxialJoint { rotation: 0.0, advance: 0.0 }; 2];
     for (coaxial, joint) in coaxial.iter_mut().zip(joints) {
         let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
         *coaxial = match joint {
             ChainJoint::Screw { axis, pitch, .. } => {
-                CoaxialJoint { turn: sign(axis), advance: sign(axis) * pitch }
+                CoaxialJoint { rotation: sign(axis), advance: sign(axis) * pitch }
             }
-            ChainJoint::Slide { axis } => CoaxialJoint { turn: 0.0, advance: sign(axis) },
+            ChainJoint::Slide { axis } => CoaxialJoint { rotation: 0.0, advance: sign(axis) },
             ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
         };
     }

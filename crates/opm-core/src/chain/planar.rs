@@ -100,7 +100,7 @@ impl PlanarChain {
     /// The closed form of three joints, base first.
     ///
     /// # Errors
-    /// Where the three are dependent in every configuration, or are three sliders.
+    /// The three joints are dependent in every configuration, or are three sliders.
     pub fn new(joints: [PlanarJoint; 3]) -> Result<Self, ChainError> {
         use PlanarJoint::{Prismatic, Revolute};
         let pivot = |at, reversed| Pivot { at, reversed };

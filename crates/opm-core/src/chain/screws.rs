@@ -44,8 +44,8 @@ pub(crate) fn screws(
             let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
             let [p, q] = coaxial_joints(subspace, joints)?;
             [
-                Vector3::new(p.turn, p.advance, 0.0),
-                Vector3::new(q.turn, q.advance, 0.0),
+                Vector3::new(p.rotation, p.advance, 0.0),
+                Vector3::new(q.rotation, q.advance, 0.0),
                 Vector3::z(),
             ]
         }

@@ -25,7 +25,7 @@ impl SphericalChain {
     /// The closed form of three revolutes with these axes at home, base first.
     ///
     /// # Errors
-    /// Where two neighbouring axes are parallel: the chain cannot rotate in all directions.
+    /// Two neighbouring axes are parallel, so that the chain cannot rotate in all directions.
     pub fn new(axes: [Unit<Vector3<f64>>; 3]) -> Result<Self, ChainError> {
         let [a1, a2, a3] = axes.map(Unit::into_inner);
         let (n12, n23) = (a1.cross(&a2), a2.cross(&a3));

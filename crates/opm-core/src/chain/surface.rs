@@ -20,6 +20,15 @@ use nalgebra::{Complex, Vector3};
 /// [`REACH_TOLERANCE`](super::REACH_TOLERANCE) change it by.
 const SHARE: f64 = 1e-10;
 
+/// How accurately a surface and a path are known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// An upper bound of the lengths of the chain and the path, metres.
+    pub size: f64,
+    /// The uncertainty of the held displacement: radians, or metres over `size`.
+    pub blur: f64,
+}
+
 /// The targets `g` at which a chain closes with one joint held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
@@ -64,11 +73,11 @@ pub enum Surface {
         /// The cosine of the angle between the axes.
         cosine: f64,
     },
-    /// `turn · (angle of g) + advance · (advance of g) = at`, up to a whole number of periods: a coaxial
+    /// `rotation · (angle of g) + advance · (advance of g) = at`, up to a whole number of periods: a coaxial
     /// joint remains.
     Coaxial {
         /// The coefficient of the angle, metres per radian.
-        turn: f64,
+        rotation: f64,
         /// The coefficient of the advance, dimensionless.
         advance: f64,
         /// The value of the left side, metres.
@@ -86,9 +95,8 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Calls `found` with the intervals of `t` in which the target may be on the surface. `size` is an upper
-    /// bound of the numbers of the chain and of the path ([`Path::size`]) together; `blur` is the uncertainty
-    /// of the held displacement, in radians, or in metres over `size`.
+    /// Calls `found` with the intervals of `t` in which the target may be on the surface. The size of
+    /// `uncertainty` covers both the chain and the path ([`Path::size`]).
     ///
     /// # Panics
     /// If the path is in another kind of subspace.
@@ -96,15 +104,15 @@ impl Surface {
         &self,
         path: &Path,
         span: &Span,
-        [size, blur]: [f64; 2],
+        Uncertainty { size, blur }: Uncertainty,
         found: &mut impl FnMut([f64; 2]),
     ) {
         let scale = match *self {
             Self::Circle { .. } => size * size,
             Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } => size,
             Self::Rotation { .. } | Self::Cone { .. } => 1.0,
-            Self::Coaxial { turn, advance, at, .. } => {
-                (turn.abs() + advance.abs()) * size.max(1.0) + at.abs()
+            Self::Coaxial { rotation, advance, at, .. } => {
+                (rotation.abs() + advance.abs()) * size.max(1.0) + at.abs()
             }
         };
         self.along(path).zeros((SHARE + 2.0 * blur) * scale, span, found);
@@ -164,9 +172,9 @@ impl Surface {
                 let sine = fixed.dot(&axis.cross(&carried));
                 Equation::Harmonic([kept - cosine, fixed.dot(&carried) - kept, sine])
             }
-            Self::Coaxial { turn, advance, at, period } => {
+            Self::Coaxial { rotation, advance, at, period } => {
                 let [start, rate] = path.cylindrical();
-                let of = |g: &CylindricalDisplacement| turn * g.angle + advance * g.advance;
+                let of = |g: &CylindricalDisplacement| rotation * g.angle + advance * g.advance;
                 let [c0, c1] = [of(start) - at, of(rate)];
                 match period {
                     Some(period) => Equation::Periodic([c0, c1], period),

@@ -19,7 +19,7 @@ impl TranslationalChain {
     /// The closed form of two sliders along these unit directions.
     ///
     /// # Errors
-    /// Where they are parallel.
+    /// The sliders are parallel.
     pub fn new(slides: [Complex<f64>; 2]) -> Result<Self, ChainError> {
         let [u, v] = slides;
         if cross(u, v).abs() <= DEGENERATE {

@@ -41,13 +41,13 @@ pub fn displacements<const N: usize>(
         Chain::Cylindrical(chain) => {
             let [angle, advance] = target.cylindrical();
             let [p, q] = *chain.joints();
-            let determinant = p.turn * q.advance - q.turn * p.advance;
+            let determinant = p.rotation * q.advance - q.rotation * p.advance;
             let displacement = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
                 let value = angle * (by_angle / determinant) + advance * (by_advance / determinant);
-                let revolute = joint.turn != 0.0 && joint.advance == 0.0;
+                let revolute = joint.rotation != 0.0 && joint.advance == 0.0;
                 if revolute { Enclosed::Angle(value) } else { Enclosed::Value(value) }
             };
-            [displacement(p, q.advance, -q.turn), displacement(q, -p.advance, p.turn), none]
+            [displacement(p, q.advance, -q.rotation), displacement(q, -p.advance, p.rotation), none]
         }
         Chain::Translational(chain) => {
             let [m, n] = along(*chain.slides(), *target.translational());

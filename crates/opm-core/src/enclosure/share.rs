@@ -141,12 +141,13 @@ impl<const N: usize> Share<N> {
         })
     }
 
-    /// Where it does not lie in a range.
+    /// The share for which `quantity` does not lie in a range.
     pub fn outside(quantity: &Affine<N>, range: [f64; 2]) -> Self {
         let within = Self::within(quantity, range, 0.0);
         Self { lower: 1.0 - within.upper, upper: 1.0 - within.lower, ..within }
     }
 
+    /// An undecided condition on `quantity`, with these bounds of the share that meets it.
     fn undecided(quantity: &Affine<N>, lower: f64, upper: f64) -> Self {
         let spread = quantity.spread();
         let (all, error) = (spread.iter().sum::<f64>(), quantity.total_error());
@@ -165,7 +166,7 @@ impl<const N: usize> Share<N> {
 /// Bounds of the share of the cube `[-1, 1]^N` in which `slope · δ <= number`.
 ///
 /// With `a` the largest slope, it is `(H(number + a) - H(number - a)) / 2a`, where `H(t)` is the mean
-/// of `max(t - X, 0)` and `X` what the other slopes make up.
+/// of `max(t - X, 0)` and `X` the sum of the other slopes times their `δ`.
 fn share_below<const N: usize>(slope: &[f64; N], number: f64) -> [f64; 2] {
     let mut slopes = slope.map(f64::abs);
     slopes.sort_unstable_by(|a, b| b.total_cmp(a));
@@ -178,7 +179,7 @@ fn share_below<const N: usize>(slope: &[f64; N], number: f64) -> [f64; 2] {
     }
     let largest = slopes[0];
     let second = slopes.get(1).copied().unwrap_or(0.0);
-    // Without a slope c the share is off by c²/6 of the density's steepest slope, 1/(4 a b).
+    // Leaving out a slope c changes the share by at most c²/6 of the density's steepest slope, 1/(4 a b).
     let mut off = ROUNDING;
     let mut kept = 1;
     for &small in &slopes[1..] {
@@ -205,7 +206,7 @@ fn mean_above(slopes: &[f64], t: f64) -> f64 {
         return 0.0;
     }
     if t > 0.0 {
-        // Less to cancel on the other side.
+        // There is less cancellation on the other side.
         return t + mean_above(slopes, -t);
     }
     let power = slopes.len() as i32 + 1;

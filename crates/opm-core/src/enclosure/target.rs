@@ -57,7 +57,7 @@ pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
 pub enum Target<const N: usize> {
     Planar(PlanarTarget<N>),
     Spherical(Rotation<N>),
-    /// Angle and advance.
+    /// The angle and the advance about and along an axis.
     Cylindrical(Affine<N>, Affine<N>),
     Translational(Plane<N>),
 }
@@ -230,7 +230,7 @@ pub fn before<const N: usize>(
 /// One coordinate of a box of poses.
 #[derive(Clone, Copy, Debug)]
 pub enum Coordinate<const N: usize> {
-    /// Linear in the box.
+    /// A coordinate that is linear in the box.
     Linear(Affine<N>),
     /// An angle that the box replaces by its cosine or sine, as a unit vector at `xi`, or at `nu` minus its
     /// value at home.
@@ -238,6 +238,7 @@ pub enum Coordinate<const N: usize> {
 }
 
 impl<const N: usize> Coordinate<N> {
+    /// The coordinate minus `home`, for a length or a linear angle.
     fn minus(self, home: f64) -> Affine<N> {
         match self {
             Self::Linear(value) => value - home,

@@ -381,7 +381,9 @@ fn first_at<G>(
 /// Whether a chain of the cut and one joint is a spline: the joint slides where the cut turns.
 fn slides(chain: &Chain) -> bool {
     match chain {
-        Chain::Cylindrical(chain) => chain.joints()[0].turn != 0.0 && chain.joints()[1].turn == 0.0,
+        Chain::Cylindrical(chain) => {
+            chain.joints()[0].rotation != 0.0 && chain.joints()[1].rotation == 0.0
+        }
         Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => false,
     }
 }

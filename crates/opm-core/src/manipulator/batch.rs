@@ -17,7 +17,7 @@ use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
 use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
-use section::{Found, Side};
+use section::{Found, Side, Step};
 
 /// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ pub enum BatchError {
     Pose {
         /// The number of its row, counted from zero.
         row: usize,
-        /// What is wrong with it.
+        /// The reason why the pose is not valid.
         error: PoseError,
     },
     /// The length of the input is not a multiple of the number of task coordinates.
@@ -363,12 +363,12 @@ impl Block {
                 section::unwind(leg.unwinds, &found.displacements[imaginary_joint], tau);
                 match section {
                     Section::Lower => {
-                        let step = (task.upper_intersection, Side::Before);
+                        let step = Step { motion: task.upper_intersection, side: Side::Before };
                         section::shift(step, b, tau, shifted);
                         section::invert(tau);
                     }
                     Section::Upper => {
-                        let step = (task.lower_intersection, Side::After);
+                        let step = Step { motion: task.lower_intersection, side: Side::After };
                         section::shift(step, v, tau, shifted);
                     }
                 }
@@ -385,7 +385,8 @@ impl Block {
                 let Some(coordinate) = coordinate else { continue };
                 let number = coordinate.number;
                 section::report(
-                    (&manipulator.limits[number], manipulator.coordinates[number].home),
+                    &manipulator.limits[number],
+                    manipulator.coordinates[number].home,
                     displacements,
                     &mut self.joints[number],
                     &mut self.status.within_limits,

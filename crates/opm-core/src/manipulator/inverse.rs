@@ -214,7 +214,7 @@ impl Manipulator {
     /// their values at home.
     ///
     /// # Errors
-    /// A name that is not a task coordinate's, or a value that is not a finite number.
+    /// A name is not that of a task coordinate, or a value is not a finite number.
     ///
     /// ```
     /// use opm_core::Manipulator;
@@ -245,10 +245,10 @@ impl Manipulator {
     }
 
     /// Every joint at a pose in one working mode, angles within half a revolution of home; `None` where
-    /// the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says of which legs).
+    /// the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists the legs).
     ///
     /// # Errors
-    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    /// The pose has the wrong length, or a coordinate that is not a finite number.
     ///
     /// ```
     /// use opm_core::Manipulator;
@@ -274,7 +274,7 @@ impl Manipulator {
         Ok(buffer.reached())
     }
 
-    /// As [`Manipulator::inverse`], but each angle is the one nearest to what the buffer held before:
+    /// Does the same as [`Manipulator::inverse`], but each angle is the one nearest to what the buffer held before:
     /// along a trajectory no joint jumps by a revolution, not even to stay within its limits, and
     /// [`Solution::within_limits`] refers to that angle. Where the pose is out of reach, the buffer keeps the
     /// last values that were in reach.
@@ -359,8 +359,8 @@ impl Manipulator {
     }
 
     /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
-    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says
-    /// of which legs), or where `all` has not seen a pose yet.
+    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists
+    /// the legs), or where `all` does not hold a pose yet.
     pub fn solution_in_mode<'a>(
         &self,
         all: &AllModes,

@@ -75,7 +75,7 @@ impl Manipulator {
     /// of their values at home about the upper frame's axes.
     ///
     /// # Errors
-    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    /// The pose has the wrong length, or a coordinate that is not a finite number.
     pub fn platform_pose(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
         Ok(self.displacement(pose)? * self.home_placement())
     }

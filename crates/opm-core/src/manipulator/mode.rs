@@ -13,7 +13,7 @@ pub struct Mode(pub(super) u64);
 pub struct ModeError {
     /// The text that was given.
     pub given: String,
-    /// What is wrong with it.
+    /// The reason why it is not.
     pub problem: String,
     /// A valid mode; empty where there are no choices.
     pub example: String,

@@ -126,7 +126,7 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             Section::Lower => &held.lower,
             Section::Upper => &held.upper,
         };
-        screws |= joints.iter().any(|joint| joint.turn != 0.0 && joint.advance != 0.0);
+        screws |= joints.iter().any(|joint| joint.rotation != 0.0 && joint.advance != 0.0);
         driven |= held.iter().any(|&joint| joints[joint].advance == 0.0);
     }
     screws && driven

@@ -11,7 +11,7 @@ use super::leg::CompiledSection;
 use super::{LegBranch, Manipulator};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
-use crate::chain::surface::Surface;
+use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, JointDisplacement};
 use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
@@ -107,14 +107,14 @@ impl Manipulator {
         let size = transitions.size;
         let tau_limits = &mut transitions.tau_limits;
         for surface in leg.upper.surfaces(&self.limits)? {
-            surface.meet(&path, &span, [size, 0.0], &mut |[from, to]| {
+            surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
                 let share = if rotation { blur } else { blur / size };
                 tau_limits.extend(hold(0.5 * (from + to)).map(|surface| (surface, share)));
             });
         }
         if leg.unwinds {
-            // Where the angle within π of home jumps.
+            // The angle within π of home jumps there.
             tau_limits.extend(hold(PI).map(|surface| (surface, 0.0)));
         }
         Some(())
@@ -124,9 +124,10 @@ impl Manipulator {
     /// change, with the other coordinates of `v` at `others`. Between two of them, [`Manipulator::reaches`] is
     /// the same everywhere.
     #[doc(hidden)]
-    pub fn changes(
+    pub fn feasibility_changes(
         &self,
-        (branch, transitions): (&LegBranch, &Transitions),
+        branch: &LegBranch,
+        transitions: &Transitions,
         others: &[f64],
         span: &Span,
         found: &mut impl FnMut([f64; 2]),
@@ -147,7 +148,7 @@ impl Manipulator {
         let path = self.task.row(&start);
         let size = transitions.size + path.size(moved.reach());
         for surface in &transitions.surfaces {
-            surface.meet(&path, &moved, [size, 0.0], &mut found);
+            surface.meet(&path, &moved, Uncertainty { size, blur: 0.0 }, &mut found);
         }
         // A translation far longer than the leg is linear along the row: it is largest at one of the ends.
         let beyond = |most: f64| {
@@ -161,7 +162,7 @@ impl Manipulator {
             found([moved.from, moved.to]);
         }
         for (surface, blur) in &transitions.tau_limits {
-            surface.meet(&path, &moved, [size, *blur], &mut found);
+            surface.meet(&path, &moved, Uncertainty { size, blur: *blur }, &mut found);
         }
     }
 }

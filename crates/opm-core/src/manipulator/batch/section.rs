@@ -144,10 +144,17 @@ pub enum Side {
     Before,
 }
 
+/// A step along the intersection motion, on one side of a displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    pub motion: IntersectionMotion,
+    pub side: Side,
+}
+
 /// Moves displacements of a subspace along the intersection motion.
 #[inline(always)]
 pub fn shift(
-    (motion, side): (IntersectionMotion, Side),
+    Step { motion, side }: Step,
     from: &Displacements,
     tau: &DisplacementColumns,
     to: &mut Displacements,
@@ -199,7 +206,8 @@ pub fn shift(
 /// Computes the values to report of displacements, and clears `within` where they are not within the limits.
 #[inline(always)]
 pub fn report(
-    (limits, home): (&Limits, f64),
+    limits: &Limits,
+    home: f64,
     displacements: &DisplacementColumns,
     values: &mut Column,
     within: &mut Mask,
@@ -247,8 +255,12 @@ pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut
 
 /// The imaginary joint's displacements, as angles within π of home where revolutions are counted.
 #[inline(always)]
-pub fn unwind(counts: bool, found: &DisplacementColumns, tau: &mut DisplacementColumns) {
-    if counts && found.are_directions {
+pub fn unwind(
+    counts_revolutions: bool,
+    found: &DisplacementColumns,
+    tau: &mut DisplacementColumns,
+) {
+    if counts_revolutions && found.are_directions {
         tau.are_directions = false;
         for lane in 0..LANES {
             tau.set(lane, JointDisplacement::Value(found.direction(lane).value()));
