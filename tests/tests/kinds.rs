@@ -47,7 +47,8 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
     (0..manipulator.legs()).all(|leg| {
         ways.clear();
         manipulator.leg_branches(leg, &b, mode, &mut ways);
-        let mut taus: Vec<f64> = ways.iter().filter_map(LegBranch::intersection_displacement).collect();
+        let mut taus: Vec<f64> =
+            ways.iter().filter_map(LegBranch::intersection_displacement).collect();
         if taus.is_empty() {
             taus.push(0.0);
         }

@@ -106,6 +106,7 @@ impl Manipulator {
     ///
     /// # Panics
     /// If the number of sides is not that of the query, or more than [`MOST`] sides have a width.
+    #[doc(hidden)]
     pub fn enclose(&self, query: BoxQuery, mode: Option<Mode>, sides: &[Side]) -> Verdict {
         let wide = sides.iter().filter(|side| side.half > 0.0).count();
         match wide {

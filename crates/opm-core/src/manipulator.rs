@@ -8,7 +8,7 @@
 //! * A leg whose *lower* section lacks one freedom is split there: `L · exp(-I τ) = v`, then
 //!   `U = exp(-I τ) · b`.
 //!
-//! Either way both sections have as many freedoms as their subspace, and each is one
+//! In both cases the two sections have as many freedoms as their subspace, and each is one
 //! [`Chain`](crate::chain::Chain).
 
 mod batch;

@@ -47,7 +47,7 @@ pub enum BatchError {
         error: PoseError,
     },
     /// The length of the input is not a multiple of the number of task coordinates.
-    #[error("{given} numbers, expected a multiple of {width}, the number of task coordinates")]
+    #[error("{given} number{}, expected a multiple of {width}, the number of task coordinates", if *given == 1 { "" } else { "s" })]
     Poses {
         /// The length of the input.
         given: usize,
@@ -55,7 +55,7 @@ pub enum BatchError {
         width: usize,
     },
     /// A slice of the output does not have one row for every pose.
-    #[error("{given} elements in {slice} of the output, expected {expected}")]
+    #[error("`{slice}` of the output has {given} element{}, expected {expected}", if *given == 1 { "" } else { "s" })]
     Output {
         /// The name of the field of [`BatchOutput`].
         slice: &'static str,

@@ -18,8 +18,11 @@ use nalgebra::{Unit, Vector3};
 pub enum RefusedLeg {
     /// The numbers of freedoms in the leg's two sections do not fit the subspaces.
     #[error(
-        "{lower} freedoms in its lower section and {upper} in its upper one; closed-form inverse \
-         kinematics needs {dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1
+        "{lower} freedom{} in its lower section and {upper} in its upper one, expected {dim_lower} and {}, or \
+         {} and {dim_upper}, for closed-form inverse kinematics",
+        if *lower == 1 { "" } else { "s" },
+        dim_upper - 1,
+        dim_lower - 1
     )]
     Freedoms {
         /// The number of freedoms in its lower section.

@@ -22,7 +22,7 @@ pub struct ModeError {
 fn expected(example: &str) -> String {
     match example {
         "" => "none: the mechanism has no choices, and one working mode".to_owned(),
-        _ => format!("one sign (+ or -) for every choice, a group a leg: `{example}`"),
+        _ => format!("one sign (+ or -) for every choice, in one group for each leg: `{example}`"),
     }
 }
 

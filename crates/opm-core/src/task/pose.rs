@@ -21,6 +21,7 @@ impl Task {
     ///
     /// # Panics
     /// If `v` or `b` is a displacement of another kind of subspace.
+    #[doc(hidden)]
     pub fn pose(&self, v: &Displacement, b: &Displacement) -> Vec<f64> {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
         let home = |i: usize| self.coordinates[i].home;
