@@ -319,13 +319,11 @@ pub fn find(name: &str, coordinates: &[TaskCoordinate]) -> Result<usize, Misread
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opm_core::task::CoordinateKind;
     use std::f64::consts::PI;
 
     fn coordinates() -> [TaskCoordinate; 2] {
-        [
-            TaskCoordinate { name: "x", quantity: Quantity::Length, home: 0.5 },
-            TaskCoordinate { name: "xi", quantity: Quantity::Angle, home: 0.25 },
-        ]
+        [TaskCoordinate::new(CoordinateKind::X, 0.5), TaskCoordinate::new(CoordinateKind::Xi, 0.25)]
     }
 
     fn pose(text: &str) -> Result<Vec<f64>, String> {

@@ -79,7 +79,7 @@ impl Alone {
             let alone = sections.iter().zip(self.cylindrical).any(|(section, cylindrical)| {
                 cylindrical && section.len() == 1 && section[0].joint == number
             });
-            let translation = self.manipulator.task().cut_point.is_none();
+            let translation = self.manipulator.task().intersection_point.is_none();
             let screw = matches!(joint.kind, JointKind::Helical { .. });
             !(alone && translation && screw) || own[0].abs() < PI
         })

@@ -97,7 +97,7 @@ fn nothing_in_reach_is_outside_it() {
                 let (home, half) = match c.name {
                     "xi" => (PI / 2.0, PI / 2.0),
                     "nu" => (c.home, PI / 2.0),
-                    _ if c.quantity.unit() == "m" || manipulator.counts_turns(c.name) => {
+                    _ if c.quantity.unit() == "m" || manipulator.counts_turns(c.kind()) => {
                         (c.home, f64::INFINITY)
                     }
                     _ => (c.home, PI),
@@ -171,7 +171,7 @@ fn an_unbounded_workspace_is_reported_and_limited_to_the_mechanisms_size() {
         {
             let width = axis.max - axis.min;
             let angle = c.quantity.unit() == "rad";
-            if angle && !manipulator.counts_turns(c.name) {
+            if angle && !manipulator.counts_turns(c.kind()) {
                 assert!(width <= TAU + 1e-9 && !extent.unbounded, "{pair:?} {axis:?}");
             }
             if c.name == "nu" {

@@ -47,7 +47,8 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
     (0..manipulator.legs()).all(|leg| {
         ways.clear();
         manipulator.leg_branches(leg, &b, mode, &mut ways);
-        let mut taus: Vec<f64> = ways.iter().filter_map(LegBranch::cut).collect();
+        let mut taus: Vec<f64> =
+            ways.iter().filter_map(LegBranch::intersection_displacement).collect();
         if taus.is_empty() {
             taus.push(0.0);
         }
@@ -131,7 +132,7 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
                 _ => Modes::One(manipulator.home_mode()),
             };
             let set = reached(&Sweep::new(&manipulator, &grid, modes));
-            let cuts = manipulator.cuts();
+            let cuts = manipulator.intersection_joints();
             for number in 0..grid.poses() {
                 let pose = grid.pose(number);
                 let v = manipulator.task().lower(&pose);

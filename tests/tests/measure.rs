@@ -30,7 +30,7 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
         return m.upper_closes(&m.task().upper(pose), mode, &mut ways);
     }
     let (v, others) = (m.task().lower(&pose[..lower]), &pose[lower..]);
-    let cuts = m.cuts();
+    let cuts = m.intersection_joints();
     (0..m.legs()).all(|leg| {
         ways.clear();
         if domain.sections() == Sections::Whole {
@@ -256,7 +256,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
         let mut cut = |pose: &[f64]| {
             ways.clear();
             m.leg_branches(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
-            ways.first().and_then(LegBranch::cut).unwrap_or(0.0)
+            ways.first().and_then(LegBranch::intersection_displacement).unwrap_or(0.0)
         };
         let mut draw = || -> Vec<f64> {
             let home = m.task().home().into_iter();

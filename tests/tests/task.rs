@@ -363,7 +363,7 @@ fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
             let here = Manipulator::with_decomposition(plain.clone(), decomposition.clone());
             let here = here.unwrap();
             let task = here.task();
-            let rotation = task.cut_point.is_some();
+            let rotation = task.intersection_point.is_some();
             let names: Vec<&str> = task.coordinates.iter().map(|c| c.name).collect();
             let (v, b) = names.split_at(task.lower_count);
             let mut framed = plain.clone();

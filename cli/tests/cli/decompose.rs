@@ -178,9 +178,17 @@ fn frames_that_do_not_fit_are_refused_where_they_stand() {
     let pairs = [
         ("translational-planar-4dof", "upper = { ^w = [1, 0, 0] }", "expected (0.000000, 0.0000"),
         ("translational-planar-4dof", "upper = { ^x = [0, 1, 0] }", "has w, normal, origin to"),
-        ("translational-planar-4dof", "lower = { ^x = [0, 1, 1] }", "square to (0.000000, 0.000"),
+        (
+            "translational-planar-4dof",
+            "lower = { ^x = [0, 1, 1] }",
+            "perpendicular to (0.000000, 0.000",
+        ),
         ("translational-planar-4dof", "lower = { ^normal = [0, 1, 0] }", "is (0.000000, 1.000000"),
-        ("translational-planar-4dof", "^axis = [1, 0, 0]", "square to the intersection motion"),
+        (
+            "translational-planar-4dof",
+            "^axis = [1, 0, 0]",
+            "perpendicular to the intersection motion",
+        ),
         ("double-spherical-5dof", "lower = { ^x = [1, 0, 1] }", "[task] lower.x is (0.707107"),
         (
             "double-spherical-5dof",

@@ -2,36 +2,42 @@
 //!
 //! A chain has exactly as many freedoms as its subspace has dimensions, so a displacement of that
 //! subspace fixes its joints up to a sign. Every chain works in its subspace's own frame, on
-//! displacements from home (`q = 0` is home, where the displacement is the identity), and finds
-//! rotations as vectors that point at the angle: no trigonometry until somebody asks for it.
+//! displacements from home (`q = 0` is home, where the displacement is the identity). It finds a
+//! rotation as a vector that points in the direction of the angle, and computes the angle itself only
+//! where a caller needs it.
 //!
-//! What holds for all of them:
+//! All chains have these properties:
 //! * `inverse` followed by `forward` returns the target.
 //! * On the boundary of reach, within [`REACH_TOLERANCE`], the two branches meet and both are given.
 //! * An angle that the target leaves free is given as zero, its home value.
-//! * The general case is straight arithmetic, which a loop over many targets is vectorised with; what is
-//!   rare, and what is out of reach, is told apart after it (`ClosedForm`).
+//! * The general case is straight-line arithmetic, so that a loop over many targets is vectorised. Rare
+//!   cases, and targets out of reach, are handled after it (`ClosedForm`).
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 
 pub(crate) mod condition;
 pub mod cylindrical;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod equation;
 mod joint;
 pub mod limits;
 pub mod planar;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod region;
 pub(crate) mod screws;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod shape;
 pub mod spherical;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod surface;
 pub(crate) mod track;
 pub mod translational;
 
 pub use joint::ChainJoint;
-
-// The name that it had before.
-pub use crate::group::JointDisplacement as Amount;
 
 use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
@@ -45,12 +51,12 @@ use spherical::{Ball, SphericalChain};
 use surface::Surface;
 use translational::TranslationalChain;
 
-/// How far beyond its reach a chain still answers, as a share of its size: rounding in a target
-/// that lies on the boundary of reach is of the order of 1e-15 and must not decide, and a pose on that
-/// boundary counts as inside.
+/// How far beyond its reach a chain still closes, as a fraction of its size. A pose on the boundary of
+/// reach counts as inside; the rounding of such a pose is of the order of 1e-15 and must not decide.
 pub const REACH_TOLERANCE: f64 = 1e-12;
 
-/// Shorter than this, as a share of the chain's size, a link or an angle between axes is zero.
+/// A link length (as a fraction of the chain's size) or an angle between axes (radians) below this counts
+/// as zero.
 const DEGENERATE: f64 = 1e-9;
 
 /// One of the two solutions of a two-valued choice.
@@ -64,10 +70,10 @@ pub enum Branch {
 }
 
 impl Branch {
-    /// Both, plus first.
+    /// Both branches, `Plus` first.
     pub const BOTH: [Self; 2] = [Self::Plus, Self::Minus];
 
-    /// `1.0` or `-1.0`.
+    /// The sign of the branch: `1.0` or `-1.0`.
     #[inline]
     pub fn sign(self) -> f64 {
         match self {
@@ -80,9 +86,10 @@ impl Branch {
 /// How far a target is out of a chain's reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachDeficit {
-    /// By how much, radians or metres; positive, not NaN, infinite where no number tells.
+    /// The distance or angle by which the target is out of reach, metres or radians. It is positive and
+    /// not NaN; it is infinite where it is unknown.
     pub excess: f64,
-    /// What `excess` measures.
+    /// Whether `excess` is a length or an angle.
     pub quantity: Quantity,
 }
 
@@ -103,24 +110,26 @@ impl ReachDeficit {
 
 /// Why joints do not make a closed-form chain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChainError {
     /// The freedoms are dependent in every configuration.
     #[error("{0}")]
     Dependent(&'static str),
     /// Too few joints to reach every displacement of the subspace, or more than it can fix.
-    #[error("{given} joints where the subspace has {needed} dimensions")]
+    #[error("{given} joint{}, expected {needed}, the dimension of the subspace", if *given == 1 { "" } else { "s" })]
     Count {
-        /// Dimensions of the subspace.
+        /// The dimension of the subspace.
         needed: usize,
-        /// Freedoms given, the cut included.
+        /// The number of joints given, the imaginary joint included.
         given: usize,
     },
-    /// A kind of joint that no chain of the subspace takes.
-    #[error("a joint that no {0} chain takes")]
+    /// A kind of joint that no chain of the subspace can have. The field names the subspace.
+    #[error("a joint of a kind that a {0} chain cannot have")]
     Foreign(&'static str),
 }
 
-/// `z` as a direction: one where it is zero against `size`, which leaves the angle free.
+/// `z` as a direction; where `z` is zero compared to `size`, so that its angle is free, the direction of
+/// the angle zero.
 #[inline(always)]
 fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
     // `z` is a product of two lengths: each may be as short as REACH_TOLERANCE.
@@ -129,50 +138,51 @@ fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
     Complex::new(if long { z.re } else { 1.0 }, if long { z.im } else { 0.0 })
 }
 
-/// What a closed form makes of a target without asking what kind of target it is.
+/// The result of a closed form's general case, which does not test what kind of target it has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
-    /// The joints' displacements, base first; not to be read unless `holds`.
-    pub amounts: [JointDisplacement; 3],
-    /// The target is in reach, and not one of those that [`ClosedForm::exception`] is for.
+    /// The joints' displacements, base first. They are valid only where `holds` is true.
+    pub displacements: [JointDisplacement; 3],
+    /// Whether the target is in reach and the general case applies.
     pub holds: bool,
-    /// The target is out of reach. Where it neither holds nor is beyond, the exception tells.
+    /// Whether the target is certainly out of reach. Where neither `holds` nor `beyond` is true,
+    /// [`ClosedForm::exception`] decides.
     pub beyond: bool,
 }
 
 impl Attempt {
-    /// Of a closed form to which every target in reach is alike.
+    /// The result of a closed form whose general case applies to every target in reach.
     #[inline(always)]
-    fn decided(amounts: [JointDisplacement; 3], holds: bool) -> Self {
-        Self { amounts, holds, beyond: !holds }
+    fn decided(displacements: [JointDisplacement; 3], holds: bool) -> Self {
+        Self { displacements, holds, beyond: !holds }
     }
 
-    /// Of the same joints from the other end, for the inverse of the target:
-    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, the joints backwards, each amount with the other sign.
+    /// The result for the inverse of the target and the joints in reverse order:
+    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, each displacement with the opposite sign.
     #[inline(always)]
     fn backwards(self) -> Self {
-        let [a3, a2, a1] = self.amounts;
-        Self { amounts: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
+        let [a3, a2, a1] = self.displacements;
+        Self { displacements: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
     }
 }
 
 /// A chain whose target fixes its joints up to a sign.
 pub(crate) trait ClosedForm {
-    /// A displacement of its subspace.
+    /// The type of a displacement of the chain's subspace.
     type Target;
 
-    /// The general case: no branch, no call, so that a loop over targets is vectorised. Which of an
-    /// amount's two kinds it gives depends on the joint alone.
+    /// The general case. It has no branch and no call, so that a loop over targets is vectorised. Which
+    /// variant of [`JointDisplacement`] it gives for a joint depends on the joint alone, not on the target.
     fn attempt(&self, target: &Self::Target, branch: Branch) -> Attempt;
 
-    /// What an attempt that does not hold leaves open: by how much the target is out of reach, and the
-    /// targets that are unlike the rest. Not asked for where all attempts hold.
+    /// Handles a target to which the general case does not apply: computes the reach deficit, or solves the
+    /// special case. It is never called for a chain whose general case always applies.
     fn exception(
         &self,
         target: &Self::Target,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        Ok(self.attempt(target, branch).amounts)
+        Ok(self.attempt(target, branch).displacements)
     }
 
     /// The joints' displacements that move the outer link by `target`.
@@ -182,8 +192,8 @@ pub(crate) trait ClosedForm {
         target: &Self::Target,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        let Attempt { amounts, holds, .. } = self.attempt(target, branch);
-        if holds { Ok(amounts) } else { self.exception(target, branch) }
+        let Attempt { displacements, holds, .. } = self.attempt(target, branch);
+        if holds { Ok(displacements) } else { self.exception(target, branch) }
     }
 }
 
@@ -204,7 +214,7 @@ pub enum Chain {
 
 impl Chain {
     /// The closed form of joints given at home in base coordinates, base first, inside `subspace`.
-    /// They are laid exactly into the subspace: what they are off it by is dropped.
+    /// The joints are projected exactly into the subspace; what they deviate from it by is dropped.
     ///
     /// # Errors
     /// A wrong number of joints for the subspace, or joints that are dependent everywhere.
@@ -233,8 +243,10 @@ impl Chain {
         }
     }
 
-    /// The translations of a plane's target at which the chain closes within its limits; `None` of other
-    /// targets, and where limits on its angles make that more than a convex set less another.
+    /// The translations of a planar target at which the chain closes within its limits. `None` for chains
+    /// of other subspaces, and where limits on angles make the region more than a convex set with a convex
+    /// hole.
+    #[doc(hidden)]
     pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
         match self {
             Self::Planar(chain) => chain.shape(branch, limits),
@@ -252,7 +264,7 @@ impl Chain {
         }
     }
 
-    /// Whether targets whole turns apart differ.
+    /// Whether targets that are full revolutions apart differ.
     pub(crate) fn counts_turns(&self) -> bool {
         match self {
             Self::Cylindrical(chain) => chain.counts_turns(),
@@ -260,7 +272,7 @@ impl Chain {
         }
     }
 
-    /// Number of freedoms, which is the number of amounts that mean anything.
+    /// The number of freedoms. Only so many of the three displacements of a solution are used.
     pub fn freedoms(&self) -> usize {
         match self {
             Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
@@ -272,7 +284,7 @@ impl Chain {
     /// [`Chain::freedoms`] are zero.
     ///
     /// # Errors
-    /// Out of reach: by how much.
+    /// The reach deficit, where the target is out of reach.
     ///
     /// # Panics
     /// If `target` is a displacement of another kind of subspace.
@@ -292,10 +304,10 @@ impl Chain {
         }
     }
 
-    /// The first joint's displacement alone, where that is all that is wanted.
+    /// The first joint's displacement alone; cheaper than [`Chain::inverse`] for a spherical chain.
     ///
     /// # Errors
-    /// Out of reach: by how much.
+    /// The reach deficit, where the target is out of reach.
     #[inline(always)]
     pub fn first(
         &self,
@@ -307,48 +319,48 @@ impl Chain {
                 .first(&chain.third_axis(target.spherical()), branch)
                 .map(JointDisplacement::Direction),
             Self::Planar(_) | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                self.inverse(target, branch).map(|amounts| amounts[0])
+                self.inverse(target, branch).map(|displacements| displacements[0])
             }
         }
     }
 }
 
-/// What is known of a chain with one joint held, for a few amounts of each joint.
+/// Properties of a chain with one joint held.
 impl Chain {
-    /// The targets on which the chain closes with joint number `joint` at `amount`; `None` of a ball,
-    /// whose rotation vector has no closed form along a path.
-    pub(crate) fn held(&self, joint: usize, amount: JointDisplacement) -> Option<Surface> {
+    /// The targets at which the chain closes with joint number `joint` held at `displacement`. `None` for a
+    /// spherical joint, whose rotation vector has no closed form along a path.
+    pub(crate) fn held(&self, joint: usize, displacement: JointDisplacement) -> Option<Surface> {
         match self {
-            Self::Planar(chain) => Some(chain.held(joint, amount)),
-            Self::Spherical(chain) => Some(chain.held(joint, amount)),
+            Self::Planar(chain) => Some(chain.held(joint, displacement)),
+            Self::Spherical(chain) => Some(chain.held(joint, displacement)),
             Self::Ball(_) => None,
-            Self::Cylindrical(chain) => Some(chain.held(joint, amount)),
-            Self::Translational(chain) => Some(chain.held(joint, amount)),
+            Self::Cylindrical(chain) => Some(chain.held(joint, displacement)),
+            Self::Translational(chain) => Some(chain.held(joint, displacement)),
         }
     }
 
-    /// The targets on which its two branches meet, or on which it stops closing.
+    /// The targets at which the two branches meet, or at which the chain stops closing.
     pub(crate) fn folds(&self) -> Vec<Surface> {
         let middle = match self {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
             Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => Vec::new(),
         };
-        middle.into_iter().filter_map(|amount| self.held(1, amount)).collect()
+        middle.into_iter().filter_map(|displacement| self.held(1, displacement)).collect()
     }
 
-    /// The limits of a joint as amounts that it can be held at.
+    /// The two ends of a joint's limits, as displacements at which the joint can be held.
     pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[JointDisplacement; 2]> {
-        let turns = match self {
-            Self::Planar(chain) => chain.turns(joint),
+        let rotation = match self {
+            Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
             Self::Ball(_) | Self::Translational(_) => false,
-            Self::Cylindrical(chain) => chain.turns(joint),
+            Self::Cylindrical(chain) => chain.is_rotation(joint),
         };
-        if turns { limits.turns() } else { limits.values() }
+        if rotation { limits.direction_ends() } else { limits.value_ends() }
     }
 
-    /// No length of the chain at home is longer, metres.
+    /// An upper bound of the chain's lengths at home, metres.
     pub(crate) fn size(&self) -> f64 {
         match self {
             Self::Planar(chain) => chain.size(),

@@ -1,18 +1,19 @@
-//! Boxes of poses: how much of one is in reach and within the limits, from both sides, for certain.
+//! Boxes of poses: guaranteed lower and upper bounds of the share of a box that is in reach and within the
+//! limits.
 //!
-//! The closed forms that decide on one pose ([`crate::manipulator`]) are gone through for a whole box at
-//! once, in affine arithmetic (`affine.rs`): every quantity is a linear function of the box's coordinates,
-//! and a bound on what that is off by, rounding included. So every condition that a pose has to meet, that
-//! a chain closes, that a joint is within its limits, is met on one side of a plane but for a known error,
-//! and the share of the box on that side has a closed form (`share.rs`). Shares of several conditions are
-//! put together by what holds whatever they have in common.
+//! The closed forms that decide on one pose ([`crate::manipulator`]) are evaluated for a whole box at once,
+//! in affine arithmetic (`affine.rs`): every quantity is a linear function of the box's coordinates, with a
+//! bound of the error, rounding included. So every condition on a pose, that a chain closes or that a joint
+//! is within its limits, is met on one side of a plane up to a known error, and the share of the box on that
+//! side has a closed form (`share.rs`). Shares of several conditions are combined by inequalities that hold
+//! however the conditions depend on each other.
 //!
-//! The bounds hold for the poses that [`Manipulator::inverse`] calls reached and within limits, its
-//! allowances for rounding on a limit or on the boundary of reach, 1e-12 of the numbers, included.
+//! The bounds hold for the poses that [`Manipulator::inverse`] finds in reach and within limits, including
+//! its tolerance for rounding on a limit or on the boundary of reach, a fraction of 1e-12.
 //!
-//! A box is even in the measure: coordinates are lengths and angles, but for `xi` and `nu`, which tilt an
-//! axis in a sphere. Of these a box is even in the cosine or sine, so that all its points weigh the same
-//! in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
+//! The coordinates of a box are lengths and angles, except for `xi` and `nu`, which tilt an axis in a
+//! sphere. For these the coordinate is the cosine or the sine, so that all points of a box have the same
+//! weight in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
 
 mod affine;
 mod chain;
@@ -33,35 +34,34 @@ pub use share::MOST;
 /// One coordinate of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// The middle: a value, radians or metres, or what stands for it in a `piece`.
+    /// The middle: a value in radians or metres, or the cosine or sine that replaces it in a `half_turn`.
     pub middle: f64,
-    /// How far it is from the middle to either end; zero where the coordinate has one value.
+    /// The distance from the middle to either end; zero where the coordinate has a single value.
     pub half: f64,
-    /// The coordinate is an angle of which the box is even in the cosine: see [`HalfTurn`].
-    pub piece: Option<HalfTurn>,
+    /// Where the coordinate is an angle replaced by its cosine or sine, the interval of it: see [`HalfTurn`].
+    pub half_turn: Option<HalfTurn>,
 }
 
-/// Half a turn of an angle `α`, from `number` times π to the next multiple, over which `-cos α` or `cos α`
-/// rises from -1 to 1: what rises stands for the angle. `α` is `xi`, or `nu` less its home value plus a
-/// quarter of a turn.
+/// An interval of an angle `α` from one multiple of π to the next, over which `-cos α` or `cos α` grows from
+/// -1 to 1. The one that grows replaces the angle. `α` is `xi`, or `nu` minus its value at home plus π/2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HalfTurn {
-    /// Multiples of π at its beginning.
+    /// The beginning of the interval, in multiples of π.
     pub number: i64,
 }
 
 impl HalfTurn {
-    /// The piece that holds an angle.
+    /// The interval that contains an angle, radians.
     pub fn of(angle: f64) -> Self {
         Self { number: (angle / PI).floor() as i64 }
     }
 
-    /// How far an angle is from the beginning: from zero to π in this piece.
+    /// The angle minus the beginning of the interval, clamped to `[0, π]`, radians.
     pub fn within(self, angle: f64) -> f64 {
         (angle - self.start()).clamp(0.0, PI)
     }
 
-    /// The angle that a number from -1 to 1 stands for.
+    /// The angle, radians, that a number from -1 to 1 replaces.
     pub fn angle(self, at: f64) -> f64 {
         self.start() + (-at).clamp(-1.0, 1.0).acos()
     }
@@ -70,41 +70,43 @@ impl HalfTurn {
         self.number as f64 * PI
     }
 
-    /// Of the sine over the piece.
+    /// The sign of the sine over the interval.
     fn sign(self) -> f64 {
         if self.number.rem_euclid(2) == 0 { 1.0 } else { -1.0 }
     }
 }
 
-/// What is asked of the poses of a box.
+/// A condition on the poses of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxQuery {
-    /// That poses are in reach and within all limits: a side for every task coordinate.
+    /// The poses are in reach and within all limits. The box has a side for every task coordinate.
     Whole,
-    /// That the upper section alone is: a side for every task coordinate of `b`.
+    /// The upper section alone is in reach and within its limits. The box has a side for every task coordinate
+    /// of `b`.
     Upper,
-    /// That the lower section alone is, with the displacements along the intersection motion given: a
-    /// side for every task coordinate of `v`, and one for the displacement of every leg that is cut in
-    /// its upper section, leg by leg.
+    /// The lower section alone is in reach and within its limits, with the displacements along the
+    /// intersection motion given. The box has a side for every task coordinate of `v`, and then one for the
+    /// displacement of every leg that is split in its upper section, leg by leg.
     Lower,
 }
 
-/// What is known of a box.
+/// The bounds of the share of a box that meets a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// At least this share of the box meets the query; 1 where all of it does.
     pub lower: f64,
-    /// At most this share does; 0 where nothing does.
+    /// At most this share of the box meets the query; 0 where no part of it does.
     pub upper: f64,
-    /// The side that is best split to bring the bounds together; `None` where no split helps.
+    /// The number of the side to bisect so that the bounds get closer; `None` where no bisection helps.
     pub split: Option<usize>,
 }
 
 impl Manipulator {
-    /// How much of a box of poses meets a query, in one working mode, or (`None`) in any.
+    /// Bounds of the share of a box of poses that meets a query, in one working mode, or (`None`) in any.
     ///
     /// # Panics
-    /// If there is another number of sides than coordinates, or more than [`MOST`] have a width.
+    /// If the number of sides is not that of the query, or more than [`MOST`] sides have a width.
+    #[doc(hidden)]
     pub fn enclose(&self, query: BoxQuery, mode: Option<Mode>, sides: &[Side]) -> Verdict {
         let wide = sides.iter().filter(|side| side.half > 0.0).count();
         match wide {
@@ -133,9 +135,9 @@ impl Manipulator {
                 Affine::constant(side.middle)
             };
             let of_upper = query == BoxQuery::Upper || number >= lower_count;
-            match side.piece {
+            match side.half_turn {
                 None => Coordinate::Linear(value),
-                Some(piece) => Coordinate::Polar(polar(piece, value, of_upper)),
+                Some(half_turn) => Coordinate::Polar(polar(half_turn, value, of_upper)),
             }
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
@@ -154,12 +156,14 @@ impl Manipulator {
             }
             BoxQuery::Lower => {
                 let v = target::task::lower(task, &coordinates[..lower_count]);
-                let mut cuts = coordinates[lower_count..].iter();
+                let mut taus = coordinates[lower_count..].iter();
                 all(legs, |leg| {
-                    let tau = match self.legs[leg].cut {
-                        Section::Upper => match cuts.next() {
+                    let tau = match self.legs[leg].split_section {
+                        Section::Upper => match taus.next() {
                             Some(&Coordinate::Linear(tau)) => tau,
-                            _ => unreachable!("a length or an angle for every cut"),
+                            _ => unreachable!(
+                                "a length or an angle for the intersection displacement of every leg"
+                            ),
                         },
                         Section::Lower => Affine::constant(0.0),
                     };
@@ -177,7 +181,7 @@ impl Manipulator {
         }
         let split = match split {
             Some((number, _)) => Some(number),
-            // Nothing is known of where the gap comes from.
+            // It is unknown which coordinate causes the difference of the bounds.
             None if contributions.iter().any(|c| !c.is_finite()) => numbers[0],
             None => None,
         };
@@ -185,16 +189,16 @@ impl Manipulator {
     }
 }
 
-/// The unit vector at the angle that `at` stands for, of `nu` less its home value.
-fn polar<const N: usize>(piece: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
-    let sign = piece.sign();
+/// The unit vector at the angle that `at` replaces: `xi`, or `nu` minus its value at home.
+fn polar<const N: usize>(half_turn: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
+    let sign = half_turn.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
     let alpha = Plane { re: cosine, im: sine };
-    // nu is a quarter of a turn less than what the piece is of.
+    // nu is α - π/2.
     if of_upper { alpha } else { Plane { re: alpha.im, im: -alpha.re } }
 }
 
-/// The share that all legs have in common; those after one that reaches nothing are not looked at.
+/// The share for which all legs meet their conditions. Legs after one that reaches nothing are skipped.
 fn all<const N: usize>(
     legs: impl Iterator<Item = usize>,
     mut of_leg: impl FnMut(usize) -> Share<N>,
@@ -209,12 +213,12 @@ fn all<const N: usize>(
     common
 }
 
-/// The share that any of some ways reaches.
+/// The share for which any of several options meets its conditions.
 fn any<T, const N: usize>(
-    ways: impl IntoIterator<Item = T>,
-    mut of_way: impl FnMut(T) -> Share<N>,
+    options: impl IntoIterator<Item = T>,
+    mut share_of: impl FnMut(T) -> Share<N>,
 ) -> Share<N> {
-    ways.into_iter().fold(Share::NONE, |share, way| share.or(of_way(way)))
+    options.into_iter().fold(Share::NONE, |share, option| share.or(share_of(option)))
 }
 
 /// A leg's conditions over a box.
@@ -228,7 +232,7 @@ impl LegConditions<'_> {
         &self.manipulator.legs[number]
     }
 
-    /// The branches of a leg's section that count.
+    /// The branches of a leg's section in the working mode, or both where any mode counts.
     fn branches(&self, leg: usize, section: Section) -> impl Iterator<Item = Branch> + use<> {
         let both = self.mode.is_none() && self.leg(leg).section(section).chain.has_choice();
         let first = self.mode.map_or(Branch::Plus, |mode| {
@@ -241,8 +245,8 @@ impl LegConditions<'_> {
         [Some(first), both.then_some(Branch::Minus)].into_iter().flatten()
     }
 
-    /// The share for which a section closes within its limits; `then` is asked about its joints'
-    /// displacements.
+    /// The share for which a section closes within its limits, and its joints' displacements meet the condition
+    /// `then`.
     fn section<const N: usize>(
         &self,
         leg: usize,
@@ -256,21 +260,21 @@ impl LegConditions<'_> {
             return closes;
         }
         closes.and(any(self.branches(leg, section), |branch| {
-            let amounts = chain::amounts(&compiled.chain, target, branch);
-            let within = self.admits(compiled, &amounts);
-            if within.is_none() { within } else { within.and(then(&amounts)) }
+            let displacements = chain::displacements(&compiled.chain, target, branch);
+            let within = self.admits(compiled, &displacements);
+            if within.is_none() { within } else { within.and(then(&displacements)) }
         }))
     }
 
     fn upper<const N: usize>(&self, leg: usize, b: &Target<N>) -> Share<N> {
-        match self.leg(leg).cut {
+        match self.leg(leg).split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |_| Share::ALL),
             Section::Lower => Share::ALL,
         }
     }
 
     fn lower<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
-        match self.leg(leg).cut {
+        match self.leg(leg).split_section {
             Section::Upper => self.reaches(leg, v, Enclosed::Value(tau)),
             Section::Lower => self.section(leg, Section::Lower, v, |_| Share::ALL),
         }
@@ -278,41 +282,42 @@ impl LegConditions<'_> {
 
     fn whole<const N: usize>(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
         let compiled = self.leg(leg);
-        match compiled.cut {
-            Section::Upper => self.section(leg, Section::Upper, b, |amounts| {
-                self.unwound(compiled, amounts[0], |tau| self.reaches(leg, v, tau))
+        match compiled.split_section {
+            Section::Upper => self.section(leg, Section::Upper, b, |displacements| {
+                self.unwound(compiled, displacements[0], |tau| self.reaches(leg, v, tau))
             }),
-            Section::Lower => self.section(leg, Section::Lower, v, |amounts| {
-                if !compiled.upper_decides {
+            Section::Lower => self.section(leg, Section::Lower, v, |displacements| {
+                if !compiled.upper_constrains {
                     return Share::ALL;
                 }
-                let cut = amounts[compiled.lower.chain.freedoms() - 1];
-                self.unwound(compiled, cut, |cut| {
-                    let target = target::before(self.manipulator.task().upper_intersection, b, cut);
+                let step = displacements[compiled.lower.chain.freedoms() - 1];
+                self.unwound(compiled, step, |step| {
+                    let target =
+                        target::before(self.manipulator.task().upper_intersection, b, step);
                     self.section(leg, Section::Upper, &target, |_| Share::ALL)
                 })
             }),
         }
     }
 
-    /// The share for which the lower section follows to `v · exp(I τ)`.
+    /// The share for which the lower section closes at `v · exp(I τ)` within its limits.
     fn reaches<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
         let target = target::after(self.manipulator.task().lower_intersection, v, tau);
         self.section(leg, Section::Lower, &target, |_| Share::ALL)
     }
 
-    /// What follows from a cut, near zero where whole turns count: within half a turn, where a box may
-    /// hold both ends of that.
+    /// The share that `then` gives for a displacement along the intersection motion. Where revolutions are
+    /// counted, the displacement is within π of home; a box may contain both ends of that range.
     fn unwound<const N: usize>(
         &self,
         leg: &CompiledLeg,
-        cut: Enclosed<N>,
+        tau: Enclosed<N>,
         then: impl Fn(Enclosed<N>) -> Share<N>,
     ) -> Share<N> {
-        if !leg.unwinds() || matches!(cut, Enclosed::Value(_)) {
-            return then(cut);
+        if !leg.unwinds() || matches!(tau, Enclosed::Value(_)) {
+            return then(tau);
         }
-        let number = cut.number();
+        let number = tau.number();
         let turns = (number.centre / TAU).round();
         let near = number - TAU * turns;
         let here = then(Enclosed::Value(near));
@@ -327,23 +332,25 @@ impl LegConditions<'_> {
     fn admits<const N: usize>(
         &self,
         section: &CompiledSection,
-        amounts: &[Enclosed<N>; 3],
+        displacements: &[Enclosed<N>; 3],
     ) -> Share<N> {
         if !section.limited {
             return Share::ALL;
         }
         let limits = self.manipulator.limits();
-        let joints = section.slots.iter().zip(amounts);
-        joints.fold(Share::ALL, |share, (slot, amount)| match slot {
-            Some(slot) if !share.is_none() => share.and(within(&limits[slot.coordinate], amount)),
+        let joints = section.coordinates.iter().zip(displacements);
+        joints.fold(Share::ALL, |share, (coordinate, displacement)| match coordinate {
+            Some(coordinate) if !share.is_none() => {
+                share.and(within(&limits[coordinate.number], displacement))
+            }
             _ => share,
         })
     }
 }
 
 /// The share for which a joint's displacement is within its limits.
-fn within<const N: usize>(limits: &Limits, amount: &Enclosed<N>) -> Share<N> {
-    match (limits, amount) {
+fn within<const N: usize>(limits: &Limits, displacement: &Enclosed<N>) -> Share<N> {
+    match (limits, displacement) {
         (Limits::Free, _) => Share::ALL,
         (Limits::Range { low, high, .. }, Enclosed::Value(value)) => {
             Share::within(value, [*low, *high], 0.0)

@@ -1,9 +1,13 @@
 //! Kinematics of overconstrained parallel manipulators with partial subspaces, by imaginary-joint
 //! decomposition.
 //!
-//! The platform moves in a product `A · B` of two subgroups of SE(3) that share one motion `I`. Each
-//! leg is cut in two where it passes from one to the other, by an *imaginary joint* that moves along
-//! `I`, and both halves have closed forms. The decomposition is found from the joint screws.
+//! The crate solves inverse, forward and velocity kinematics of such manipulators in closed form, finds
+//! their singularities, and checks trajectories. It reads a mechanism from a file or from Rust code and
+//! finds the decomposition from the joint screws.
+//!
+//! The platform moves in a product `A · B` of two subgroups of SE(3) that share a one-dimensional motion
+//! `I`. Each leg is split in two where it passes from one subgroup to the other, by an *imaginary joint*
+//! that moves along `I`, and both sections have closed forms.
 //!
 //! ```
 //! use opm_core::Manipulator;
@@ -19,7 +23,7 @@
 //! assert!(solution.within_limits());
 //! assert!((solution.joints()[0] - 0.168806).abs() < 1e-6); // S1
 //!
-//! // The other way round: every pose that these actuated joints allow.
+//! // Forward kinematics: every pose that these actuated joints allow.
 //! let joints = solution.joints();
 //! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| joints[i]).collect();
 //! let found = manipulator.forward(&actuated)?;
@@ -29,22 +33,42 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Modules
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`mechanism`] | the description of a mechanism: legs, joints, files, parametric families, examples |
+//! | [`decomposition`] | mobility, partial subspaces, and where each leg is split |
+//! | [`task`] | task coordinates: how a pose is written |
+//! | [`manipulator`] | a compiled mechanism; inverse kinematics of one pose and of many, working modes |
+//! | [`forward`] | forward kinematics: the poses for given actuated joints |
+//! | [`velocity`] | joint and platform velocities and accelerations, Jacobians, singularities |
+//! | [`motion`] | motions of the platform: splines, tables, motion files |
+//! | [`trajectory`] | joint values along a motion, and violations of limits |
+//! | [`linkage`] | mechanisms with one freedom whose legs form four-bar linkages |
+//! | [`skeleton`] | a mechanism as lines and solids, for drawing |
+//! | [`chain`] | closed forms of serial chains in one subspace |
+//! | [`group`] | subgroups of SE(3), their displacements, screws |
+//! | [`numeric`] | angles, rotations, quantities, small numerical methods |
+//!
 //! # Conventions
 //!
 //! * SI units and radians everywhere.
 //! * Joints are given at one assembled pose, *home*. A reported value is the value at home plus the
-//!   displacement; angles are within half a turn of home unless limits or a reference say otherwise.
-//! * A twist is `(ω; v)` in base coordinates; `v` is the velocity of the point at the base's origin.
+//!   displacement; angles are within π of home unless limits or a reference value require otherwise.
+//! * A twist is `(ω; v)` in base coordinates; `v` is the velocity of the body's point at the base's origin.
 //! * Products of exponentials run from base to platform: `g = L · U = v · b`, `v` in the lower
 //!   subspace `A`, `b` in the upper one, `B`.
 //! * Task coordinates are named in [`task`], working modes in [`manipulator::Mode`].
-//! * Out of reach is an answer, not an error; an error means that it cannot be computed. A pose on the
-//!   boundary of reach, or on a limit, counts as inside.
+//! * A pose out of reach is an answer (`None`), not an error; an error means that the input is not valid.
+//!   A pose on the boundary of reach, or on a limit, counts as inside.
 
 // Layers: numeric, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
 // trajectory, enclosure, linkage, skeleton. Each uses only those before it (tests/layers.rs).
 pub mod chain;
 pub mod decomposition;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub mod enclosure;
 pub mod forward;
 pub mod group;

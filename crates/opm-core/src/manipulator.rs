@@ -1,14 +1,14 @@
 //! A mechanism, decomposed and compiled to closed-form chains.
 //!
-//! With `g = v · b` the pose, a leg's closure `L(q_low) · U(q_up) = g` is cut in two by its
-//! displacement `exp(I τ)` along the intersection motion, the imaginary joint:
+//! The pose is `g = v · b`. A leg's closure `L(q_low) · U(q_up) = g` is split in two by the leg's
+//! displacement `exp(I τ)` along the intersection motion, that of its imaginary joint:
 //!
-//! * a leg whose *upper* section lacks one freedom gets the cut there: `exp(I τ) · U = b` gives τ
-//!   and the upper joints, then `L = v · exp(I τ)` the lower ones;
-//! * a leg whose *lower* section lacks one gets it there: `L · exp(-I τ) = v`, then
+//! * A leg whose *upper* section lacks one freedom is split there: `exp(I τ) · U = b` gives τ and the upper
+//!   joints, then `L = v · exp(I τ)` gives the lower ones.
+//! * A leg whose *lower* section lacks one freedom is split there: `L · exp(-I τ) = v`, then
 //!   `U = exp(-I τ) · b`.
 //!
-//! Either way both sections have as many freedoms as their subspace, and each is one
+//! In both cases the two sections have as many freedoms as their subspace, and each is one
 //! [`Chain`](crate::chain::Chain).
 
 mod batch;
@@ -29,9 +29,13 @@ pub use leg::{RefusedLeg, Section};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub use reach::LegBranch;
 #[cfg(feature = "files")]
 pub use read::ReadError;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
 pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;
@@ -49,21 +53,22 @@ pub(crate) use leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegBranches,
 use mode::ModeLayout;
 use plan::Plan;
 
-/// Choices that a [`Mode`] has room for.
+/// The largest number of choices in a [`Mode`].
 const MOST_CHOICES: u32 = 63;
 
-/// An imaginary joint as it is reported.
+/// An imaginary joint: the displacement of a leg along the intersection motion, with a name, a value at home
+/// and a sense.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImaginaryJoint {
-    /// Name.
+    /// The joint's name.
     pub name: String,
-    /// Number of the leg that it belongs to.
+    /// The number of the leg that it belongs to.
     pub leg: usize,
-    /// Angle or length.
+    /// Whether its value is an angle or a length.
     pub quantity: Quantity,
-    /// Value at home, radians or metres.
+    /// The value at home, radians or metres.
     pub home: f64,
-    /// `1` or `-1`: which way along the intersection motion counts as positive.
+    /// `1` where the value grows along the intersection motion, `-1` where it grows in the opposite sense.
     pub(crate) sign: f64,
 }
 
@@ -71,7 +76,7 @@ pub struct ImaginaryJoint {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompileError {
-    /// It does not decompose.
+    /// The mechanism does not decompose.
     #[error(transparent)]
     Decompose(#[from] DecomposeError),
     /// A leg has no closed form.
@@ -79,14 +84,14 @@ pub enum CompileError {
     Leg {
         /// The leg's name.
         leg: String,
-        /// Why.
+        /// Why the leg has no closed form.
         reason: RefusedLeg,
     },
-    /// Its pose has no coordinates.
+    /// The pose has no task coordinates.
     #[error(transparent)]
     Task(#[from] TaskError),
-    /// More two-valued choices than a mode has room for.
-    #[error("{0} two-valued choices, at most {MOST_CHOICES} are supported")]
+    /// There are more two-valued choices than a [`Mode`] can hold.
+    #[error("the legs have {0} two-valued choices, expected at most {MOST_CHOICES}")]
     Choices(u32),
 }
 
@@ -104,9 +109,9 @@ pub struct Manipulator {
     modes: ModeLayout,
     home_mode: Mode,
     length: f64,
-    /// How forward kinematics go about it.
+    /// The order in which forward kinematics solve the sections, or why they have no closed form.
     pub(crate) plan: Result<Plan, NoClosedForm>,
-    /// Its legs' products of exponentials.
+    /// The legs' products of exponentials.
     pub(crate) closure: Closure,
 }
 
@@ -114,7 +119,8 @@ impl Manipulator {
     /// Decomposes a mechanism and compiles the first of its decompositions that closed forms cover.
     ///
     /// # Errors
-    /// Where it does not decompose, or what stands in the way of its preferred decomposition.
+    /// The mechanism does not decompose, or none of its decompositions has closed forms; then the error is
+    /// that of the first one.
     pub fn new(mechanism: Mechanism) -> Result<Self, CompileError> {
         let mut refused = None;
         for decomposition in decompose(&mechanism)? {
@@ -129,7 +135,7 @@ impl Manipulator {
     /// Compiles a mechanism by one of its decompositions.
     ///
     /// # Errors
-    /// A leg that no pair of chains covers, or subspaces without coordinates.
+    /// A leg has no closed form, or the pose has no task coordinates.
     pub fn with_decomposition(
         mechanism: Mechanism,
         decomposition: Decomposition,
@@ -142,43 +148,40 @@ impl Manipulator {
         &self.mechanism
     }
 
-    /// How it was decomposed.
+    /// The decomposition by which the mechanism was compiled.
     pub fn decomposition(&self) -> &Decomposition {
         &self.decomposition
     }
 
-    /// Its subspaces' frames and the conversions of its pose.
+    /// The frames of the two subspaces, and the task coordinates.
     pub fn task(&self) -> &Task {
         &self.task
     }
 
-    /// The coordinates of its pose, in order.
+    /// The task coordinates, in the order of a pose.
     pub fn task_coordinates(&self) -> &[TaskCoordinate] {
         &self.task.coordinates
     }
 
-    /// Whether a task coordinate is an angle whose whole turns matter: a helical joint follows it.
-    pub fn counts_turns(&self, name: &str) -> bool {
-        let section = match CoordinateKind::from_name(name) {
-            Some(CoordinateKind::Theta) => Section::Lower,
-            Some(CoordinateKind::Phi) => Section::Upper,
-            Some(
-                CoordinateKind::X
-                | CoordinateKind::Y
-                | CoordinateKind::Z
-                | CoordinateKind::W
-                | CoordinateKind::Zeta
-                | CoordinateKind::Xi
-                | CoordinateKind::Psi
-                | CoordinateKind::Mu
-                | CoordinateKind::Nu,
-            )
-            | None => return false,
+    /// Whether the full revolutions of a task coordinate matter: it is an angle that a helical joint turns with.
+    pub fn counts_turns(&self, kind: CoordinateKind) -> bool {
+        let section = match kind {
+            CoordinateKind::Theta => Section::Lower,
+            CoordinateKind::Phi => Section::Upper,
+            CoordinateKind::X
+            | CoordinateKind::Y
+            | CoordinateKind::Z
+            | CoordinateKind::W
+            | CoordinateKind::Zeta
+            | CoordinateKind::Xi
+            | CoordinateKind::Psi
+            | CoordinateKind::Mu
+            | CoordinateKind::Nu => return false,
         };
         self.legs.iter().any(|leg| leg.section(section).chain.counts_turns())
     }
 
-    /// Every joint coordinate, leg by leg: the order of [`Solution::joints`].
+    /// Every joint coordinate, leg by leg. This is the order of [`Solution::joints`].
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
     }
@@ -188,29 +191,29 @@ impl Manipulator {
         &self.limits
     }
 
-    /// Numbers of the actuated coordinates, ascending: the order of [`ActuatedJoints::actuated`].
+    /// The numbers of the actuated joint coordinates, ascending. This is the order of [`ActuatedJoints::actuated`].
     pub fn actuated(&self) -> &[usize] {
         &self.actuated
     }
 
-    /// Its imaginary joints, leg by leg: the order of [`Solution::imaginary`].
+    /// The imaginary joints, leg by leg. This is the order of [`Solution::imaginary`].
     pub fn imaginary(&self) -> &[ImaginaryJoint] {
         &self.imaginary
     }
 
-    /// Characteristic length, metres: [`Frame::length`](crate::group::subspace::Frame), the root mean square
-    /// of the distances of the joint axes at home from the point nearest to all of them, and of their
-    /// pitches. The same wherever the mechanism stands; of a mechanism twice the size, twice as long.
+    /// The characteristic length, metres: [`Frame::length`](crate::group::subspace::Frame), the root mean
+    /// square of the distances of the joint axes at home from the point nearest to all of them, and of their
+    /// pitches. It does not depend on where the mechanism stands, and is proportional to its size.
     pub fn characteristic_length(&self) -> f64 {
         self.length
     }
 
-    /// Number of two-valued choices; there are `2^choices` working modes.
+    /// The number of two-valued choices; there are `2^choices` working modes.
     pub fn choices(&self) -> u32 {
         self.modes.count()
     }
 
-    /// Every working mode, all-plus first: `2^choices`, in the order of [`AllModes::modes`].
+    /// Every working mode, starting with all plus; there are `2^choices`, in the order of [`AllModes::modes`].
     pub fn modes(&self) -> impl Iterator<Item = Mode> + use<> {
         (0..1u64 << self.choices()).map(Mode)
     }
@@ -220,20 +223,20 @@ impl Manipulator {
         self.home_mode
     }
 
-    /// Reads a working mode: a sign for every choice.
+    /// Parses a working mode: one sign (`+` or `-`) for every choice. Spaces are ignored.
     ///
     /// # Errors
-    /// A character that is not a sign, or another number of signs.
+    /// The text has a character that is not a sign, or a wrong number of signs.
     pub fn parse_mode(&self, text: &str) -> Result<Mode, ModeError> {
         self.modes.parse(text)
     }
 
-    /// Writes a working mode: a sign for every choice, a group a leg.
+    /// Formats a working mode: one sign for every choice, in one group for each leg.
     pub fn format_mode(&self, mode: Mode) -> String {
         self.modes.format(mode)
     }
 
-    /// Every combination of a leg's own choices, as modes that are plus elsewhere.
+    /// The modes with every combination of one leg's choices, and plus for all other legs.
     pub(crate) fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
         self.modes.leg_modes(leg)
     }
@@ -243,7 +246,7 @@ impl Manipulator {
         self.modes.branches(mode, leg)
     }
 
-    /// Of each leg's solutions at home, the one that leaves its joints where they are.
+    /// The mode in which every leg's solution at home leaves its joints at home.
     fn mode_at_home(&self) -> Mode {
         let home = self.task.home();
         let (v, b) = (self.task.lower(&home), self.task.upper(&home[self.task.lower_count..]));
@@ -264,7 +267,7 @@ impl Manipulator {
     }
 }
 
-/// What there is to a manipulator beside its mechanism and decomposition.
+/// The parts of a manipulator that are computed from its mechanism and decomposition.
 struct Compiled {
     task: Task,
     legs: Vec<CompiledLeg>,
@@ -283,12 +286,12 @@ impl Compiled {
         let length = frame(mechanism).length;
         let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
         let mut actuated = Vec::new();
-        let mut drives = Vec::with_capacity(coordinates.len());
+        let mut actuated_numbers = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
             for _ in &joint.coordinates {
-                drives.push(joint.actuated.then_some(actuated.len()));
+                actuated_numbers.push(joint.actuated.then_some(actuated.len()));
                 if joint.actuated {
-                    actuated.push(drives.len() - 1);
+                    actuated.push(actuated_numbers.len() - 1);
                 }
             }
         }
@@ -297,9 +300,13 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let around =
-                CompileContext { task: &task, drives: &drives, limits: &limits, size: length };
-            let mut compiled = CompiledLeg::new(leg, split, first, around)
+            let context = CompileContext {
+                task: &task,
+                actuated: &actuated_numbers,
+                limits: &limits,
+                size: length,
+            };
+            let mut compiled = CompiledLeg::new(leg, split, first, context)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {
                 compiled.imaginary = Some(imaginary.len());
@@ -340,7 +347,8 @@ impl Compiled {
 
 impl ImaginaryJoint {
     pub(crate) fn new(leg: &Leg, number: usize, task: &Task) -> Self {
-        let quantity = if task.cut_point.is_some() { Quantity::Angle } else { Quantity::Length };
+        let quantity =
+            if task.intersection_point.is_some() { Quantity::Angle } else { Quantity::Length };
         let (home, sign) = match &leg.imaginary {
             Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
             None => (0.0, 1.0),
@@ -353,8 +361,8 @@ impl ImaginaryJoint {
         self.sign * (value - self.home)
     }
 
-    /// The value to report for a displacement along the intersection motion; of a turn, the one
-    /// nearest to `reference`.
+    /// The value to report for a displacement along the intersection motion; of a rotation, the angle nearest
+    /// to `reference`.
     #[inline]
     pub(crate) fn value(&self, tau: JointDisplacement, reference: f64) -> f64 {
         self.home + self.sign * tau.nearest(self.sign * (reference - self.home))

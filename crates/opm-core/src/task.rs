@@ -12,34 +12,35 @@
 //! | translational plane | | `x y` | | `w` |
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
-//! `theta phi` turn about the normal or the axis, `zeta xi psi` are Euler angles
+//! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
 //! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
 //!
 //! # Frames
 //!
 //! Each section has a frame, fixed in the base: three directions, the point that lengths are measured
-//! from, and the reference point at home, about which angles turn. They follow from the geometry of
-//! the two subspaces and the base's directions alone:
+//! from, and the reference point at home, which is the centre of rotations. They follow from the geometry
+//! of the two subspaces and the base's directions alone:
 //!
 //! * The axis `d` of `I`, where it is a rotation or along a cylinder, is the third direction of both
 //!   frames. It *points up*: positive z, of nearly level directions positive y, of those nearly along
 //!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
-//! * `x` is the base's x laid into the plane, or its y where x is within 6 degrees of the normal; in
-//!   a sphere likewise, into the plane perpendicular to `d`. `y` is a quarter turn ahead of it about the third
-//!   direction.
+//! * `x` is the base's x projected into the plane, or its y where x is within 6 degrees of the normal; of
+//!   a sphere likewise, projected into the plane perpendicular to `d`. `y` is `x` rotated by a right angle
+//!   about the third direction.
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
 //! * `w` points up.
 //! * The reference point is the platform's, moved to the axis of `I` where that is a rotation, to a
 //!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin.
 //!
-//! For a level plane, `x y` are the base's. No rule has a seam near the directions of usual designs:
-//! a mechanism that is turned a little has its frames turned a little.
+//! For a level plane, `x y` are the base's. No rule is discontinuous near the directions of usual
+//! designs: a mechanism that is rotated a little has its frames rotated a little.
 //!
-//! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can say otherwise: the sense of `d`,
-//! of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; home's
-//! values follow. A plane's normal is not free where `I` turns about it: `axis` decides it.
+//! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can override these rules: the sense of
+//! `d`, of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; the
+//! values at home change accordingly. Where `I` is a rotation about a plane's normal, that normal cannot be
+//! chosen: it is `axis`.
 
 mod coordinate;
 mod displacement;
@@ -51,7 +52,7 @@ pub use coordinate::{CoordinateKind, TaskCoordinate};
 pub use displacement::euler;
 pub(crate) use displacement::{Form, lower_displacement, upper_displacement};
 
-// The names that the groups had here before.
+// The types of `Task`'s fields and results.
 pub use crate::group::{Displacement, Subspace, SubspaceKind};
 
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
@@ -67,6 +68,7 @@ use std::fmt;
 
 /// Why a decomposition has no task coordinates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TaskError {
     /// A subspace without closed-form chains.
     #[error(
@@ -74,11 +76,11 @@ pub enum TaskError {
         odd.as_ref().map(OddJoint::to_string).unwrap_or_default()
     )]
     Subspace {
-        /// Whose it is.
+        /// The section that moves in the subspace.
         section: Section,
-        /// What it is.
+        /// The name of the subspace.
         name: &'static str,
-        /// The joint that makes it so, if one alone does.
+        /// The joint without which there would be closed-form chains, if there is exactly one.
         odd: Option<OddJoint>,
     },
     /// The two subspaces meet in a screw motion.
@@ -86,25 +88,26 @@ pub enum TaskError {
         "the partial subspaces meet in a screw motion, for which there are no closed-form chains"
     )]
     Screw,
-    /// The mechanism's hint says neither of the intersection motion's two directions.
+    /// The mechanism's hint `axis` is perpendicular to the intersection motion, so that it chooses neither of
+    /// its two directions.
     #[error(
-        "[task] axis is {}, square to the intersection motion, expected a direction along that or \
-         against it: {}",
+        "[task] axis is {}, perpendicular to the intersection motion, expected a direction along {} or \
+         opposite to it",
         triple(given),
         triple(along)
     )]
     Axis {
-        /// The direction given.
+        /// The direction given, base coordinates.
         given: [f64; 3],
-        /// The intersection motion's.
+        /// The unit direction of the intersection motion, base coordinates.
         along: [f64; 3],
     },
     /// The mechanism's hint on a frame does not fit the geometry.
     #[error("[task] {key} {problem}")]
     Frame {
-        /// Which hint.
+        /// The hint that does not fit.
         key: TaskKey,
-        /// Why it does not fit.
+        /// Why it does not fit the geometry.
         problem: FrameProblem,
     },
     /// The mechanism names a coordinate that its subspaces do not have.
@@ -112,13 +115,13 @@ pub enum TaskError {
     Unknown {
         /// The name given.
         name: String,
-        /// The names there are.
+        /// The names of the task coordinates, separated by commas.
         expected: String,
     },
 }
 
 impl TaskError {
-    /// The hint that is to blame, if one is.
+    /// The hint that causes the error, if one does.
     pub fn key(&self) -> Option<TaskKey> {
         match self {
             Self::Axis { .. } => Some(TaskKey::Axis),
@@ -134,14 +137,14 @@ impl TaskError {
 pub struct OddJoint {
     /// The leg's name.
     pub leg: String,
-    /// The joint's.
+    /// The joint's name.
     pub joint: String,
-    /// The subspace of the others.
+    /// The name of the subspace that the section's other joints span.
     pub without: &'static str,
 }
 
 impl OddJoint {
-    /// Looks for it among the joints of a section.
+    /// Looks for such a joint among the joints of a section; `None` unless there is exactly one.
     fn find(
         mechanism: &Mechanism,
         decomposition: &Decomposition,
@@ -170,7 +173,7 @@ impl OddJoint {
             let (leg, joint) = (one.0.name.clone(), joint(one));
             Some(Self { leg, joint, without: class.name() })
         });
-        // Several joints can be to blame as well as one: then none is.
+        // Where several joints qualify, none of them alone is the cause.
         let first = odd.next()?;
         odd.all(|other| other.joint == first.joint).then_some(first)
     }
@@ -178,26 +181,27 @@ impl OddJoint {
 
 /// Why a hint on a frame does not fit the geometry. Directions have unit length.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FrameProblem {
-    /// The geometry, or another hint, leaves nothing to choose.
+    /// The hint sets a direction or point that the geometry already determines.
     NotFree {
-        /// The subspace.
+        /// The kind of the subspace.
         kind: SubspaceKind,
-        /// What can be chosen.
+        /// The keys of the frame that can be chosen.
         free: Vec<&'static str>,
     },
-    /// It is not along the line that it is to choose a sense of.
+    /// The hint chooses the sense of a line, and is not along that line.
     NotAlong {
         /// The direction given.
         given: [f64; 3],
-        /// The line's.
+        /// The direction of the line.
         line: [f64; 3],
     },
-    /// It is not perpendicular to the normal or to the intersection motion.
-    NotSquare {
+    /// The direction given is not perpendicular to the normal or to the intersection motion.
+    NotPerpendicular {
         /// The direction given.
         given: [f64; 3],
-        /// The normal's, or the intersection motion's.
+        /// The direction of the normal or of the intersection motion.
         to: [f64; 3],
     },
 }
@@ -216,8 +220,13 @@ impl fmt::Display for FrameProblem {
                 let (given, back) = (triple(given), triple(&line.map(|c| -c)));
                 write!(f, "is {given}, expected {} or {back}", triple(line))
             }
-            Self::NotSquare { given, to } => {
-                write!(f, "is {}, expected a direction square to {}", triple(given), triple(to))
+            Self::NotPerpendicular { given, to } => {
+                write!(
+                    f,
+                    "is {}, expected a direction perpendicular to {}",
+                    triple(given),
+                    triple(to)
+                )
             }
         }
     }
@@ -232,24 +241,25 @@ fn triple(v: &[f64; 3]) -> String {
 /// The subspaces' frames and the coordinates of a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Task {
-    /// `A`, which the legs' lower parts move in.
+    /// The frame of the lower subspace `A`, in which the legs' lower sections move.
     pub lower: Subspace,
-    /// `B`, which their upper parts move in.
+    /// The frame of the upper subspace `B`, in which the legs' upper sections move.
     pub upper: Subspace,
     /// The intersection motion in `A`'s frame.
     pub lower_intersection: IntersectionMotion,
     /// The intersection motion in `B`'s frame.
     pub upper_intersection: IntersectionMotion,
-    /// Unit direction of the intersection motion, base coordinates.
+    /// The unit direction of the intersection motion, base coordinates.
     pub direction: Unit<Vector3<f64>>,
-    /// A point of the intersection motion's axis at home, where it is a rotation.
-    pub cut_point: Option<Point3<f64>>,
-    /// `v`'s coordinates, then `b`'s.
+    /// A point of the intersection motion's axis at home, base coordinates, metres; `None` where the motion is
+    /// a translation.
+    pub intersection_point: Option<Point3<f64>>,
+    /// The coordinates of the pose: those of `v`, then those of `b`.
     pub coordinates: Vec<TaskCoordinate>,
-    /// How many of them are `v`'s.
+    /// The number of coordinates of `v`.
     pub lower_count: usize,
-    /// Inverse of the platform's orientation at home, where Euler angles measure it and it is not
-    /// the identity.
+    /// The inverse of the platform's orientation at home in the upper frame; `None` where the pose has no Euler
+    /// angles, and where it is the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
 }
 
@@ -258,8 +268,8 @@ impl Task {
     ///
     /// # Errors
     /// A subspace or an intersection motion that no chain covers, a positive direction perpendicular to
-    /// that motion, a hint on a frame that does not fit the geometry, or a home value for a
-    /// coordinate that there is not.
+    /// that motion, a hint on a frame that does not fit the geometry, or a home value for an unknown
+    /// coordinate.
     pub fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, TaskError> {
         let (axis, point) = match &decomposition.intersection {
             SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
@@ -317,22 +327,25 @@ impl Task {
             lower_intersection,
             upper_intersection,
             direction: axis,
-            cut_point: point,
+            intersection_point: point,
             coordinates,
             lower_count,
             home_orientation_inverse,
         })
     }
 
-    /// `v` for the first [`Task::lower_count`] coordinates of a pose.
+    /// The displacement `v` for the first [`Task::lower_count`] coordinates of a pose, radians and metres.
+    ///
+    /// # Panics
+    /// If there are fewer coordinates.
+    #[doc(hidden)]
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(&pose[..self.lower_count], 0);
         lower_displacement(self.form(Section::Lower), at, home, sin_cos)
     }
 
-    /// How `v`, or `v` with a step along the intersection motion after it, moves as the first coordinate
-    /// grows from home, where it is `start`.
+    /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`.
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {
@@ -347,7 +360,9 @@ impl Task {
         }
     }
 
-    /// `b` for the remaining coordinates of a pose (the slice starts with `b`'s first).
+    /// The displacement `b` for the coordinates of a pose after the first [`Task::lower_count`], with which
+    /// the slice starts.
+    #[doc(hidden)]
     #[inline]
     pub fn upper(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(pose, self.lower_count);
@@ -360,17 +375,18 @@ impl Task {
         }
     }
 
-    /// What decides which coordinates a section has.
+    /// The form of a section, which determines its coordinates.
     #[inline]
     pub(crate) fn form(&self, section: Section) -> Form {
-        let turn = self.cut_point.is_some();
+        let rotation = self.intersection_point.is_some();
         match section {
-            Section::Lower => Form { kind: self.lower.kind, turn },
-            Section::Upper => Form { kind: self.upper.kind, turn },
+            Section::Lower => Form { kind: self.lower.kind, rotation },
+            Section::Upper => Form { kind: self.upper.kind, rotation },
         }
     }
 
-    /// A section's coordinates, and their values at home, those past its number zero.
+    /// The values of a section's coordinates, and those at home. The section starts at coordinate number
+    /// `first`; elements beyond its coordinates are zero.
     #[inline]
     fn section_of(&self, pose: &[f64], first: usize) -> ([f64; 3], [f64; 3]) {
         let (mut at, mut home) = ([0.0; 3], [0.0; 3]);
@@ -382,32 +398,37 @@ impl Task {
     }
 
     /// The platform's displacement from home at a pose, `g = v · b`, base coordinates.
+    /// [`Manipulator::displacement`](crate::Manipulator::displacement) checks the pose first.
+    ///
+    /// # Panics
+    /// If there are fewer than [`Task::lower_count`] coordinates.
+    #[doc(hidden)]
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
         self.isometry(&self.lower(pose), &self.upper(&pose[self.lower_count..]))
     }
 
-    /// `v · b` in base coordinates.
+    /// The displacement `v · b` in base coordinates.
     pub(crate) fn isometry(&self, v: &Displacement, b: &Displacement) -> Isometry3<f64> {
         self.lower.isometry(v) * self.upper.isometry(b)
     }
 
-    /// The platform's orientation at home, base coordinates: where Euler angles measure it that of
-    /// their home values about the upper frame's axes, else none.
+    /// The platform's orientation at home, base coordinates: that of the Euler angles at home about the upper
+    /// frame's axes, or the identity where the pose has no Euler angles.
     pub fn home_orientation(&self) -> UnitQuaternion<f64> {
         let Some(inverse) = self.home_orientation_inverse else {
             return UnitQuaternion::identity();
         };
-        let turn = self.upper.axes * inverse.transpose() * self.upper.axes.transpose();
-        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn))
+        let rotation = self.upper.axes * inverse.transpose() * self.upper.axes.transpose();
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation))
     }
 
-    /// What an orientation by Euler angles is turned back by to be a displacement from home, unless
-    /// that is the identity.
+    /// The inverse of the platform's orientation at home, which turns an orientation by Euler angles into a
+    /// displacement from home; `None` for the identity.
     pub(crate) fn home_orientation_inverse(&self) -> Option<&Matrix3<f64>> {
         self.home_orientation_inverse.as_ref()
     }
 
-    /// The pose at home.
+    /// The pose at home, radians and metres.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
     }

@@ -207,7 +207,7 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let drive = self.drive(&at.place.pose, rates, accelerations);
+        let drive = self.drive(&at.solved.pose, rates, accelerations);
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);
@@ -276,19 +276,20 @@ impl Manipulator {
     /// that is solved first, of the other; of a spherical joint at a whole turn its own.
     pub fn rateless(&self, singular: &SingularLeg) -> impl Iterator<Item = usize> + '_ {
         let leg = &self.legs[singular.leg];
-        let whole = singular.cause == SingularCause::Serial && leg.cut == singular.section;
+        let whole =
+            singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
         sections
             .into_iter()
             .filter(move |(_, other)| whole || *other == section)
-            .flat_map(|(section, _)| section.slots.iter().flatten().map(|slot| slot.coordinate))
+            .flat_map(|(section, _)| section.coordinates.iter().flatten().map(|slot| slot.number))
     }
 
     /// The number of the imaginary joint that has no rate either.
     pub fn rateless_imaginary(&self, singular: &SingularLeg) -> Option<usize> {
         let leg = &self.legs[singular.leg];
-        let lost = singular.cause == SingularCause::Serial && leg.cut == singular.section;
+        let lost = singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         leg.imaginary.filter(|_| lost)
     }
 
@@ -320,11 +321,11 @@ impl Manipulator {
             let rates = section.rates(&twist);
             [rates, section.accelerations(&twist, &derivative, &rates)]
         };
-        match leg.cut {
+        match leg.split_section {
             Section::Upper => {
                 let upper = solve(upper, drive.b);
                 let tau = upper.map(|u| u.x);
-                let along = at.place.v.adjoint(&task.lower_intersection.unit_twist());
+                let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
                 let [twist, derivative] = drive.v;
                 let turned = task.lower.kind.bracket(&twist, &along);
                 let target =
@@ -354,10 +355,10 @@ impl Manipulator {
         for (section, [rates, accelerations]) in
             [(&leg.lower, &motion.lower), (&leg.upper, &motion.upper)]
         {
-            for (i, slot) in section.slots.iter().enumerate() {
+            for (i, slot) in section.coordinates.iter().enumerate() {
                 let Some(slot) = slot else { continue };
-                out.joint_rates[slot.coordinate] = rates[i];
-                out.joint_accelerations[slot.coordinate] = accelerations[i];
+                out.joint_rates[slot.number] = rates[i];
+                out.joint_accelerations[slot.number] = accelerations[i];
             }
         }
         if let Some(imaginary) = leg.imaginary {

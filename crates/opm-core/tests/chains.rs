@@ -275,9 +275,9 @@ proptest! {
     #[test]
     fn coaxial(kinds in [0..3, 0..3], pitches in [-2.0..2.0, -2.0..2.0_f64], angle in -20.0..20.0, advance in -3.0..3.0_f64) {
         let joint = |i: usize| match kinds[i] {
-            0 => CoaxialJoint { turn: 1.0, advance: 0.0 },
-            1 => CoaxialJoint { turn: 0.0, advance: -1.0 },
-            _ => CoaxialJoint { turn: -1.0, advance: pitches[i] },
+            0 => CoaxialJoint { rotation: 1.0, advance: 0.0 },
+            1 => CoaxialJoint { rotation: 0.0, advance: -1.0 },
+            _ => CoaxialJoint { rotation: -1.0, advance: pitches[i] },
         };
         let Ok(chain) = CylindricalChain::new([joint(0), joint(1)]) else {
             prop_assert!(kinds[0] == kinds[1], "only two of one kind are dependent");
@@ -417,7 +417,7 @@ fn chains_that_cannot_reach_a_neighbourhood_are_refused() {
         assert!(matches!(SphericalChain::new(axes), Err(ChainError::Dependent(_))), "{axes:?}");
     }
     assert!(TranslationalChain::new([e(0.4), -e(0.4)]).is_err());
-    let helix = CoaxialJoint { turn: 1.0, advance: 0.02 };
+    let helix = CoaxialJoint { rotation: 1.0, advance: 0.02 };
     assert!(CylindricalChain::new([helix, helix]).is_err());
 }
 

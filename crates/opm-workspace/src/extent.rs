@@ -116,7 +116,8 @@ impl Range {
             Quantity::Length => [home - size, home + size],
             Quantity::Angle => one_turn(name, home),
         };
-        let grows = coordinate.quantity == Quantity::Length || manipulator.counts_turns(name);
+        let grows =
+            coordinate.quantity == Quantity::Length || manipulator.counts_turns(coordinate.kind());
         let extent = Extent { name, min, max, unbounded: false };
         Self { extent, start: [min, max], grows }
     }

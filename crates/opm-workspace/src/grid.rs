@@ -135,7 +135,7 @@ pub enum Sections {
     Upper,
     /// The lower section alone: the grid's points are its displacements `v`, together with the
     /// displacements of the imaginary joints of the legs that are split in the upper section
-    /// ([`Manipulator::cuts`]).
+    /// ([`Manipulator::intersection_joints`]).
     Lower,
 }
 
@@ -170,15 +170,15 @@ impl Sections {
             name: c.name.to_owned(),
             quantity: c.quantity,
             home: c.home,
-            counts_turns: manipulator.counts_turns(c.name),
+            counts_turns: manipulator.counts_turns(c.kind()),
         });
         let lower = manipulator.task().lower_count;
         let cuts = || {
-            manipulator.cuts().into_iter().map(|joint| Coordinate {
+            manipulator.intersection_joints().into_iter().map(|joint| Coordinate {
                 name: joint.name,
                 quantity: joint.quantity,
                 home: joint.home,
-                counts_turns: manipulator.cuts_count_turns(),
+                counts_turns: manipulator.intersection_counts_turns(),
             })
         };
         match self {
@@ -269,7 +269,7 @@ impl Grid {
             Sections::Upper => 0,
         };
         let cuts = match sections {
-            Sections::Lower => manipulator.cuts(),
+            Sections::Lower => manipulator.intersection_joints(),
             Sections::Whole | Sections::Upper => vec![],
         };
         match poses {

@@ -1,8 +1,9 @@
-//! What a driven joint of a chain asks of the chain's displacement: one equation.
+//! The equation that a joint of a chain, held at a known displacement, imposes on the chain's displacement.
 //!
 //! A chain `E₀ E₁ E₂` of which one joint is held can be written as `D · X(p) · Y(q) · E` with the two
-//! others, `X` and `Y`, free: where the second is held, the third is carried over it,
-//! `E₀ E₁ E₂ = E₀ (E₁ E₂ E₁⁻¹) E₁`. What two free joints leave fixed is one of the equations below.
+//! others, `X` and `Y`, free. Where the second is held, the third is transformed by it:
+//! `E₀ E₁ E₂ = E₀ (E₁ E₂ E₁⁻¹) E₁`. Two free joints leave one equation on the displacement, one of those
+//! below.
 
 use crate::chain::Chain;
 use crate::chain::planar::PlanarJoint;
@@ -11,93 +12,100 @@ use crate::group::{
 };
 use nalgebra::{Complex, Vector3};
 
-/// Conditions that miss each other by less than this, as a share of the size, meet: rounding at the
-/// boundary of reach must not decide.
+/// Conditions that miss each other by less than this, as a fraction of the size, count as compatible:
+/// rounding at the boundary of reach must not decide.
 pub const VERGE: f64 = 1e-13;
 
-/// A quarter turn.
+/// The rotation by a right angle, counter-clockwise.
 pub const QUARTER: Complex<f64> = Complex::new(0.0, 1.0);
 
 /// One equation on a displacement `g`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
-    /// A carried point of the plane is at a distance from a fixed one: `|g point − centre| = radius`.
+    /// A point of the body is at a given distance from a point of the base: `|g point − centre| = radius`.
     Circle {
-        /// In the body.
+        /// The point, body coordinates, metres.
         point: Complex<f64>,
-        /// In the base.
+        /// The centre, base coordinates, metres.
         centre: Complex<f64>,
-        /// Metres.
+        /// The distance, metres.
         radius: f64,
     },
-    /// A carried point is on a fixed line: `normal · g point = offset`.
+    /// A point of the body is on a line of the base: `normal · g point = offset`.
     Line {
-        /// In the body.
+        /// The point, body coordinates, metres.
         point: Complex<f64>,
-        /// In the base, unit.
+        /// The line's unit normal, base coordinates.
         normal: Complex<f64>,
-        /// Metres.
+        /// The line's distance from the origin along the normal, metres.
         offset: f64,
     },
-    /// A fixed point is on a carried line: `normal · g⁻¹ point = offset`.
+    /// A point of the base is on a line of the body: `normal · g⁻¹ point = offset`.
     CarriedLine {
-        /// In the base.
+        /// The point, base coordinates, metres.
         point: Complex<f64>,
-        /// In the body, unit.
+        /// The line's unit normal, body coordinates.
         normal: Complex<f64>,
-        /// Metres.
+        /// The line's distance from the origin along the normal, metres.
         offset: f64,
     },
-    /// The rotation is known.
+    /// The rotation of `g` is known.
     Heading {
-        /// Unit.
+        /// The unit vector in the direction of the angle.
         rotation: Complex<f64>,
     },
-    /// A carried direction makes an angle with a fixed one: `fixed · g carried = cosine`.
+    /// A direction of the body makes a given angle with a direction of the base:
+    /// `fixed · g carried = cosine`.
     Cone {
-        /// In the base, unit.
+        /// The unit direction, base coordinates.
         fixed: Vector3<f64>,
-        /// In the body, unit.
+        /// The unit direction, body coordinates.
         carried: Vector3<f64>,
-        /// Of the angle between them.
+        /// The cosine of the angle between them.
         cosine: f64,
     },
-    /// Of a subspace whose displacements add up: `normal · g = value`.
+    /// A linear equation on a displacement of a commutative subspace: `normal · g = value`.
     Flat {
-        /// In the coordinates of the displacement's logarithm.
+        /// The coefficients, for the coordinates of the displacement's logarithm.
         normal: [f64; 2],
-        /// In their units.
+        /// The value, in the units of `normal · g`.
         value: f64,
     },
 }
 
-/// What one unit of each joint adds, of a chain whose displacements add up.
+/// The coordinates of the displacement that one unit of each joint makes, for a chain in a commutative
+/// subspace; `None` for other chains.
 pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
     match chain {
-        Chain::Cylindrical(chain) => Some(chain.joints().map(|joint| [joint.turn, joint.advance])),
+        Chain::Cylindrical(chain) => {
+            Some(chain.joints().map(|joint| [joint.rotation, joint.advance]))
+        }
         Chain::Translational(chain) => Some(chain.slides().map(|slide| [slide.re, slide.im])),
         Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
     }
 }
 
 impl Condition {
-    /// What the joint `held` alone asks of the chain's displacement; `None` of a spherical joint, no part
-    /// of which asks for one equation.
-    pub fn new(chain: &Chain, held: usize, amount: JointDisplacement) -> Option<Self> {
+    /// The equation that joint number `held` at `displacement` imposes on the chain's displacement. `None` for
+    /// a spherical joint, whose coordinates impose no such equation.
+    pub fn new(chain: &Chain, held: usize, displacement: JointDisplacement) -> Option<Self> {
         match chain {
-            Chain::Planar(chain) => Some(planar(&chain.joints(), held, amount)),
-            Chain::Spherical(chain) => Some(spherical(chain.axes(), held, amount)),
+            Chain::Planar(chain) => Some(planar(&chain.joints(), held, displacement)),
+            Chain::Spherical(chain) => Some(spherical(chain.axes(), held, displacement)),
             Chain::Ball(_) => None,
             Chain::Cylindrical(_) | Chain::Translational(_) => {
                 let joints = flat_joints(chain)?;
                 let ([a, b], [p, q]) = (joints[held], joints[1 - held]);
                 let normal = [q, -p];
-                Some(Self::Flat { normal, value: (normal[0] * a + normal[1] * b) * amount.value() })
+                Some(Self::Flat {
+                    normal,
+                    value: (normal[0] * a + normal[1] * b) * displacement.value(),
+                })
             }
         }
     }
 
-    /// The subspace whose displacements it is on; of a flat one, one of those that commute.
+    /// The subspace of the displacements that the condition is on; for `Flat`, one of the commutative ones.
     fn kind(&self) -> SubspaceKind {
         match self {
             Self::Circle { .. }
@@ -122,12 +130,12 @@ impl Condition {
         }
     }
 
-    /// Stops the program: the condition is not on displacements of a plane.
+    /// Panics: the condition is not on displacements of a plane.
     pub fn not_planar(&self) -> ! {
         mismatch(SubspaceKind::Planar, self.kind())
     }
 
-    /// The same condition, lengths times a factor.
+    /// The same condition with all lengths multiplied by a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         match self {
@@ -146,7 +154,7 @@ impl Condition {
         }
     }
 
-    /// The condition on `g` that this one is on `g · h`.
+    /// The condition on `g` that is equivalent to this condition on `g · h`.
     #[must_use]
     pub fn before(self, h: &Displacement) -> Self {
         match self {
@@ -175,7 +183,7 @@ impl Condition {
         }
     }
 
-    /// The condition on `g` that this one is on `h⁻¹ · g`.
+    /// The condition on `g` that is equivalent to this condition on `h⁻¹ · g`.
     #[must_use]
     pub fn after(self, h: &Displacement) -> Self {
         match self {
@@ -210,14 +218,14 @@ pub fn dot(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.re + a.im * b.im
 }
 
-/// The length of a vector of the plane, without the care that overflow takes.
+/// The length of a vector of the plane, without protection from overflow.
 #[inline]
 pub fn length(z: Complex<f64>) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-fn planar(joints: &[PlanarJoint; 3], held: usize, amount: JointDisplacement) -> Condition {
-    let known = joints[held].displacement(amount);
+fn planar(joints: &[PlanarJoint; 3], held: usize, displacement: JointDisplacement) -> Condition {
+    let known = joints[held].displacement(displacement);
     let none = PlanarDisplacement::IDENTITY;
     let (before, first, second, after) = match held {
         0 => (known, joints[1], joints[2], none),
@@ -255,8 +263,8 @@ fn carried(g: &PlanarDisplacement, joint: &PlanarJoint) -> PlanarJoint {
     }
 }
 
-fn spherical(axes: &[Vector3<f64>; 3], held: usize, amount: JointDisplacement) -> Condition {
-    let known = rotation_about(&axes[held], amount.unit_direction());
+fn spherical(axes: &[Vector3<f64>; 3], held: usize, displacement: JointDisplacement) -> Condition {
+    let known = rotation_about(&axes[held], displacement.unit_direction());
     let (fixed, carried, cosine) = match held {
         0 => (known * axes[1], axes[2], axes[1].dot(&axes[2])),
         1 => {

@@ -1,5 +1,6 @@
-//! Chains of two coaxial joints: revolute, prismatic or helical. Linear, and counting whole turns,
-//! since a helical joint does. A revolute joint does not: its amount is a turn like any other.
+//! Chains of two coaxial joints: revolute, prismatic or helical. The closed form is linear. Targets count
+//! full revolutions, since a helical joint does; a revolute joint does not, and its displacement is a
+//! direction.
 
 use super::surface::Surface;
 use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, ReachDeficit};
@@ -8,22 +9,23 @@ use crate::numeric::angle::{MOST_REDUCED, sin_cos_reduced};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// A joint on the axis: what one unit of its coordinate turns and advances.
+/// A joint on the axis: the rotation and the advance that one unit of its coordinate makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoaxialJoint {
-    /// Radians a unit: ±1 revolute or helical, 0 prismatic.
-    pub turn: f64,
-    /// Metres a unit: 0 revolute, ±1 prismatic, ± the pitch helical.
+    /// The rotation, radians per unit: ±1 for a revolute or helical joint, 0 for a prismatic one.
+    pub rotation: f64,
+    /// The advance, metres per unit: 0 for a revolute joint, ±1 for a prismatic one, ± the pitch for a helical
+    /// one.
     pub advance: f64,
 }
 
 impl CoaxialJoint {
     fn is_revolute(&self) -> bool {
-        self.turn != 0.0 && self.advance == 0.0
+        self.rotation != 0.0 && self.advance == 0.0
     }
 }
 
-/// Two coaxial joints: one solution.
+/// Two coaxial joints. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylindricalChain {
     joints: [CoaxialJoint; 2],
@@ -34,13 +36,13 @@ impl CylindricalChain {
     /// The closed form of two joints on one axis.
     ///
     /// # Errors
-    /// Two of one kind, or two helical joints of one pitch.
+    /// The joints are two revolute joints, two prismatic joints, or two helical joints of the same pitch.
     pub fn new(joints: [CoaxialJoint; 2]) -> Result<Self, ChainError> {
         let [p, q] = joints;
-        let determinant = p.turn * q.advance - q.turn * p.advance;
+        let determinant = p.rotation * q.advance - q.rotation * p.advance;
         let size = p.advance.abs().max(q.advance.abs());
         if determinant.abs() <= DEGENERATE * size {
-            return Err(ChainError::Dependent("two coaxial joints of one pitch"));
+            return Err(ChainError::Dependent("two coaxial joints have the same pitch"));
         }
         Ok(Self { joints, determinant })
     }
@@ -50,61 +52,64 @@ impl CylindricalChain {
         &self.joints
     }
 
-    /// Whether targets whole turns apart differ: no revolute joint makes up for a turn.
+    /// Whether targets that are full revolutions apart differ: no revolute joint makes up for a revolution.
     pub fn counts_turns(&self) -> bool {
         !self.joints.iter().any(CoaxialJoint::is_revolute)
     }
 
-    /// Which joint does not count whole turns; two do not, or the chain is none.
+    /// The number of the revolute joint, which does not count revolutions. At most one of the two is revolute,
+    /// or the chain would be dependent.
     #[inline]
     pub(crate) fn revolute(&self) -> Option<usize> {
         self.joints.iter().position(CoaxialJoint::is_revolute)
     }
 
-    /// Whether an amount of a joint is a turn.
-    pub(super) fn turns(&self, joint: usize) -> bool {
+    /// Whether a joint's displacement is a rotation.
+    pub(super) fn is_rotation(&self, joint: usize) -> bool {
         self.joints[joint].is_revolute()
     }
 
-    /// The targets with joint number `joint` at `amount`: those of [`CylindricalChain::inverse`].
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets for which [`CylindricalChain::inverse`] gives `displacement` for joint number `joint`.
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let [p, q] = self.joints;
-        let (turn, advance) = if joint == 0 { (q.advance, -q.turn) } else { (-p.advance, p.turn) };
-        let period = self.turns(joint).then_some(TAU * self.determinant);
-        Surface::Coaxial { turn, advance, at: amount.value() * self.determinant, period }
+        let (rotation, advance) =
+            if joint == 0 { (q.advance, -q.rotation) } else { (-p.advance, p.rotation) };
+        let period = self.is_rotation(joint).then_some(TAU * self.determinant);
+        Surface::Coaxial { rotation, advance, at: displacement.value() * self.determinant, period }
     }
 
-    /// The joints' amounts that displace the outer link by `target`.
+    /// The joints' displacements that displace the outer link by `target`.
     #[inline]
     pub fn inverse(&self, target: &CylindricalDisplacement) -> [JointDisplacement; 2] {
-        let mut amounts = self.coordinates(target).map(JointDisplacement::Value);
+        let mut displacements = self.coordinates(target).map(JointDisplacement::Value);
         if let Some(revolute) = self.revolute() {
-            amounts[revolute] = JointDisplacement::Direction(amounts[revolute].unit_direction());
+            displacements[revolute] =
+                JointDisplacement::Direction(displacements[revolute].unit_direction());
         }
-        amounts
+        displacements
     }
 
-    /// The joints' coordinates, those of revolute joints too with whole turns.
+    /// The joints' coordinates; those of revolute joints count revolutions too.
     #[inline(always)]
     fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
         let [p, q] = self.joints;
-        let first = (target.angle * q.advance - q.turn * target.advance) / self.determinant;
-        let second = (p.turn * target.advance - target.angle * p.advance) / self.determinant;
+        let first = (target.angle * q.advance - q.rotation * target.advance) / self.determinant;
+        let second = (p.rotation * target.advance - target.angle * p.advance) / self.determinant;
         [first, second]
     }
 
-    /// The displacement of the outer link; its whole turns are those that the amounts hold.
-    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> CylindricalDisplacement {
+    /// The displacement of the outer link, with the revolutions that the joints' displacements count.
+    pub fn forward(&self, displacements: &[JointDisplacement; 2]) -> CylindricalDisplacement {
         let [p, q] = self.joints;
-        let [a, b] = amounts.map(JointDisplacement::value);
+        let [a, b] = displacements.map(JointDisplacement::value);
         CylindricalDisplacement {
-            angle: p.turn * a + q.turn * b,
+            angle: p.rotation * a + q.rotation * b,
             advance: p.advance * a + q.advance * b,
         }
     }
 }
 
-/// The closed form with the revolute joint's number as a constant, past the last one where none is.
+/// The closed form with the revolute joint's number as a constant; 2 where neither joint is revolute.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WithRevolute<const NUMBER: usize>(pub CylindricalChain);
 
@@ -114,15 +119,15 @@ impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
     #[inline(always)]
     fn attempt(&self, target: &CylindricalDisplacement, _: Branch) -> Attempt {
         let [first, second] = self.0.coordinates(target);
-        let mut amounts = [first, second, 0.0].map(JointDisplacement::Value);
+        let mut displacements = [first, second, 0.0].map(JointDisplacement::Value);
         let mut reduced = true;
         if NUMBER < 2 {
             let angle = if NUMBER == 0 { first } else { second };
             let (sin, cos) = sin_cos_reduced(angle);
-            amounts[NUMBER] = JointDisplacement::Direction(Complex::new(cos, sin));
+            displacements[NUMBER] = JointDisplacement::Direction(Complex::new(cos, sin));
             reduced = angle.abs() <= MOST_REDUCED;
         }
-        Attempt { amounts, holds: reduced, beyond: false }
+        Attempt { displacements, holds: reduced, beyond: false }
     }
 
     #[cold]

@@ -1,4 +1,5 @@
-//! Functions of one number, and where they are too near to zero for their sign to be told.
+//! Functions of one number, and the intervals in which they are too near to zero for their sign to be
+//! certain.
 
 use std::f64::consts::TAU;
 
@@ -9,29 +10,29 @@ pub enum Equation {
     Polynomial([f64; 3]),
     /// `c₀ + c₁ cos t + c₂ sin t`.
     Harmonic([f64; 3]),
-    /// `c₀ + c₁ t`, zero also wherever that is a whole number of periods.
+    /// `c₀ + c₁ t` modulo the period that is the second field.
     Periodic([f64; 2], f64),
 }
 
-/// The values of `t` that are asked for.
+/// The values of `t` in which zeros are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// The lowest.
+    /// The lowest value.
     pub from: f64,
-    /// The highest.
+    /// The highest value.
     pub to: f64,
-    /// How far apart two of them are at least: zeros that are closer need not be told apart.
+    /// The least distance between the values that matter: zeros that are closer need not be separated.
     pub step: f64,
 }
 
 impl Span {
-    /// The largest absolute value.
+    /// The largest absolute value in the span.
     pub(crate) fn reach(&self) -> f64 {
         self.from.abs().max(self.to.abs())
     }
 
     fn give(&self, from: f64, to: f64, found: &mut impl FnMut([f64; 2])) {
-        // An end that is not a number, of an interval that has none, is that of the span.
+        // An end that is NaN is replaced by that of the span.
         if !(to < self.from || from > self.to) {
             found([from.max(self.from), to.min(self.to)]);
         }
@@ -39,8 +40,8 @@ impl Span {
 }
 
 impl Equation {
-    /// Gives the intervals of a span in which the function is no farther than `tolerance` from zero, in
-    /// any order: between them it keeps its sign.
+    /// Calls `found` with the intervals of a span in which the absolute value of the function is at most
+    /// `tolerance`, in any order. Between them the function keeps its sign.
     #[inline]
     pub fn zeros(&self, tolerance: f64, span: &Span, found: &mut impl FnMut([f64; 2])) {
         match *self {
@@ -76,13 +77,13 @@ impl Equation {
                 }
             }
             Self::Periodic([c0, c1], period) => {
-                let turn = (period / c1).abs();
-                if !turn.is_finite() {
+                let repeat = (period / c1).abs();
+                if !repeat.is_finite() {
                     let rest = c0 - period * (c0 / period).round();
                     linear(rest, 0.0, tolerance, span, found);
-                } else if turn > 2.0 * span.step {
+                } else if repeat > 2.0 * span.step {
                     let (zero, half) = (-c0 / c1, tolerance / c1.abs());
-                    every(turn, zero - half, zero + half, span, found);
+                    every(repeat, zero - half, zero + half, span, found);
                 } else {
                     found([span.from, span.to]);
                 }
@@ -100,12 +101,12 @@ fn linear(c0: f64, c1: f64, tolerance: f64, span: &Span, found: &mut impl FnMut(
     }
 }
 
-/// Gives an interval, moved by any whole number of periods.
+/// Calls `found` with the interval shifted by every whole number of periods that meets the span.
 fn every(period: f64, from: f64, to: f64, span: &Span, found: &mut impl FnMut([f64; 2])) {
-    let mut turns = ((span.from - to) / period).ceil();
+    let mut count = ((span.from - to) / period).ceil();
     let last = ((span.to - from) / period).floor();
-    while turns <= last {
-        span.give(from + turns * period, to + turns * period, found);
-        turns += 1.0;
+    while count <= last {
+        span.give(from + count * period, to + count * period, found);
+        count += 1.0;
     }
 }

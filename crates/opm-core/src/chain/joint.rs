@@ -1,5 +1,5 @@
-//! The joints that a chain is built from, laid into the frame of its subspace. What they are off it by is
-//! dropped.
+//! The joints that a chain is built from, projected into the frame of its subspace. What they deviate from
+//! the subspace by is dropped.
 
 use super::cylindrical::CoaxialJoint;
 use super::planar::PlanarJoint;
@@ -10,18 +10,18 @@ use nalgebra::{Complex, Point3, Unit, Vector3};
 /// A joint to build a chain from, at home in base coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChainJoint {
-    /// Rotation about the line through `point` along `axis`, with `pitch` metres of advance a radian.
+    /// Rotation about the line through `point` along `axis`, with an advance of `pitch` metres per radian.
     Screw {
-        /// Direction.
+        /// The unit direction of the axis, base coordinates.
         axis: Unit<Vector3<f64>>,
-        /// A point of the line.
+        /// A point of the line, base coordinates, metres.
         point: Point3<f64>,
-        /// Zero for a revolute joint.
+        /// The advance, metres per radian; zero for a revolute joint.
         pitch: f64,
     },
-    /// Translation.
+    /// Translation along `axis`.
     Slide {
-        /// Direction.
+        /// The unit direction of the axis, base coordinates.
         axis: Unit<Vector3<f64>>,
     },
     /// A spherical joint.
@@ -69,14 +69,14 @@ pub(super) fn coaxial_joints(
     subspace: &Subspace,
     joints: &[ChainJoint; 2],
 ) -> Result<[CoaxialJoint; 2], ChainError> {
-    let mut coaxial = [CoaxialJoint { turn: 0.0, advance: 0.0 }; 2];
+    let mut coaxial = [CoaxialJoint { rotation: 0.0, advance: 0.0 }; 2];
     for (coaxial, joint) in coaxial.iter_mut().zip(joints) {
         let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
         *coaxial = match joint {
             ChainJoint::Screw { axis, pitch, .. } => {
-                CoaxialJoint { turn: sign(axis), advance: sign(axis) * pitch }
+                CoaxialJoint { rotation: sign(axis), advance: sign(axis) * pitch }
             }
-            ChainJoint::Slide { axis } => CoaxialJoint { turn: 0.0, advance: sign(axis) },
+            ChainJoint::Slide { axis } => CoaxialJoint { rotation: 0.0, advance: sign(axis) },
             ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
         };
     }
@@ -95,13 +95,15 @@ pub(super) fn slides(
     }
 }
 
-/// A direction of the base, laid into the plane.
+/// The unit direction in the plane of a direction given in base coordinates.
 fn in_plane(subspace: &Subspace, axis: &Vector3<f64>) -> Result<Complex<f64>, ChainError> {
     let d = subspace.direction(axis);
     let along = Complex::new(d.x, d.y);
     let length = along.norm();
     if length <= DEGENERATE {
-        return Err(ChainError::Dependent("a slider square to the plane that it moves in"));
+        return Err(ChainError::Dependent(
+            "a slider is perpendicular to the plane of its subspace",
+        ));
     }
     Ok(along / length)
 }

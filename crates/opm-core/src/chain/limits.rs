@@ -5,41 +5,40 @@ use crate::numeric::angle::unit;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// A coordinate this far past its limit, as a share of the largest number that it is computed from,
-/// is on it: the rounding of a solution that lies on a limit must not decide, and on a limit counts
-/// as inside.
+/// A coordinate that is past its limit by less than this, as a fraction of the largest number that it is
+/// computed from, counts as inside: the rounding of a solution on a limit must not decide.
 const SLACK: f64 = 1e-12;
 
 /// The displacements from home that a coordinate may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limits {
-    /// All of them.
+    /// Every displacement.
     Free,
-    /// A range of a length, or of an angle that counts whole turns.
+    /// A range of a length or of an angle.
     Range {
-        /// Lowest displacement from home.
+        /// The lowest displacement from home, metres or radians.
         low: f64,
-        /// Highest displacement from home.
+        /// The highest displacement from home, metres or radians.
         high: f64,
-        /// The ends, slack included, as unit vectors: an arc counter-clockwise from the first;
-        /// `None` where it is a full turn.
+        /// The range of an angle that does not count revolutions, slack included; `None` where the range is a
+        /// full revolution or more.
         arc: Option<Arc>,
     },
 }
 
-/// An arc of the circle, counter-clockwise.
+/// An arc of the unit circle, counter-clockwise from `from` to `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     from: Complex<f64>,
     to: Complex<f64>,
-    /// More than half a turn.
+    /// Whether the arc is longer than a semicircle.
     wide: bool,
 }
 
 impl Limits {
-    /// From the lowest and the highest value of a coordinate and its value at home. The ends get a slack
-    /// for rounding, in proportion to the largest of these numbers and of `size`: the mechanism's in
-    /// metres, one for an angle.
+    /// The limits for the lowest and the highest value of a coordinate and its value at home, radians or
+    /// metres. The ends get a slack for rounding, in proportion to the largest of these numbers and of
+    /// `size`: the mechanism's size in metres, or one for an angle.
     pub fn new(limits: Option<[f64; 2]>, home: f64, size: f64) -> Self {
         let Some([low, high]) = limits else { return Self::Free };
         let slack = SLACK * low.abs().max(high.abs()).max(home.abs()).max(size);
@@ -52,11 +51,11 @@ impl Limits {
         Self::Range { low, high, arc }
     }
 
-    /// Whether a displacement from home is allowed. A turn is, when it is at any whole number of
-    /// turns.
+    /// Whether a displacement from home is allowed. A direction is allowed if its angle is, after any number
+    /// of full revolutions.
     #[inline(always)]
-    pub fn admits(&self, amount: JointDisplacement) -> bool {
-        match (self, amount) {
+    pub fn admits(&self, displacement: JointDisplacement) -> bool {
+        match (self, displacement) {
             (Self::Free, _) | (Self::Range { arc: None, .. }, JointDisplacement::Direction(_)) => {
                 true
             }
@@ -69,35 +68,35 @@ impl Limits {
         }
     }
 
-    /// The value to report for an amount, a displacement from home: the turn nearest to home, but one
-    /// within the limits where there is one.
+    /// The value to report for a displacement from home. Of a direction, it is the angle nearest to home, but
+    /// an angle within the limits where there is one.
     #[inline(always)]
-    pub fn report(&self, amount: JointDisplacement) -> f64 {
-        let nearest = amount.value();
-        match (self, amount) {
+    pub fn report(&self, displacement: JointDisplacement) -> f64 {
+        let nearest = displacement.value();
+        match (self, displacement) {
             (Self::Range { low, high, .. }, JointDisplacement::Direction(_)) => {
-                turned(nearest, *low, *high)
+                brought_into(nearest, *low, *high)
             }
             _ => nearest,
         }
     }
 
-    /// The value to report for an amount and whether it is allowed, displacements from home: as
-    /// [`Limits::report`] and [`Limits::admits`] say, or (`held`) at the turn nearest to a value that
-    /// a motion comes from, wherever the limits are.
+    /// The value to report for a displacement from home, and whether it is allowed: as [`Limits::report`] and
+    /// [`Limits::admits`] define, or, where `held` is given, the angle nearest to that value and whether
+    /// that angle is allowed.
     #[inline(always)]
-    pub fn place(&self, amount: JointDisplacement, held: Option<f64>) -> (f64, bool) {
+    pub fn place(&self, displacement: JointDisplacement, held: Option<f64>) -> (f64, bool) {
         match held {
-            None => (self.report(amount), self.admits(amount)),
+            None => (self.report(displacement), self.admits(displacement)),
             Some(held) => {
-                let value = amount.nearest(held);
+                let value = displacement.nearest(held);
                 (value, self.admits(JointDisplacement::Value(value)))
             }
         }
     }
 
-    /// The ends of the limits of a length, or of an angle that counts whole turns.
-    pub(crate) fn values(&self) -> Option<[JointDisplacement; 2]> {
+    /// The ends of the limits of a length, or of an angle that counts revolutions; `None` where it is free.
+    pub(crate) fn value_ends(&self) -> Option<[JointDisplacement; 2]> {
         match self {
             Self::Free => None,
             Self::Range { low, high, .. } => {
@@ -106,8 +105,9 @@ impl Limits {
         }
     }
 
-    /// The ends of the limits of an angle that does not count whole turns; none of a full turn.
-    pub(crate) fn turns(&self) -> Option<[JointDisplacement; 2]> {
+    /// The ends of the limits of an angle that does not count revolutions; `None` where it is free or may
+    /// make a full revolution.
+    pub(crate) fn direction_ends(&self) -> Option<[JointDisplacement; 2]> {
         match self {
             Self::Range { arc: Some(arc), .. } => {
                 Some([arc.from, arc.to].map(JointDisplacement::Direction))
@@ -116,7 +116,7 @@ impl Limits {
         }
     }
 
-    /// Lowest and highest value of a length, as a displacement from home.
+    /// The lowest and the highest displacement from home; infinite where it is free.
     #[inline]
     pub fn range(&self) -> (f64, f64) {
         match self {
@@ -125,14 +125,14 @@ impl Limits {
         }
     }
 
-    /// Whether there are any.
+    /// Whether the coordinate is limited at all.
     pub fn any(&self) -> bool {
         !matches!(self, Self::Free)
     }
 }
 
 impl Arc {
-    /// Left of the first end and right of the second; of a wide arc either is enough.
+    /// Whether a direction is left of the first end and right of the second; for a wide arc either suffices.
     #[inline(always)]
     fn contains(&self, e: Complex<f64>) -> bool {
         let cross = |a: Complex<f64>, b: Complex<f64>| a.re * b.im - a.im * b.re;
@@ -141,9 +141,9 @@ impl Arc {
     }
 }
 
-/// The angle, whole turns added that bring it from outside of a range into it where any do.
+/// The angle with full revolutions added that bring it into a range; unchanged where none do.
 #[inline(always)]
-fn turned(angle: f64, low: f64, high: f64) -> f64 {
+fn brought_into(angle: f64, low: f64, high: f64) -> f64 {
     let (below, above) = (angle < low, angle > high);
     let past = if below { low - angle } else { angle - high };
     let turns = TAU * (past / TAU).ceil();
@@ -164,7 +164,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// The arc test agrees with counting turns on the number line.
+        /// The arc test agrees with the test of the angle modulo a revolution.
         #[test]
         fn arcs_are_ranges_modulo_a_turn(
             home in -7.0..7.0_f64, low in -7.0..7.0_f64, width in 0.0..7.0_f64, angle in -7.0..7.0_f64,
@@ -198,7 +198,7 @@ mod tests {
             assert!(!limits.admits(JointDisplacement::Direction(unit(high - home + 1e-9))));
         }
     }
-    /// Zero is a limit like any other: what rounds there is the size of the mechanism.
+    /// A limit of zero has a slack too: the rounding there is in proportion to the size of the mechanism.
     #[test]
     fn a_limit_at_zero_is_inside() {
         for size in [1e-6, 1.0, 1e6] {

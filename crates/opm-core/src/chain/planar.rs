@@ -1,7 +1,7 @@
-//! Chains of three revolute and prismatic joints in a plane, `SE(2)` as complex numbers.
+//! Chains of three revolute and prismatic joints in a plane. Displacements in `SE(2)` are complex numbers.
 //!
-//! A planar displacement takes the point `z` to `r z + t`, `|r| = 1`. The two-valued chains find
-//! their one hard coordinate from a triangle and the rest by complex division.
+//! A planar displacement takes the point `z` to `r z + t`, `|r| = 1`. A chain with two branches finds one
+//! coordinate from a triangle and the others by complex division.
 
 mod held;
 mod ppr;
@@ -29,34 +29,36 @@ use nalgebra::Complex;
 /// A joint of a planar chain at home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarJoint {
-    /// Rotation about the point `at`; counted clockwise where `reversed`.
+    /// Rotation about the point `at`; positive clockwise where `reversed`.
     Revolute {
-        /// Metres.
+        /// The position of the axis at home, metres.
         at: Complex<f64>,
-        /// The joint's axis points against the plane's normal.
+        /// Whether the joint's axis points against the plane's normal.
         reversed: bool,
     },
     /// Translation in the direction `along`, a unit vector.
     Prismatic {
-        /// Unit.
+        /// The unit direction at home.
         along: Complex<f64>,
     },
 }
 
 impl PlanarJoint {
-    /// The displacement of the outer link.
-    pub fn displacement(&self, amount: JointDisplacement) -> PlanarDisplacement {
+    /// The displacement of the outer link that the joint makes.
+    pub fn displacement(&self, displacement: JointDisplacement) -> PlanarDisplacement {
         match *self {
             Self::Revolute { at, reversed } => {
-                let turn = amount.unit_direction();
-                PlanarDisplacement::about(at, if reversed { turn.conj() } else { turn })
+                let rotation = displacement.unit_direction();
+                PlanarDisplacement::about(at, if reversed { rotation.conj() } else { rotation })
             }
-            Self::Prismatic { along } => PlanarDisplacement::translation(along * amount.value()),
+            Self::Prismatic { along } => {
+                PlanarDisplacement::translation(along * displacement.value())
+            }
         }
     }
 }
 
-/// A revolute as its closed form needs it: where it is, and which way it counts.
+/// A revolute joint as the closed forms need it: its position, and its sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pivot {
     at: Complex<f64>,
@@ -68,23 +70,23 @@ impl Pivot {
         PlanarJoint::Revolute { at: self.at, reversed: self.reversed }
     }
 
-    /// The amount for a rotation to the direction of `r`, counter-clockwise in the plane's frame.
+    /// The joint's displacement for a rotation by the angle of `r`, counter-clockwise in the plane's frame.
     #[inline(always)]
-    fn amount(&self, r: Complex<f64>) -> JointDisplacement {
+    fn displacement(&self, r: Complex<f64>) -> JointDisplacement {
         JointDisplacement::Direction(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
     }
 }
 
-/// The three joints of a chain: their closed form.
+/// The closed form of three joints in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarChain {
     /// Two links and a wrist.
     Rrr(Rrr),
     /// A slider and a link.
     Prr(Prr),
-    /// A link that ends in a slider: the slider and link, backwards.
+    /// A link that ends in a slider: the reverse of `Prr`.
     Rrp(Rrp),
-    /// A telescope between two pivots.
+    /// A telescopic link between two pivots.
     Rpr(Rpr),
     /// A pivot that carries two sliders.
     Rpp(Rpp),
@@ -98,7 +100,7 @@ impl PlanarChain {
     /// The closed form of three joints, base first.
     ///
     /// # Errors
-    /// Where the three are dependent in every configuration, or are three sliders.
+    /// The three joints are dependent in every configuration, or are three sliders.
     pub fn new(joints: [PlanarJoint; 3]) -> Result<Self, ChainError> {
         use PlanarJoint::{Prismatic, Revolute};
         let pivot = |at, reversed| Pivot { at, reversed };
@@ -138,7 +140,7 @@ impl PlanarChain {
         })
     }
 
-    /// The joints that it was made of, base first.
+    /// The joints at home, base first.
     pub fn joints(&self) -> [PlanarJoint; 3] {
         match self {
             Self::Rrr(chain) => chain.joints(),
@@ -151,7 +153,7 @@ impl PlanarChain {
         }
     }
 
-    /// Whether a target has two solutions: the chain has a choice of branch.
+    /// Whether a target has two solutions, one on each branch.
     pub fn has_choice(&self) -> bool {
         matches!(self, Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_))
     }
@@ -159,7 +161,7 @@ impl PlanarChain {
     /// The joints' displacements that move the outer link by `target`.
     ///
     /// # Errors
-    /// Out of reach: by how much.
+    /// The reach deficit, where the target is out of reach.
     #[inline]
     pub fn inverse(
         &self,
@@ -177,13 +179,16 @@ impl PlanarChain {
         }
     }
 
-    /// The translations at which the chain closes within its limits; `None` where limits on its angles
-    /// make that more than a convex set less another.
+    /// The translations of the target at which the chain closes within its limits; `None` where limits on
+    /// angles make the region more than a convex set with a convex hole.
+    #[doc(hidden)]
     pub fn shape(&self, branch: Branch, limits: [&Limits; 3]) -> Option<Shape> {
         let free = |turns: &[usize]| turns.iter().all(|&i| *limits[i] == Limits::Free);
         let range = |slider: usize| <[f64; 2]>::from(limits[slider].range());
-        // Of chains with two sliders the rotation is that of the pivot.
-        let within = |turn: usize, shape: Shape| shape.within(&self.joints()[turn], limits[turn]);
+        // The rotation of a chain with two sliders is that of its pivot.
+        let within = |rotation: usize, shape: Shape| {
+            shape.within(&self.joints()[rotation], limits[rotation])
+        };
         Some(match self {
             Self::Rrr(chain) if free(&[0, 1, 2]) => chain.shape(),
             Self::Prr(chain) if free(&[1, 2]) => chain.shape(branch, range(0)),
@@ -198,20 +203,26 @@ impl PlanarChain {
 }
 
 /// The displacement of the outer link: the product of the joints' displacements, base first.
-pub fn forward(joints: &[PlanarJoint; 3], amounts: &[JointDisplacement; 3]) -> PlanarDisplacement {
-    joints.iter().zip(amounts).fold(PlanarDisplacement::IDENTITY, |g, (joint, &amount)| {
-        g.after(&joint.displacement(amount))
-    })
+pub fn forward(
+    joints: &[PlanarJoint; 3],
+    displacements: &[JointDisplacement; 3],
+) -> PlanarDisplacement {
+    joints
+        .iter()
+        .zip(displacements)
+        .fold(PlanarDisplacement::IDENTITY, |g, (joint, &displacement)| {
+            g.after(&joint.displacement(displacement))
+        })
 }
 
-/// `a × b`, the third component of the cross product.
+/// The third component of the cross product `a × b`.
 #[inline(always)]
 pub(super) fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.im - a.im * b.re
 }
 
-/// `z = m u + n v`: the coordinates of `z` along two unit directions that are not parallel. The first
-/// makes up for the rounding of the second, so that the sum is `z` however near to parallel they are.
+/// The coordinates `(m, n)` of `z = m u + n v` along two unit directions that are not parallel. `m` is
+/// computed from the rounded `n`, so that the sum is `z` even where the directions are nearly parallel.
 #[inline(always)]
 pub(super) fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
     let n = cross(u, z) / cross(u, v);

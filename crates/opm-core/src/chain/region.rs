@@ -1,24 +1,24 @@
-//! Where in a plane a chain closes, the rotation of its target fixed: one fixed shape, which the rows
-//! of a sweep cut.
+//! The region of the plane in which a chain closes, for a fixed rotation of its target. The rows of a
+//! sweep are clipped against it.
 //!
-//! A chain of the plane whose only limits are on its sliders reaches a convex set less another: a
-//! ring, a parallelogram, or what half a disc sweeps as it slides along. A row, a line along the
-//! plane's first direction, cuts a convex set in an interval, which takes a square root at most.
+//! A planar chain whose only limits are on its sliders reaches a convex set with a convex hole: a ring,
+//! a parallelogram, or the area that half a disc sweeps as it slides along. A row is a line along the
+//! plane's first direction. Its chord of a convex set is an interval, which takes at most one square root.
 //!
-//! The chain itself has the last word on which targets it reaches, and ends of intervals are
-//! rounded. So a section says whether it is sure, for an end that is right to within a given
-//! tolerance ([`Precision`]).
+//! The closed form of the chain decides which targets it reaches, and the ends of chords are rounded. So
+//! a chord tells whether its ends are certainly right to within a given tolerance ([`Precision`]).
 
 use nalgebra::Complex;
 
-/// A direction's part along the rows that is smaller than this counts as none.
+/// A direction's component along the rows that is smaller than this counts as zero.
 const LEVEL: f64 = 1e-12;
 
-/// Rounding of a coordinate, as a share of the largest number that it is computed from: that of
-/// some fifty operations.
+/// The rounding of a coordinate, as a fraction of the largest number that it is computed from: that of
+/// about fifty operations.
 const ROUNDING: f64 = 1e-14;
 
-/// In place of the inverse of zero: what it multiplies is beyond any grid, and zero stays zero.
+/// Stands for the inverse of zero: its product with any length is beyond any grid, and its product with
+/// zero is zero.
 const HUGE: f64 = 1e200;
 
 /// The translations at which a chain closes: those of a convex set that are not inside the `hole`.
@@ -26,29 +26,29 @@ const HUGE: f64 = 1e200;
 pub struct Region {
     /// The convex set.
     pub whole: Convex,
-    /// What is missing of it; its rim is not.
+    /// The part of it that is out of reach. The hole's boundary belongs to the region.
     pub hole: Option<Convex>,
 }
 
 /// A convex set of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convex {
-    /// The points that two bands have in common.
+    /// The intersection of two bands.
     Bands([Band; 2]),
-    /// A circle and its inside.
+    /// A circle and its interior.
     Disc(Disc),
-    /// The points that are no farther than a radius from a ray.
+    /// The points within a radius of a ray.
     Capsule(Capsule),
 }
 
 /// The points whose coordinate along a direction lies in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
-    /// Unit.
+    /// The unit vector perpendicular to the band.
     across: Complex<f64>,
-    /// The ends of the range, in the order in which a row meets them.
+    /// The ends of the range, in the order in which a row crosses them.
     met: [f64; 2],
-    /// Of the direction's part along the row.
+    /// The inverse of the component of `across` along the row.
     inverse: f64,
 }
 
@@ -57,11 +57,11 @@ pub struct Band {
 pub struct Disc {
     centre: Complex<f64>,
     square: f64,
-    /// Its root, zero where there is none.
+    /// The root of `square`, zero where `square` is negative.
     radius: f64,
 }
 
-/// The points no farther than a radius from a ray: half a band, and the disc about its end.
+/// The points within a radius of a ray: half a band, and the disc about the ray's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     band: Band,
@@ -69,33 +69,33 @@ pub struct Capsule {
     tip: Disc,
 }
 
-/// What a row cuts from a convex set: nothing where `to < from`.
+/// The intersection of a row with a convex set; empty where `to < from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
-    /// First coordinate of the near end.
+pub struct Chord {
+    /// The first coordinate of the near end.
     pub from: f64,
-    /// First coordinate of the far end.
+    /// The first coordinate of the far end.
     pub to: f64,
-    /// The ends are right to within the tolerance.
+    /// Whether the ends are certainly right to within the tolerance.
     pub sure: bool,
 }
 
-/// From where on the ends of a section are right to within a tolerance.
+/// Thresholds beyond which the ends of a chord are right to within a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
-    /// How far from the edge of a band along the rows.
+    /// The least distance of a row from the edge of a band that runs along the rows.
     level: f64,
-    /// Least square that a root is taken of.
+    /// The least absolute value of a number whose root is taken.
     square: f64,
-    /// Largest inverse of a direction's part along the rows.
+    /// The largest inverse of a direction's component along the rows.
     inverse: f64,
 }
 
 impl Precision {
-    /// For ends that are right to within `tolerance`, where no number is larger than `size`.
+    /// The thresholds for ends that are right to within `tolerance`, where no number is larger than `size`.
     pub fn new(size: f64, tolerance: f64) -> Self {
         let rounding = ROUNDING * size;
-        // The root of s, which is off by d, is off by d / (2 root).
+        // An error d of s makes an error d / (2 √s) of √s.
         let root = rounding * size / tolerance;
         Self {
             level: rounding + LEVEL * size,
@@ -106,13 +106,16 @@ impl Precision {
 }
 
 impl Region {
-    /// No translation at all.
+    /// The empty region.
     pub const NOTHING: Self = Self { whole: Convex::NOTHING, hole: None };
 
-    /// The region turned about the origin by a unit vector.
+    /// The region rotated about the origin; `rotation` is a unit vector in the direction of the angle.
     #[must_use]
-    pub fn turned(&self, turn: Complex<f64>) -> Self {
-        Self { whole: self.whole.turned(turn), hole: self.hole.map(|hole| hole.turned(turn)) }
+    pub fn turned(&self, rotation: Complex<f64>) -> Self {
+        Self {
+            whole: self.whole.turned(rotation),
+            hole: self.hole.map(|hole| hole.turned(rotation)),
+        }
     }
 
     /// The region after every one of its points `z` has moved to `scale · (z + shift)`.
@@ -125,8 +128,8 @@ impl Region {
         }
     }
 
-    /// Whether every section that says so is right: no edge is so close to the rows' direction that
-    /// rounding moves it by more than the tolerance.
+    /// Whether [`Chord::sure`] can be relied on: no edge is so close to the rows' direction that rounding
+    /// moves its crossing by more than the tolerance.
     pub fn suits(&self, precision: &Precision) -> bool {
         let suits = |set: &Convex| match set {
             Convex::Bands(bands) => bands.iter().all(|band| band.suits(precision)),
@@ -136,7 +139,7 @@ impl Region {
         suits(&self.whole) && self.hole.as_ref().is_none_or(suits)
     }
 
-    /// The largest finite number in it, which decides how far its sections are rounded.
+    /// The largest finite number of the region, which bounds the rounding of its chords.
     pub fn size(&self) -> f64 {
         let size = |set: &Convex| match set {
             Convex::Bands(bands) => bands[0].size().max(bands[1].size()),
@@ -148,8 +151,8 @@ impl Region {
 }
 
 impl Convex {
-    /// Second coordinates between which all of its points lie whose first ones are in a range: none where
-    /// the second number is less than the first.
+    /// The range of the second coordinate of those points whose first coordinate is in a range. It is empty
+    /// where its second number is less than its first.
     pub fn rows(&self, first: [f64; 2]) -> [f64; 2] {
         let common = |a: [f64; 2], b: [f64; 2]| [larger(a[0], b[0]), smaller(a[1], b[1])];
         match self {
@@ -179,14 +182,14 @@ impl Convex {
         Self::Bands([band; 2])
     };
 
-    fn turned(&self, turn: Complex<f64>) -> Self {
+    fn turned(&self, rotation: Complex<f64>) -> Self {
         match self {
-            Self::Bands(bands) => Self::Bands(bands.map(|band| band.turned(turn))),
-            Self::Disc(disc) => Self::Disc(disc.turned(turn)),
+            Self::Bands(bands) => Self::Bands(bands.map(|band| band.turned(rotation))),
+            Self::Disc(disc) => Self::Disc(disc.turned(rotation)),
             Self::Capsule(Capsule { band, half, tip }) => Self::Capsule(Capsule {
-                band: band.turned(turn),
-                half: half.turned(turn),
-                tip: tip.turned(turn),
+                band: band.turned(rotation),
+                half: half.turned(rotation),
+                tip: tip.turned(rotation),
             }),
         }
     }
@@ -214,9 +217,12 @@ impl Band {
         Self { across, met, inverse }
     }
 
-    fn turned(&self, turn: Complex<f64>) -> Self {
+    fn turned(&self, rotation: Complex<f64>) -> Self {
         let [near, far] = self.met;
-        Self::new(turn * self.across, if self.inverse > 0.0 { [near, far] } else { [far, near] })
+        Self::new(
+            rotation * self.across,
+            if self.inverse > 0.0 { [near, far] } else { [far, near] },
+        )
     }
 
     #[inline(always)]
@@ -253,10 +259,10 @@ impl Band {
         finite(self.met[0]).max(finite(self.met[1]))
     }
 
-    /// What the row at the second coordinate `y` cuts from it.
+    /// The chord of the row at the second coordinate `y`.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        // Nothing but `up` differs from row to row.
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
+        // Only `up` differs from row to row.
         let [from, to] = self.met.map(|end| end * self.inverse);
         let up = self.across.im * self.inverse * y;
         let (from, to) = (from - up, to - up);
@@ -265,19 +271,19 @@ impl Band {
         } else {
             true
         };
-        Section { from, to, sure }
+        Chord { from, to, sure }
     }
 }
 
 impl Disc {
-    /// The points whose squared distance from the centre is at most `square`; none where it is
+    /// The points whose squared distance from the centre is at most `square`; empty where `square` is
     /// negative.
     pub fn new(centre: Complex<f64>, square: f64) -> Self {
         Self { centre, square, radius: square.max(0.0).sqrt() }
     }
 
-    fn turned(&self, turn: Complex<f64>) -> Self {
-        Self { centre: turn * self.centre, ..*self }
+    fn turned(&self, rotation: Complex<f64>) -> Self {
+        Self { centre: rotation * self.centre, ..*self }
     }
 
     #[inline(always)]
@@ -303,33 +309,34 @@ impl Disc {
         self.centre.l1_norm() + if self.radius.is_finite() { self.radius } else { 0.0 }
     }
 
-    /// The square of half the chord that the row at the second coordinate `y` cuts from it.
+    /// The square of half the chord of the row at the second coordinate `y`; negative where the row misses
+    /// the disc.
     #[inline(always)]
     fn square(&self, y: f64) -> f64 {
         let up = y - self.centre.im;
         self.square - up * up
     }
 
-    /// What the row at the second coordinate `y` cuts from it.
+    /// The chord of the row at the second coordinate `y`.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
         let square = self.square(y);
         let half = larger(square, 0.0).sqrt();
-        let gap = missed(square >= 0.0);
-        Section {
-            from: self.centre.re - half + gap,
-            to: self.centre.re + half - gap,
+        let widening = empty_unless(square >= 0.0);
+        Chord {
+            from: self.centre.re - half + widening,
+            to: self.centre.re + half - widening,
             sure: square.abs() > precision.square,
         }
     }
 }
 
 impl Capsule {
-    /// The points no farther than the root of `square` from the ray from `tip` in the direction
-    /// `along`; the band on both sides of the ray is `rim` wider, as a share.
-    pub fn new(tip: Complex<f64>, along: Complex<f64>, square: f64, rim: f64) -> Self {
+    /// The points whose distance from the ray from `tip` in the direction `along` is at most the root of
+    /// `square`. The half band about the ray is wider than that by the fraction `margin`.
+    pub fn new(tip: Complex<f64>, along: Complex<f64>, square: f64, margin: f64) -> Self {
         let across = along * Complex::i();
-        let radius = square.sqrt() * (1.0 + rim);
+        let radius = square.sqrt() * (1.0 + margin);
         let at = |d: Complex<f64>| d.re * tip.re + d.im * tip.im;
         let middle = at(across);
         Self {
@@ -339,61 +346,63 @@ impl Capsule {
         }
     }
 
-    /// What the row at the second coordinate `y` cuts from it: the ends that half a band and the disc
-    /// have together, since the disc covers the band's blunt end. Where the row runs along the band,
-    /// it is near to the band's edge when it is near to touching the disc: the rim, which the band has
-    /// more, is far less than what a square has to be for its root to be sure.
+    /// The chord of the row at the second coordinate `y`: the union of the chords of the half band and of
+    /// the disc, which covers the half band's straight end. A row along the band is near to the band's edge
+    /// only where it nearly touches the disc: the margin is far smaller than the least square whose root is
+    /// certain.
     #[inline(always)]
-    pub fn section(&self, y: f64, precision: &Precision) -> Section {
-        let (band, half) = (self.band.section(y, precision), self.half.section(y, precision));
+    pub fn chord(&self, y: f64, precision: &Precision) -> Chord {
+        let (band, half) = (self.band.chord(y, precision), self.half.chord(y, precision));
         let (from, to) = (larger(band.from, half.from), smaller(band.to, half.to));
         let met = from <= to;
         let from = if met { from } else { f64::INFINITY };
         let to = if met { to } else { f64::NEG_INFINITY };
-        // Not a number where the row misses the disc: then the second of two is taken.
+        // NaN where the row misses the disc: then `smaller` and `larger` take their second argument.
         let square = self.tip.square(y);
-        let chord = square.sqrt();
-        Section {
-            from: smaller(self.tip.centre.re - chord, from),
-            to: larger(self.tip.centre.re + chord, to),
+        let half_chord = square.sqrt();
+        Chord {
+            from: smaller(self.tip.centre.re - half_chord, from),
+            to: larger(self.tip.centre.re + half_chord, to),
             sure: square.abs() > precision.square,
         }
     }
 }
 
-/// What the row at the second coordinate `y` cuts from two bands.
+/// The chord of the row at the second coordinate `y` through the intersection of two bands.
 #[inline(always)]
-pub fn common(bands: &[Band; 2], y: f64, precision: &Precision) -> Section {
-    let [a, b] = [bands[0].section(y, precision), bands[1].section(y, precision)];
-    Section { from: larger(a.from, b.from), to: smaller(a.to, b.to), sure: a.sure & b.sure }
+pub fn common(bands: &[Band; 2], y: f64, precision: &Precision) -> Chord {
+    let [a, b] = [bands[0].chord(y, precision), bands[1].chord(y, precision)];
+    Chord { from: larger(a.from, b.from), to: smaller(a.to, b.to), sure: a.sure & b.sure }
 }
 
-/// What moves the ends of a section apart the wrong way, where the row misses the set: a sum, since the
-/// compiler takes a root out of a choice, and then no longer takes several at once.
+/// Added to the near end and subtracted from the far end, makes a chord empty unless the row meets the
+/// set. A sum is used because the compiler moves the root into the branch of a conditional, and the loop is
+/// then no longer vectorised.
 #[inline(always)]
-fn missed(met: bool) -> f64 {
+fn empty_unless(met: bool) -> f64 {
     if met { 0.0 } else { f64::INFINITY }
 }
 
-/// The smaller of two numbers, the second where either is none: one instruction.
+/// The smaller of two numbers; the second where either is NaN. It is one instruction.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
+/// The larger of two numbers; the second where either is NaN.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The targets `z` for which two sliders along `u` and `v`, whose displacements are in the ranges,
-/// make up `z + offset`.
+/// The translations `z` for which `z + offset = m u + n v`, with the displacements `m` and `n` of two
+/// sliders in their ranges.
 pub(super) fn parallelogram(
     [u, v]: [Complex<f64>; 2],
     offset: Complex<f64>,
     ranges: [[f64; 2]; 2],
 ) -> Region {
-    // m u + n v, taken across v, is m cross(v, u) in the direction i v; and the like for n.
+    // The component of m u + n v in the direction i v is m cross(v, u); likewise for n.
     let band = |kept: Complex<f64>, other: Complex<f64>, [low, high]: [f64; 2]| {
         let across = other * Complex::i();
         let scale = kept.re * across.re + kept.im * across.im;

@@ -7,12 +7,12 @@ use crate::group::{LocalTwist, Subspace, SubspaceKind, angular_and_linear, linea
 use nalgebra::{Unit, Vector3};
 
 /// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
-/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Those of
-/// two numbers get a zero, and two joints a third one that takes what nothing moves along: then three
-/// screws are always a square matrix of the right determinant.
+/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Screws with
+/// two components get a zero as the third, and a chain of two joints gets the third unit vector as a third
+/// screw: then the three screws are always a square matrix, whose determinant is that of the chain.
 ///
 /// # Errors
-/// A joint that the subspace does not hold.
+/// A joint that is not in the subspace, or a wrong number of joints.
 pub(crate) fn screws(
     subspace: &Subspace,
     joints: &[ChainJoint],
@@ -44,8 +44,8 @@ pub(crate) fn screws(
             let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
             let [p, q] = coaxial_joints(subspace, joints)?;
             [
-                Vector3::new(p.turn, p.advance, 0.0),
-                Vector3::new(q.turn, q.advance, 0.0),
+                Vector3::new(p.rotation, p.advance, 0.0),
+                Vector3::new(q.rotation, q.advance, 0.0),
                 Vector3::z(),
             ]
         }
@@ -57,9 +57,9 @@ pub(crate) fn screws(
     })
 }
 
-/// What the determinant of a chain's screws is measured in, so that it has no dimension: links in a
-/// plane, where two neighbouring pivots are on one; `size` where a slider is between two pivots. On
-/// an axis the determinant does not change, and is its own measure.
+/// The unit of the determinant of a chain's screws, which makes it dimensionless. In a plane it is the
+/// product of the lengths of the links between neighbouring pivots, or `size` where a slider is between two
+/// pivots. On an axis the determinant is constant, and is its own unit.
 pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[LocalTwist; 3], size: f64) -> f64 {
     match kind {
         SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,

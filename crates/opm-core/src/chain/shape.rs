@@ -1,9 +1,9 @@
-//! Where in a plane a chain closes, for every rotation of its target: one region, which moves as the
-//! target turns.
+//! The region of the plane in which a chain closes, for every rotation of its target: a fixed region that
+//! moves as the target rotates.
 //!
-//! A target takes the point `z` to `r z + t`. A chain that ends in a pivot closes where it finds that
-//! pivot's new place `r p + t` in a fixed region `R`, so for the translations `t` of `R - r p`. A chain
-//! that begins in a pivot, seen from its end, does so for `p + r R`.
+//! A target takes the point `z` to `r z + t`. A chain that ends in a pivot `p` closes where the
+//! pivot's place `r p + t` is in a fixed region `R`, so for the translations `t` in `R - r p`. A chain that
+//! begins with a pivot is the reverse of such a chain, and closes for the translations in `p + r R`.
 
 use super::planar::{PlanarJoint, Prp};
 use super::region::Region;
@@ -15,39 +15,40 @@ use nalgebra::Complex;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     motion: ShapeMotion,
-    /// The rotation is a joint's, within limits.
-    turn: Option<Turn>,
+    /// The limits of the joint that makes the target's rotation, where one joint does and has limits.
+    rotation_limits: Option<RotationLimits>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ShapeMotion {
-    /// `R - r p`.
+    /// The region `R - r p`.
     Carried(Region, Complex<f64>),
-    /// `p + r R`.
+    /// The region `p + r R`.
     Turned(Region, Complex<f64>),
-    /// A slider stays and another turns: a parallelogram that is not the same for all rotations.
+    /// A parallelogram between a fixed slider and one that rotates with the target; the fields are the chain
+    /// and the ranges of its sliders.
     Sheared(Prp, [[f64; 2]; 2]),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Turn {
-    /// The joint counts clockwise.
+struct RotationLimits {
+    /// Whether the joint's angle is positive clockwise.
     reversed: bool,
     limits: Limits,
 }
 
 impl Shape {
-    /// Of a chain that ends in a pivot at `pivot`, the places of which are `places`.
+    /// The shape of a chain that ends in a pivot, at `pivot` at home, which can be in `places`.
     pub fn of_places(places: Region, pivot: Complex<f64>) -> Self {
-        Self { motion: ShapeMotion::Carried(places, pivot), turn: None }
+        Self { motion: ShapeMotion::Carried(places, pivot), rotation_limits: None }
     }
 
-    /// Of a slider, a pivot and a slider, the displacements of the sliders in these ranges.
+    /// The shape of a slider, a pivot and a slider, with the sliders' displacements in these ranges.
     pub(super) fn sheared(chain: Prp, ranges: [[f64; 2]; 2]) -> Self {
-        Self { motion: ShapeMotion::Sheared(chain, ranges), turn: None }
+        Self { motion: ShapeMotion::Sheared(chain, ranges), rotation_limits: None }
     }
 
-    /// Of a chain seen from its end, given that of its targets backwards: `-r · region(conj r)`.
+    /// The shape of the reversed chain, whose targets are the inverses: `-r · region(conj r)`.
     #[must_use]
     pub(super) fn backwards(self) -> Self {
         let motion = match self.motion {
@@ -62,21 +63,22 @@ impl Shape {
         Self { motion, ..self }
     }
 
-    /// The same, but nothing where the target's rotation is beyond the limits of the pivot that makes it.
+    /// The same shape, but empty where the target's rotation is beyond the limits of the pivot that makes it.
     #[must_use]
     pub(super) fn within(self, pivot: &PlanarJoint, limits: &Limits) -> Self {
         let reversed = matches!(pivot, PlanarJoint::Revolute { reversed: true, .. });
-        let turn = (*limits != Limits::Free).then_some(Turn { reversed, limits: *limits });
-        Self { turn, ..self }
+        let rotation_limits =
+            (*limits != Limits::Free).then_some(RotationLimits { reversed, limits: *limits });
+        Self { rotation_limits, ..self }
     }
 
-    /// The region for targets that are turned by `rotation`, after every one of its points `z` has moved
-    /// to `scale · (z + shift)`; `None` where sliders are nearly parallel.
+    /// The region for targets with this rotation, with each of its points `z` moved to
+    /// `scale · (z + shift)`; `None` where sliders are nearly parallel.
     #[inline(always)]
     pub fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
-        if let Some(Turn { reversed, limits }) = &self.turn {
-            let turn = if *reversed { rotation.conj() } else { rotation };
-            if !limits.admits(JointDisplacement::Direction(turn)) {
+        if let Some(RotationLimits { reversed, limits }) = &self.rotation_limits {
+            let angle = if *reversed { rotation.conj() } else { rotation };
+            if !limits.admits(JointDisplacement::Direction(angle)) {
                 return Some(Region::NOTHING);
             }
         }

@@ -1,23 +1,23 @@
-//! Chains inside a sphere: three revolutes through its centre, with any axes, and the ball.
+//! Spherical chains: three revolute joints whose axes pass through one point, and the spherical joint.
 
 use super::surface::Surface;
 use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, REACH_TOLERANCE, ReachDeficit};
 use crate::group::{JointDisplacement, rotation_vector};
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 
-/// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. `+` where the triple product
-/// `a₁ · (a₂ × a₃)` of the axes, as they have moved, is positive.
+/// RRR about one point: `exp(a₁q₁) exp(a₂q₂) exp(a₃q₃) = R`. The branch is `+` where the triple product
+/// `a₁ · (a₂ × a₃)` of the displaced axes is positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalChain {
     axes: [Vector3<f64>; 3],
     /// `a₁·a₂` and `a₂·a₃`: cosines of the arcs of the two links.
     cosines: [f64; 2],
-    /// `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
+    /// The component of `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
     second_on_first: [Vector3<f64>; 2],
-    /// `a₃` perpendicular to `a₂`, and `a₂ × a₃`, both over the square of their length: on `a₃` as it turns
-    /// about `a₂`, the cosine and the sine.
+    /// The component of `a₃` perpendicular to `a₂`, and `a₂ × a₃`, both over the square of their length: their
+    /// products with `a₃` as it rotates about `a₂` are the cosine and the sine of the angle.
     third_on_second: [Vector3<f64>; 2],
-    /// Two directions that make a right-handed triad with `a₃`.
+    /// Two unit directions that make a right-handed orthonormal frame with `a₃`.
     beside_third: [Vector3<f64>; 2],
 }
 
@@ -25,7 +25,7 @@ impl SphericalChain {
     /// The closed form of three revolutes with these axes at home, base first.
     ///
     /// # Errors
-    /// Where two neighbouring axes are parallel: the chain cannot turn every way.
+    /// Two neighbouring axes are parallel, so that the chain cannot rotate in all directions.
     pub fn new(axes: [Unit<Vector3<f64>>; 3]) -> Result<Self, ChainError> {
         let [a1, a2, a3] = axes.map(Unit::into_inner);
         let (n12, n23) = (a1.cross(&a2), a2.cross(&a3));
@@ -45,11 +45,11 @@ impl SphericalChain {
         })
     }
 
-    /// The first joint's rotation, which the third axis's direction `w = R a₃` decides:
+    /// The first joint's rotation as a unit vector, from the third axis's direction `w = R a₃`:
     /// `a₂ · exp(-a₁q₁) w = a₂ · a₃`, that is `A cos q₁ + B sin q₁ = d` (Eqs. 2-3 of the paper).
     ///
     /// # Errors
-    /// Out of reach: by which angle `w` is too near to the first axis or too far from it.
+    /// The angle by which `w` is too near to the first axis or too far from it, where it is out of reach.
     #[inline]
     pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
@@ -64,13 +64,13 @@ impl SphericalChain {
         Equation { a, b, d, square: a * a + b * b }
     }
 
-    /// On the boundary of reach, or out of reach. Where `w` lies on the first axis, in reach only because the
-    /// links' arcs are equal or supplementary, the angle is free.
+    /// The first joint's rotation on the boundary of reach, or the deficit. Where `w` lies on the first axis,
+    /// which is in reach only where the links' arcs are equal or supplementary, the angle is free.
     #[cold]
     fn first_at_boundary(&self, w: &Vector3<f64>) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.d.is_nan() || equation.has_none() {
-            return Err(self.gap(w));
+            return Err(self.deficit(w));
         }
         let Equation { a, b, d, square } = equation;
         let length = square.sqrt();
@@ -82,7 +82,7 @@ impl SphericalChain {
         })
     }
 
-    /// The joints' rotations with the first one's given.
+    /// All joints' rotations, from the first joint's.
     #[inline(always)]
     fn with_first(&self, target: &Matrix3<f64>, q1: Complex<f64>) -> [JointDisplacement; 3] {
         let w1 = rotate_back(&self.axes[0], q1, &apply(target, &self.axes[2]));
@@ -97,10 +97,10 @@ impl SphericalChain {
         ]
     }
 
-    /// The joints' rotations that turn the outer link by `target`.
+    /// The joints' rotations that rotate the outer link by `target`.
     ///
     /// # Errors
-    /// Out of reach: by which angle.
+    /// The angle by which the target is out of reach.
     #[inline]
     pub fn inverse(
         &self,
@@ -110,33 +110,34 @@ impl SphericalChain {
         self.solve(target, branch)
     }
 
-    /// The direction that a target turns the third axis to: what [`SphericalChain::first`] needs of it.
+    /// The direction of the third axis at a target, the argument of [`SphericalChain::first`].
     #[inline(always)]
     pub fn third_axis(&self, target: &Matrix3<f64>) -> Vector3<f64> {
         apply(target, &self.axes[2])
     }
 
-    /// The targets on which the chain closes with joint number `joint` at `amount`: two axes are left.
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets at which the chain closes with joint number `joint` held at `displacement`: the angle
+    /// between the other two axes is then constant.
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let [a1, a2, a3] = self.axes;
         let turned =
             |v: &Vector3<f64>, q: Complex<f64>| rotate_back(&self.axes[joint], q.conj(), v);
-        let turn = amount.unit_direction();
+        let rotation = displacement.unit_direction();
         let (fixed, carried, cosine) = match joint {
             // E₂E₃ = E₁⁻¹ R
-            0 => (turned(&a2, turn), a3, a2.dot(&a3)),
+            0 => (turned(&a2, rotation), a3, a2.dot(&a3)),
             // a₁ · R a₃ = a₁ · E₂ a₃
-            1 => (a1, a3, a1.dot(&turned(&a3, turn))),
+            1 => (a1, a3, a1.dot(&turned(&a3, rotation))),
             // E₁E₂ = R E₃⁻¹
-            _ => (a1, turned(&a2, turn.conj()), a1.dot(&a2)),
+            _ => (a1, turned(&a2, rotation.conj()), a1.dot(&a2)),
         };
         Surface::Cone { fixed, carried, cosine }
     }
 
-    /// The second joint's rotations at which the two branches meet, the three axes in one plane.
+    /// The second joint's two rotations at which the branches meet: the three axes are then in one plane.
     pub(super) fn folds(&self) -> [JointDisplacement; 2] {
-        let turn = angle(&self.third_on_second, &self.axes[0]);
-        [JointDisplacement::Direction(turn), JointDisplacement::Direction(-turn)]
+        let rotation = angle(&self.third_on_second, &self.axes[0]);
+        [JointDisplacement::Direction(rotation), JointDisplacement::Direction(-rotation)]
     }
 
     /// The joints' axes at home, base first.
@@ -145,14 +146,15 @@ impl SphericalChain {
     }
 
     /// The rotation of the outer link: the product of the joints' rotations, base first.
-    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
-        self.axes.iter().zip(amounts).fold(Matrix3::identity(), |r, (axis, amount)| {
-            r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), amount.value()).into_inner()
+    pub fn forward(&self, displacements: &[JointDisplacement; 3]) -> Matrix3<f64> {
+        self.axes.iter().zip(displacements).fold(Matrix3::identity(), |r, (axis, displacement)| {
+            r * Rotation3::from_axis_angle(&Unit::new_unchecked(*axis), displacement.value())
+                .into_inner()
         })
     }
 
     #[cold]
-    fn gap(&self, w: &Vector3<f64>) -> ReachDeficit {
+    fn deficit(&self, w: &Vector3<f64>) -> ReachDeficit {
         let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
         let [a12, a23] = self.cosines.map(arc);
         let to_first = arc(self.axes[0].dot(w));
@@ -168,8 +170,8 @@ impl ClosedForm for SphericalChain {
     #[inline(always)]
     fn attempt(&self, target: &Matrix3<f64>, branch: Branch) -> Attempt {
         let equation = self.equation(&self.third_axis(target));
-        let amounts = self.with_first(target, equation.solve(branch));
-        Attempt { amounts, holds: equation.has_two(), beyond: equation.has_none() }
+        let displacements = self.with_first(target, equation.solve(branch));
+        Attempt { displacements, holds: equation.has_two(), beyond: equation.has_none() }
     }
 
     #[cold]
@@ -192,18 +194,19 @@ struct Equation {
 }
 
 impl Equation {
+    /// Whether the equation has two distinct solutions.
     #[inline(always)]
     fn has_two(&self) -> bool {
         (self.square > self.d * self.d) & (self.square > REACH_TOLERANCE * REACH_TOLERANCE)
     }
 
-    /// For certain: not even on the boundary of reach.
+    /// Whether the equation certainly has no solution: the target is not even on the boundary of reach.
     #[inline(always)]
     fn has_none(&self) -> bool {
         self.d.abs() > self.square.sqrt() + REACH_TOLERANCE
     }
 
-    /// One of the two.
+    /// The solution on a branch, as a unit vector.
     #[inline(always)]
     fn solve(&self, branch: Branch) -> Complex<f64> {
         let Self { a, b, d, square } = *self;
@@ -212,23 +215,23 @@ impl Equation {
     }
 }
 
-/// A spherical joint: any rotation, as a rotation vector in base coordinates.
+/// A spherical joint. It can make any rotation; its coordinates are the rotation vector in base coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// The base's coordinates of the frame that targets are given in.
+    /// The axes of the frame that targets are given in, base coordinates, as columns.
     pub axes: Matrix3<f64>,
 }
 
 impl Ball {
-    /// The three components of the rotation vector of `target`, at most half a turn.
+    /// The three components of the rotation vector of `target`, whose length is at most π.
     #[inline]
     pub fn inverse(&self, target: &Matrix3<f64>) -> [JointDisplacement; 3] {
-        self.attempt(target, Branch::Plus).amounts
+        self.attempt(target, Branch::Plus).displacements
     }
 
     /// The rotation with this rotation vector.
-    pub fn forward(&self, amounts: &[JointDisplacement; 3]) -> Matrix3<f64> {
-        let vector = Vector3::from_fn(|i, _| amounts[i].value());
+    pub fn forward(&self, displacements: &[JointDisplacement; 3]) -> Matrix3<f64> {
+        let vector = Vector3::from_fn(|i, _| displacements[i].value());
         Rotation3::new(self.axes.tr_mul(&vector)).into_inner()
     }
 }
@@ -239,16 +242,16 @@ impl ClosedForm for Ball {
     #[inline(always)]
     fn attempt(&self, target: &Matrix3<f64>, _: Branch) -> Attempt {
         let vector = apply(&self.axes, &rotation_vector(target));
-        let amounts = [
+        let displacements = [
             JointDisplacement::Value(vector.x),
             JointDisplacement::Value(vector.y),
             JointDisplacement::Value(vector.z),
         ];
-        Attempt::decided(amounts, true)
+        Attempt::decided(displacements, true)
     }
 }
 
-/// `r v`.
+/// The product `r v`.
 #[inline(always)]
 fn apply(r: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
     r.column(0) * v.x + r.column(1) * v.y + r.column(2) * v.z
@@ -259,13 +262,14 @@ fn dot(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     a.x * b.x + a.y * b.y + a.z * b.z
 }
 
-/// `exp(-axis q) v`, with `q` as a unit vector.
+/// The vector `exp(-axis q) v`, with the angle `q` given as a unit vector.
 #[inline(always)]
 fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
     v * q.re - axis.cross(v) * q.im + axis * (dot(axis, v) * (1.0 - q.re))
 }
 
-/// The rotation, as a unit vector, that takes the first of two perpendicular directions to `v`.
+/// The rotation, as a unit vector, that takes the first of two perpendicular directions to the direction
+/// of `v`.
 #[inline(always)]
 fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
     Complex::new(dot(&directions[0], v), dot(&directions[1], v))

@@ -1,114 +1,124 @@
-//! Targets on which a chain closes with one joint held, and where a path of the target meets them.
+//! The targets at which a chain closes with one joint held, and where a path of the target crosses them.
 //!
 //! A joint enters or leaves its limits where it is at one of them, and the branches of a chain meet where
-//! its middle joint is at one of two amounts. Held there, it leaves the chain one freedom less than its
-//! subspace: the targets that it closes on are a surface, the zeros of one function. Along a row of a
-//! sweep, or as a cut moves the target of an upper section, that function is a polynomial or a
-//! harmonic of one number.
+//! its middle joint is at one of two displacements. With a joint held there, the chain has one freedom less
+//! than its subspace has dimensions: the targets at which it closes form a surface, the zeros of one
+//! function. Along a row of a sweep, or as the intersection motion moves the target of an upper section,
+//! that function is a polynomial or a harmonic of one number.
 //!
-//! What closes a chain with the joint at its limit closes it to within rounding where its closed form
-//! says that the joint is there. So the closed form changes its mind only where the function is within
-//! rounding of zero, however the chain is bent: neither near a singularity nor where a path only just
-//! touches a surface has the function to be divided by anything.
+//! A target closes the chain with the joint at its limit exactly where, to within rounding, the closed form
+//! gives that value of the joint. So feasibility changes only where the function is within rounding of
+//! zero, in every configuration of the chain: the function is never divided by anything, not even near a
+//! singularity or where a path is tangent to a surface.
 
 use super::equation::{Equation, Span};
 use crate::group::{CylindricalDisplacement, Path, PlanarPath};
 use nalgebra::{Complex, Vector3};
 
-/// How near to zero a function is that may be zero, as a share of the largest number that it can be
-/// computed from: a hundred times what rounding and [`REACH_TOLERANCE`](super::REACH_TOLERANCE) make of it.
+/// A function may be zero where its absolute value is below this, as a fraction of the largest number that
+/// it can be computed from: a hundred times what rounding and
+/// [`REACH_TOLERANCE`](super::REACH_TOLERANCE) change it by.
 const SHARE: f64 = 1e-10;
 
-/// The targets `g` on which a chain closes with one joint held.
+/// How accurately a surface and a path are known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// An upper bound of the lengths of the chain and the path, metres.
+    pub size: f64,
+    /// The uncertainty of the held displacement: radians, or metres over `size`.
+    pub blur: f64,
+}
+
+/// The targets `g` at which a chain closes with one joint held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// `|g point - centre|² = square`: what is left is a link between two pivots.
+    /// `|g point - centre|² = square`: a link between two pivots remains.
     Circle {
-        /// Carried by the target.
+        /// A point that moves with the target, metres.
         point: Complex<f64>,
-        /// Fixed.
+        /// A fixed point, metres.
         centre: Complex<f64>,
-        /// Of the link's length.
+        /// The square of the link's length, square metres.
         square: f64,
     },
-    /// `across · g point = at`: a slider that carries a pivot.
+    /// `across · g point = at`: a slider that carries a pivot remains.
     Line {
-        /// Carried by the target.
+        /// A point that moves with the target, metres.
         point: Complex<f64>,
-        /// Unit, fixed.
+        /// A fixed unit vector, perpendicular to the slider.
         across: Complex<f64>,
-        /// Metres.
+        /// The value of the left side, metres.
         at: f64,
     },
-    /// `across · g⁻¹ point = at`: a pivot that carries a slider.
+    /// `across · g⁻¹ point = at`: a pivot that carries a slider remains.
     Carried {
-        /// Fixed.
+        /// A fixed point, metres.
         point: Complex<f64>,
-        /// Unit, carried by the target.
+        /// A unit vector that moves with the target, perpendicular to the slider.
         across: Complex<f64>,
-        /// Metres.
+        /// The value of the left side, metres.
         at: f64,
     },
-    /// Those turned by `rotation`, or by half a turn more: two sliders.
+    /// The targets with the rotation `rotation` or its opposite: two sliders remain.
     Rotation {
-        /// Unit.
+        /// The rotation as a unit vector.
         rotation: Complex<f64>,
     },
-    /// `fixed · g carried = cosine`: two axes through a centre.
+    /// `fixed · g carried = cosine`: two revolutes through a centre remain.
     Cone {
-        /// Unit.
+        /// A fixed unit direction.
         fixed: Vector3<f64>,
-        /// Unit.
+        /// A unit direction that moves with the target.
         carried: Vector3<f64>,
-        /// Of the angle between the axes.
+        /// The cosine of the angle between the axes.
         cosine: f64,
     },
-    /// `turn · angle + advance · advance of g = at`, or a whole number of periods more: a coaxial joint.
+    /// `rotation · (angle of g) + advance · (advance of g) = at`, up to a whole number of periods: a coaxial
+    /// joint remains.
     Coaxial {
-        /// Metres.
-        turn: f64,
-        /// No unit.
+        /// The coefficient of the angle, metres per radian.
+        rotation: f64,
+        /// The coefficient of the advance, dimensionless.
         advance: f64,
-        /// Metres.
+        /// The value of the left side, metres.
         at: f64,
-        /// Metres; `None` where whole turns count.
+        /// The period of the left side, metres; `None` where full revolutions are counted.
         period: Option<f64>,
     },
-    /// `across · g = at`: a slider.
+    /// `across · g = at`: a slider remains.
     Band {
-        /// At most unit.
+        /// A vector of length at most one.
         across: Complex<f64>,
-        /// Metres.
+        /// The value of the left side, metres.
         at: f64,
     },
 }
 
 impl Surface {
-    /// Gives the intervals of `t` in which the target may be on the surface. No number of the chain and
-    /// of the path ([`Path::size`]) together is larger than `size`, and its joint is held to within
-    /// `blur`, radians or lengths over `size`.
+    /// Calls `found` with the intervals of `t` in which the target may be on the surface. The size of
+    /// `uncertainty` covers both the chain and the path ([`Path::size`]).
     ///
     /// # Panics
-    /// If the path is one of another kind of subspace.
+    /// If the path is in another kind of subspace.
     pub fn meet(
         &self,
         path: &Path,
         span: &Span,
-        [size, blur]: [f64; 2],
+        Uncertainty { size, blur }: Uncertainty,
         found: &mut impl FnMut([f64; 2]),
     ) {
         let scale = match *self {
             Self::Circle { .. } => size * size,
             Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } => size,
             Self::Rotation { .. } | Self::Cone { .. } => 1.0,
-            Self::Coaxial { turn, advance, at, .. } => {
-                (turn.abs() + advance.abs()) * size.max(1.0) + at.abs()
+            Self::Coaxial { rotation, advance, at, .. } => {
+                (rotation.abs() + advance.abs()) * size.max(1.0) + at.abs()
             }
         };
         self.along(path).zeros((SHARE + 2.0 * blur) * scale, span, found);
     }
 
-    /// The function whose zeros are the targets, along a path.
+    /// The function of the path parameter whose zeros are the targets on the surface.
     fn along(&self, path: &Path) -> Equation {
         match *self {
             Self::Circle { point, centre, square } => match *path.planar() {
@@ -162,9 +172,9 @@ impl Surface {
                 let sine = fixed.dot(&axis.cross(&carried));
                 Equation::Harmonic([kept - cosine, fixed.dot(&carried) - kept, sine])
             }
-            Self::Coaxial { turn, advance, at, period } => {
+            Self::Coaxial { rotation, advance, at, period } => {
                 let [start, rate] = path.cylindrical();
-                let of = |g: &CylindricalDisplacement| turn * g.angle + advance * g.advance;
+                let of = |g: &CylindricalDisplacement| rotation * g.angle + advance * g.advance;
                 let [c0, c1] = [of(start) - at, of(rate)];
                 match period {
                     Some(period) => Equation::Periodic([c0, c1], period),

@@ -1,5 +1,6 @@
-//! Where legs that hold all but one of their lower joints let the axis of the intersection motion go,
-//! and where two such tracks meet: two circles or lines in the plane, two cones about a centre.
+//! The positions of the axis of the intersection motion that a leg allows when all of its lower joints
+//! except one are held, and the intersections of two such tracks: two circles or lines in the plane, or two
+//! cones about a centre.
 
 use super::condition::{Condition, QUARTER, VERGE, dot};
 use crate::chain::Chain;
@@ -9,19 +10,20 @@ use crate::group::{
 };
 use nalgebra::{Complex, Matrix3, Vector3};
 
-/// Where the axis of a rotation that two subspaces share can be.
+/// The possible positions of the axis of a rotation that two subspaces share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Track {
-    /// Its foot in the plane is at a distance from a point.
+    /// The axis meets the plane at a given distance from a point.
     Circle { centre: Complex<f64>, radius: f64 },
-    /// Its foot is on the line `normal · z = offset`.
+    /// The axis meets the plane on the line `normal · z = offset`.
     Line { normal: Complex<f64>, offset: f64 },
-    /// It makes an angle with a direction.
+    /// The axis makes a given angle with a direction.
     Cone { axis: Vector3<f64>, cosine: f64 },
 }
 
 impl Track {
-    /// From a condition on `g` that the intersection motion, applied first, does not change.
+    /// The track from a condition on `g` that does not change when the intersection motion is applied first;
+    /// `None` for other conditions.
     pub fn of_condition(condition: &Condition) -> Option<Self> {
         match *condition {
             Condition::Circle { centre, radius, .. } => Some(Self::Circle { centre, radius }),
@@ -33,14 +35,19 @@ impl Track {
         }
     }
 
-    /// Of a chain that holds every joint but `free`.
-    pub fn of_chain(chain: &Chain, free: usize, amounts: &[JointDisplacement; 3]) -> Option<Self> {
+    /// The track of a chain with every joint held except joint number `free`; `None` for chains that have no
+    /// such track.
+    pub fn of_chain(
+        chain: &Chain,
+        free: usize,
+        displacements: &[JointDisplacement; 3],
+    ) -> Option<Self> {
         match chain {
             Chain::Planar(chain) => {
                 let joints = chain.joints();
                 let held = |range: std::ops::Range<usize>| {
                     range.fold(PlanarDisplacement::IDENTITY, |g, i| {
-                        g.after(&joints[i].displacement(amounts[i]))
+                        g.after(&joints[i].displacement(displacements[i]))
                     })
                 };
                 let (before, after) = (held(0..free), held(free + 1..3));
@@ -59,7 +66,7 @@ impl Track {
                 let axes = chain.axes();
                 let held = |range: std::ops::Range<usize>| {
                     range.fold(Matrix3::identity(), |g, i| {
-                        g * rotation_about(&axes[i], amounts[i].unit_direction())
+                        g * rotation_about(&axes[i], displacements[i].unit_direction())
                     })
                 };
                 let axis = held(free + 1..3) * Vector3::z();
@@ -70,7 +77,8 @@ impl Track {
         }
     }
 
-    /// Displacements that bring the axis to where two tracks meet: at most two.
+    /// The displacements, at most two, that bring the axis to an intersection of two tracks. `None` where the
+    /// tracks are concentric or parallel.
     pub fn meetings(&self, other: &Self, size: f64) -> Option<Vec<Displacement>> {
         match (self, other) {
             (Self::Circle { centre: c, radius: a }, Self::Circle { centre: d, radius: b }) => {
@@ -119,7 +127,8 @@ impl Track {
     }
 }
 
-/// Where the line through `foot`, the point of it nearest to `centre`, is at a distance from that.
+/// The translations to the points of a line whose distance from `centre` is `radius`. `foot` is the point
+/// of the line nearest to `centre`, and `along` its direction.
 fn on_line(
     foot: Complex<f64>,
     along: Complex<f64>,
@@ -143,7 +152,7 @@ fn translation(z: Complex<f64>) -> Displacement {
     PlanarDisplacement::translation(z).into()
 }
 
-/// A rotation that brings the third direction to `u`.
+/// A rotation that takes the third direction to the direction of `u`.
 fn pointing(u: &Vector3<f64>) -> Displacement {
     let u = u.normalize();
     let beside = if u.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };

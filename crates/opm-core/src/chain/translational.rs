@@ -9,17 +9,17 @@ use crate::chain::limits::Limits;
 use crate::group::JointDisplacement;
 use nalgebra::Complex;
 
-/// Two sliders, each a unit direction of the plane: one solution.
+/// Two sliders in a plane. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TranslationalChain {
     slides: [Complex<f64>; 2],
 }
 
 impl TranslationalChain {
-    /// The closed form of two sliders.
+    /// The closed form of two sliders along these unit directions.
     ///
     /// # Errors
-    /// Where they are parallel.
+    /// The sliders are parallel.
     pub fn new(slides: [Complex<f64>; 2]) -> Result<Self, ChainError> {
         let [u, v] = slides;
         if cross(u, v).abs() <= DEGENERATE {
@@ -28,25 +28,26 @@ impl TranslationalChain {
         Ok(Self { slides })
     }
 
-    /// The sliders' directions, base first.
+    /// The sliders' unit directions, base first.
     pub fn slides(&self) -> &[Complex<f64>; 2] {
         &self.slides
     }
 
     /// The translations at which the sliders are in their ranges.
+    #[doc(hidden)]
     pub fn shape(&self, limits: [&Limits; 3]) -> Shape {
         let ranges = [0, 1].map(|slider| limits[slider].range().into());
         Shape::of_places(parallelogram(self.slides, Complex::ZERO, ranges), Complex::ZERO)
     }
 
-    /// The targets with slider number `joint` at `amount`: taken across the other one.
-    pub(super) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets at which slider number `joint` is held at `displacement`, measured across the other slider.
+    pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let across = self.slides[1 - joint] * Complex::i();
         let slide = self.slides[joint];
-        Surface::Band { across, at: amount.value() * (across.conj() * slide).re }
+        Surface::Band { across, at: displacement.value() * (across.conj() * slide).re }
     }
 
-    /// The sliders' amounts that translate the outer link by `target`.
+    /// The sliders' displacements that translate the outer link by `target`, metres.
     #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
         let (first, second) = along(self.slides[0], self.slides[1], target);
@@ -54,8 +55,8 @@ impl TranslationalChain {
     }
 
     /// The translation of the outer link.
-    pub fn forward(&self, amounts: &[JointDisplacement; 2]) -> Complex<f64> {
-        self.slides[0] * amounts[0].value() + self.slides[1] * amounts[1].value()
+    pub fn forward(&self, displacements: &[JointDisplacement; 2]) -> Complex<f64> {
+        self.slides[0] * displacements[0].value() + self.slides[1] * displacements[1].value()
     }
 }
 

@@ -1,26 +1,26 @@
-//! Affine arithmetic: a function over a box as a linear function and a bound on what that is off by.
+//! Affine arithmetic: a function over a box as a linear function with a bound of its error.
 //!
-//! A quantity is `centre + slope · δ` with `δ` in the cube `[-1, 1]^N`, one coordinate of the box each, to
-//! within the sum of `error`. Errors are quadratic in the size of the box, so that boxes of half the size
-//! are known four times as well (L. H. de Figueiredo and J. Stolfi, *Affine arithmetic: concepts and
-//! applications*, Numerical Algorithms 37, 2004). They are kept by the coordinate that they come from,
-//! which tells where a box is worth splitting.
+//! A quantity is `centre + slope · δ` with `δ` in the cube `[-1, 1]^N`, one component for each coordinate of
+//! the box, to within the sum of `error`. Errors are quadratic in the size of the box: for boxes of half the
+//! size they are a quarter (L. H. de Figueiredo and J. Stolfi, *Affine arithmetic: concepts and
+//! applications*, Numerical Algorithms 37, 2004). They are recorded by the coordinate that
+//! they come from, which tells which side of a box to bisect.
 
 use nalgebra::Complex;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// What one operation rounds, as a share of the largest number in it: some nine times the unit roundoff,
-/// for the dozen roundings that it is made of.
+/// The rounding of one operation, as a fraction of the largest number in it: about nine times the unit
+/// roundoff, for the dozen roundings in it.
 const ROUNDING: f64 = 1e-15;
 
-/// In place of an error without a bound: too large for anything to be decided, and products of three of
-/// them are still finite.
+/// Stands for an unbounded error: it is too large for anything to be decided, and products of three of them
+/// are still finite.
 const UNBOUNDED: f64 = 1e90;
 
-/// A wider range of an angle than this, on each side of its middle, leaves its sine and cosine unknown.
+/// The largest half width of an angle's range, radians, for which its sine and cosine are bounded.
 pub const WIDE: f64 = 1.2;
 
-/// Rotations whose `(1 - cos θ)/2` may be larger are too near to half a turn for their rotation vector.
+/// The largest `(1 - cos θ)/2` for which a rotation vector is bounded: beyond it, θ is too near to π.
 const NEAR_HALF_TURN: f64 = 0.999;
 
 /// The largest second derivative of the arctangent, `3√3/8`.
@@ -29,13 +29,13 @@ const ARCTANGENT_BEND: f64 = 0.65;
 /// A linear function on the cube `[-1, 1]^N`, to within an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine<const N: usize> {
-    /// The value in the middle.
+    /// The value in the middle of the box.
     pub centre: f64,
-    /// What each coordinate adds at its end.
+    /// The change by each coordinate from the middle to its end.
     pub slope: [f64; N],
     /// By how much the function may differ from the linear one, by coordinate.
     pub error: [f64; N],
-    /// What rounding adds to that.
+    /// The additional error by rounding.
     pub rounding: f64,
 }
 
@@ -51,12 +51,12 @@ impl<const N: usize> Affine<N> {
         Self { centre, slope, ..Self::constant(centre) }.rounded(centre.abs() + half)
     }
 
-    /// How much each coordinate may change it, from the middle to an end.
+    /// The largest change by each coordinate from the middle to an end.
     pub fn spread(&self) -> [f64; N] {
         std::array::from_fn(|i| self.slope[i].abs() + self.error[i])
     }
 
-    /// How far from `centre` it may be.
+    /// The largest distance from `centre`.
     pub fn radius(&self) -> f64 {
         self.spread().iter().sum::<f64>() + self.rounding
     }
@@ -69,12 +69,12 @@ impl<const N: usize> Affine<N> {
         self.centre + self.radius()
     }
 
-    /// How far it may be from the linear function.
+    /// The largest distance from the linear function.
     pub fn total_error(&self) -> f64 {
         self.error.iter().sum::<f64>() + self.rounding
     }
 
-    /// One operation that gave this, on numbers up to `size`, has rounded.
+    /// Adds the rounding of one operation on numbers up to `size`.
     fn rounded(mut self, size: f64) -> Self {
         self.rounding += ROUNDING * size;
         self
@@ -84,7 +84,8 @@ impl<const N: usize> Affine<N> {
         self.centre.abs() + self.radius()
     }
 
-    /// Anything within `bound` of `centre`, for the reason that these spreads were too large.
+    /// A quantity of which only is known that it is within `bound` of `centre`. The error is attributed to the
+    /// coordinates in proportion to these spreads, which were too large.
     fn unknown(centre: f64, bound: f64, spread: &[f64; N]) -> Self {
         let total: f64 = spread.iter().sum();
         if total > 0.0 && total.is_finite() {
@@ -98,7 +99,7 @@ impl<const N: usize> Affine<N> {
     pub fn square(self) -> Self {
         let spread = self.spread();
         let all: f64 = spread.iter().sum();
-        // The square of what is off the centre lies between zero and this.
+        // The square of the deviation from the centre lies between zero and this.
         let bend = 0.5 * all * all;
         let error = |i: usize| 2.0 * self.centre.abs() * self.error[i] + 0.5 * all * spread[i];
         let off = self.rounding * (2.0 * (self.centre.abs() + all) + self.rounding);
@@ -134,7 +135,7 @@ impl<const N: usize> Affine<N> {
         .rounded(4.0 * size)
     }
 
-    /// The root, where it has one: what is said is said of those values.
+    /// The root. The bounds hold for those values that are not negative.
     pub fn sqrt(self) -> Self {
         let high = self.high();
         if high <= 0.0 {
@@ -153,7 +154,7 @@ impl<const N: usize> Affine<N> {
         }
     }
 
-    /// One over the root of a number that is not negative.
+    /// The inverse of the root of a number that is not negative.
     fn recip_sqrt(self) -> Self {
         if self.low() > 0.0 {
             self.curved(0.0, 1.0, |x| [1.0 / x.sqrt(), -0.5 / (x * x.sqrt())])
@@ -162,7 +163,7 @@ impl<const N: usize> Affine<N> {
         }
     }
 
-    /// `θ / sin θ` for the cosine of an angle from zero to half a turn: `Σ aₙ yⁿ` with `y = (1 - cos θ)/2`
+    /// `θ / sin θ` for the cosine of an angle from zero to π: `Σ aₙ yⁿ` with `y = (1 - cos θ)/2`
     /// and `aₙ₊₁ = aₙ (2n + 2)/(2n + 3)`, so that it is convex.
     pub fn angle_over_sine(self) -> Self {
         let y = (-self + 1.0) * 0.5;
@@ -190,7 +191,7 @@ impl<const N: usize> Affine<N> {
     }
 
     /// The unit vector at this angle.
-    pub fn turn(self) -> Plane<N> {
+    pub fn unit_vector(self) -> Plane<N> {
         let radius = self.radius();
         let spread = self.spread();
         if radius > WIDE || radius.is_nan() {
@@ -230,10 +231,10 @@ impl<const N: usize> Affine<N> {
         .rounded(4.0 * (1.0 + value.abs() + slope.abs() * self.size()))
     }
 
-    /// A sum of products: what two coordinates do together is summed up before its sign is dropped.
+    /// A sum of products. The quadratic terms are summed before their signs are dropped.
     pub fn products<const K: usize>(pairs: [[Self; 2]; K]) -> Self {
         let mut result = Self::constant(0.0);
-        // What the products of two coordinates are multiplied by, below the diagonal.
+        // The coefficients of the products of two coordinates, below the diagonal.
         let mut bends = [[0.0; N]; N];
         let mut size = 0.0;
         for [x, y] in pairs {
@@ -245,7 +246,7 @@ impl<const N: usize> Affine<N> {
             result.centre += a * b;
             for i in 0..N {
                 result.slope[i] += a * y.slope[i] + b * x.slope[i];
-                // Errors by what is off the other centre, half of it by the coordinates of either.
+                // The products of errors and deviations, attributed in halves to the coordinates of either.
                 result.error[i] += a.abs() * y.error[i]
                     + b.abs() * x.error[i]
                     + 0.5 * (x.error[i] * (all_q + f) + p[i] * f)
@@ -268,7 +269,7 @@ impl<const N: usize> Affine<N> {
                 result.error[j] += 0.5 * bend.abs();
             }
         }
-        // A term a coordinate and a pair.
+        // One term for each coordinate and each pair.
         result.rounded(4.0 * size)
     }
 }
@@ -355,7 +356,7 @@ impl<const N: usize> Plane<N> {
         Self { re: Affine::constant(z.re), im: Affine::constant(z.im) }
     }
 
-    /// Some unit vector.
+    /// An unknown unit vector.
     fn anywhere(spread: &[f64; N]) -> Self {
         let any = Affine::unknown(0.0, 1.0, spread);
         Self { re: any, im: any }
@@ -373,7 +374,7 @@ impl<const N: usize> Plane<N> {
         self.re.square() + self.im.square()
     }
 
-    /// `self × other`, the third component of the cross product.
+    /// The third component of the cross product `self × other`.
     pub fn cross(self, other: Self) -> Affine<N> {
         Affine::products([[self.re, other.im], [-self.im, other.re]])
     }
@@ -388,10 +389,10 @@ impl<const N: usize> Plane<N> {
         self.divided(self.norm_sqr().recip_sqrt())
     }
 
-    /// The unit vector that it is when multiplied by `factor`.
+    /// The unit vector that results from multiplying by `factor`.
     pub fn divided(self, factor: Affine<N>) -> Self {
         let unit = self.scaled(factor);
-        // Wider than all unit vectors: they are known to be these.
+        // The bounds are wider than the set of unit vectors, which is then the better bound.
         let wide = |x: &Affine<N>| x.radius() > 1.0 || x.radius().is_nan();
         if wide(&unit.re) && wide(&unit.im) {
             return Self::anywhere(&unit.spread());
@@ -399,7 +400,7 @@ impl<const N: usize> Plane<N> {
         unit
     }
 
-    /// Its argument, within half a turn in the middle of the box, and on either side continuous.
+    /// The argument, in `(-π, π]` in the middle of the box and continuous over the box.
     pub fn argument(self) -> Affine<N> {
         let middle = Complex::new(self.re.centre, self.im.centre);
         let angle = middle.im.atan2(middle.re);
@@ -470,8 +471,8 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
-    /// A number over a box of two coordinates, a place in the box, and what the number is there: as far
-    /// off the linear function as it may be, or less.
+    /// A number over a box of two coordinates, a place in the box, and a value there that is within the
+    /// number's error of the linear function.
     fn number(from: f64, to: f64) -> impl Strategy<Value = (Affine<2>, f64)> {
         let part = || -1.0..1.0_f64;
         let scale = prop_oneof![Just(0.0), Just(1e-3), Just(0.1), Just(1.0)];
@@ -485,7 +486,7 @@ mod tests {
         )
     }
 
-    /// Anywhere in the box, often in a corner.
+    /// A place in the box, often in a corner.
     fn place() -> impl Strategy<Value = [f64; 2]> {
         let along = || prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64];
         [along(), along()]
@@ -516,7 +517,7 @@ mod tests {
             prop_assert!(holds(&x.recip(), at, 1.0 / a));
             prop_assert!(a < 0.0 || holds(&x.recip_sqrt(), at, 1.0 / a.sqrt()));
             prop_assert!(holds(&x.atan(), at, a.atan()));
-            let turn = (x * 2.0).turn();
+            let turn = (x * 2.0).unit_vector();
             prop_assert!(holds(&turn.re, at, (2.0 * a).cos()));
             prop_assert!(holds(&turn.im, at, (2.0 * a).sin()));
             let z = Plane { re: x, im: y };
@@ -532,7 +533,7 @@ mod tests {
         #[test]
         fn angles_over_sines_hold((x, off) in number(-1.0, 1.0), at in place()) {
             let cosine = linear(&x, at) + off;
-            // Near the ends this is no judge.
+            // Near the ends this check is too inaccurate.
             let inside = cosine.abs() < 1.0 - 1e-9;
             let angle = cosine.acos();
             prop_assert!(!inside || holds(&x.angle_over_sine(), at, angle / angle.sin()));

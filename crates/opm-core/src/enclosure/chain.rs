@@ -1,5 +1,5 @@
-//! The closed forms of the chains over a box of targets: which of them close, and the joints'
-//! displacements where they do.
+//! The closed forms of the chains over a box of targets: the share of the targets for which a chain closes,
+//! and the joints' displacements where it does.
 
 use super::affine::{Affine, Plane, WIDE};
 use super::share::Share;
@@ -10,10 +10,11 @@ use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, REACH_TOLERANCE};
 use nalgebra::{Complex, Vector3};
 
-/// How near to the boundary of reach, as a share, an angle at the base of a triangle bends too much for a bound.
+/// Nearer to the boundary of reach than this fraction, the second derivative of an angle of a triangle is too
+/// large for a useful bound.
 const NEAR_BOUNDARY: f64 = 1e-3;
 
-/// No end.
+/// The end of a range without an end.
 const INFINITE: f64 = f64::INFINITY;
 
 /// The share of a box of targets for which a chain closes, whatever its joints' limits.
@@ -21,13 +22,13 @@ pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
         Chain::Planar(chain) => planar_closes(&chain.joints(), target.planar()),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
-        // A spherical joint reaches every rotation, and what is linear has one solution everywhere.
+        // A spherical joint reaches every rotation, and linear chains have one solution everywhere.
         Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => Share::ALL,
     }
 }
 
-/// The joints' displacements, as they are for those targets of the box for which the chain closes.
-pub fn amounts<const N: usize>(
+/// The joints' displacements. The bounds hold for those targets of the box for which the chain closes.
+pub fn displacements<const N: usize>(
     chain: &Chain,
     target: &Target<N>,
     branch: Branch,
@@ -40,13 +41,13 @@ pub fn amounts<const N: usize>(
         Chain::Cylindrical(chain) => {
             let [angle, advance] = target.cylindrical();
             let [p, q] = *chain.joints();
-            let determinant = p.turn * q.advance - q.turn * p.advance;
-            let amount = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
+            let determinant = p.rotation * q.advance - q.rotation * p.advance;
+            let displacement = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
                 let value = angle * (by_angle / determinant) + advance * (by_advance / determinant);
-                let revolute = joint.turn != 0.0 && joint.advance == 0.0;
+                let revolute = joint.rotation != 0.0 && joint.advance == 0.0;
                 if revolute { Enclosed::Angle(value) } else { Enclosed::Value(value) }
             };
-            [amount(p, q.advance, -q.turn), amount(q, -p.advance, p.turn), none]
+            [displacement(p, q.advance, -q.rotation), displacement(q, -p.advance, p.rotation), none]
         }
         Chain::Translational(chain) => {
             let [m, n] = along(*chain.slides(), *target.translational());
@@ -55,18 +56,18 @@ pub fn amounts<const N: usize>(
     }
 }
 
-/// `z = m u + n v`.
+/// The coordinates `(m, n)` of `z = m u + n v`.
 fn along<const N: usize>([u, v]: [Complex<f64>; 2], z: Plane<N>) -> [Affine<N>; 2] {
     let crossing = u.re * v.im - u.im * v.re;
     [z.cross(Plane::constant(v)) * (1.0 / crossing), Plane::constant(u).cross(z) * (1.0 / crossing)]
 }
 
-/// The amount of a revolute for a rotation to the direction of `r`.
+/// The displacement of a revolute for a rotation to the direction of `r`.
 fn turned<const N: usize>(reversed: bool, r: Plane<N>) -> Enclosed<N> {
-    Enclosed::Turn(if reversed { r.conj() } else { r })
+    Enclosed::Direction(if reversed { r.conj() } else { r })
 }
 
-/// Where the pivot at `at` is taken to, from `from`.
+/// The vector from `from` to the place of the pivot that is at `at` at home.
 fn reach<const N: usize>(g: &PlanarTarget<N>, at: Complex<f64>, from: Complex<f64>) -> Plane<N> {
     g.rotation * at + g.translation - from
 }
@@ -89,15 +90,15 @@ fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>)
         [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
             let aside = ((p3 - p1) * along.conj()).im;
             let square = reach(g, p3, p1).norm_sqr();
-            // Its rounding is in proportion to the square that it is subtracted from.
+            // The rounding is in proportion to the square on the left.
             Share::within(&square, [aside * aside, INFINITE], 0.0)
         }
         [Prismatic { along: d1 }, Revolute { .. }, Prismatic { along: d3 }] => {
-            // Everywhere except on a line, where the slides come to be parallel.
+            // The chain closes everywhere except where the sliders become parallel.
             let crossing = Plane::constant(d1).cross(g.rotation * d3);
             Share::outside(&crossing, [-REACH_TOLERANCE, REACH_TOLERANCE])
         }
-        // Two slides that are not parallel reach every place.
+        // Two sliders that are not parallel reach every place.
         [Revolute { .. }, Prismatic { .. }, Prismatic { .. }]
         | [Prismatic { .. }, Prismatic { .. }, Revolute { .. }] => Share::ALL,
         [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
@@ -106,7 +107,7 @@ fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>)
     }
 }
 
-/// The joints' amounts of a planar chain: see the closed forms.
+/// The joints' displacements of a planar chain: see the closed forms.
 fn planar<const N: usize>(
     joints: &[PlanarJoint; 3],
     g: &PlanarTarget<N>,
@@ -181,7 +182,7 @@ fn planar<const N: usize>(
     }
 }
 
-/// A chain seen from its end.
+/// The joints of the reversed chain.
 fn backwards(&[first, second, third]: &[PlanarJoint; 3]) -> [PlanarJoint; 3] {
     [third, second, first]
 }
@@ -208,7 +209,7 @@ impl Arm {
         }
     }
 
-    /// The links are as long: no target is too near.
+    /// Whether the links are equally long, so that no target is too near.
     fn folds(&self) -> bool {
         self.mean_square / self.product <= 1.0 + 0.5 * REACH_TOLERANCE
     }
@@ -218,13 +219,13 @@ impl Arm {
     }
 }
 
-/// What a spherical chain's first two joints depend on: `z = a₁ · R a₃`.
+/// The two arcs of a spherical chain, whose first two joints depend on `z = a₁ · R a₃`.
 struct Arcs {
     first: Vector3<f64>,
     third: Vector3<f64>,
-    /// `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
+    /// The component of `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
     second_on_first: [Vector3<f64>; 2],
-    /// Of the arcs from `a₁` to `a₂` and from `a₂` to `a₃`.
+    /// The cosines of the arcs from `a₁` to `a₂` and from `a₂` to `a₃`.
     cosines: [f64; 2],
     sines: [f64; 2],
 }
@@ -245,16 +246,16 @@ impl Arcs {
         }
     }
 
-    /// `z - cos a₁₂ cos a₂₃` lies within `sin a₁₂ sin a₂₃`, where arcs that are equal, or half a turn
-    /// together, leave no gap at a pole.
+    /// The share for which the chain closes: `|z - cos a₁₂ cos a₂₃| <= sin a₁₂ sin a₂₃`. Arcs that are equal, or
+    /// sum up to π, have no limit at that pole.
     fn closes<const N: usize>(&self, r: &Rotation<N>) -> Share<N> {
         let [c12, c23] = self.cosines;
         let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
         let pole = 0.5 * REACH_TOLERANCE;
         let far = if (c23 + c12).abs() <= pole { -INFINITE } else { middle - half };
         let near = if (c23 - c12).abs() <= pole { INFINITE } else { middle + half };
-        // The chain gives way by REACH_TOLERANCE in the cosine that it solves for, which is worth more here where
-        // the second arc is short.
+        // The chain's tolerance is REACH_TOLERANCE in the cosine that it solves for, which is more in z where the
+        // second arc is short.
         let slack = 4.0 * REACH_TOLERANCE / self.sines[1];
         let z = dot(&self.first, &r.apply(&self.third));
         Share::within(&z, [far, near], slack)
@@ -268,8 +269,8 @@ impl Arcs {
     }
 
     /// The angle at `a₁` between the planes of `a₂` and of `w`: `cos ψ = (cos a₂₃ - z cos a₁₂) / (sin a₁₂
-    /// √(1 - z²))`. Of one number alone, so that its second derivative has bounds; `None` where these are
-    /// wide, near the boundary of reach and the poles.
+    /// √(1 - z²))`. It depends on one number, so that its second derivative can be bounded; `None` where
+    /// the bounds are wide, near the boundary of reach and the poles.
     fn opening<const N: usize>(&self, z: Affine<N>) -> Option<Affine<N>> {
         let [c12, c23] = self.cosines;
         let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
@@ -304,7 +305,7 @@ impl Arcs {
         Some(z.bent([value, slope], times(sum, weight)))
     }
 
-    /// The first joint's turn, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`, as the sum of
+    /// The first joint's rotation, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`, as the sum of
     /// two angles where they are known.
     fn first<const N: usize>(&self, w: &[Affine<N>; 3], branch: Branch) -> Enclosed<N> {
         let z = dot(&self.first, w);
@@ -319,12 +320,12 @@ impl Arcs {
         let d = -z * self.cosines[0] + self.cosines[1];
         let root = self.dihedral(z)[1] * (self.sines[0] * self.sines[1] * -branch.sign());
         let square = (-z.square() + 1.0) * (self.sines[0] * self.sines[0]);
-        Enclosed::Unit((azimuth * Plane { re: d, im: root }).divided(square.recip()))
+        Enclosed::UnitDirection((azimuth * Plane { re: d, im: root }).divided(square.recip()))
     }
 }
 
-/// The joints of a spherical chain: the first from where `R` takes the third axis, the third from where
-/// it takes the first one back, with the chain seen from its end; the second from the angle between them.
+/// The joints' displacements of a spherical chain: the first from `R a₃`, the third likewise from `Rᵀ a₁` and
+/// the reversed chain, the second from the dihedral angle between the arcs.
 fn spherical<const N: usize>(
     chain: &SphericalChain,
     r: &Rotation<N>,
@@ -343,7 +344,7 @@ fn spherical<const N: usize>(
         Branch::Minus => Branch::Plus,
     };
     let third = Arcs::of(a3, a2, a1).first(&r.apply_back(&a1), other).inverse();
-    [first, Enclosed::Turn(second), third]
+    [first, Enclosed::Direction(second), third]
 }
 
 /// The rotation vector: its sine, `a` of `R - Rᵀ = 2 [a]`, times `θ / sin θ`.

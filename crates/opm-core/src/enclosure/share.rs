@@ -1,44 +1,44 @@
-//! How much of a box meets a condition, from both sides.
+//! Lower and upper bounds of the share of a box that meets a condition.
 //!
-//! A condition is a range of a quantity that is linear but for an error. What of a cube lies on one side
-//! of a plane has a closed form, so that a box which the boundary of the workspace crosses is known to
-//! within the error, not just as one that it crosses.
+//! A condition is a range of a quantity that is linear up to an error. The share of a cube on one side of a
+//! plane has a closed form, so that the share of a box that the boundary of the workspace crosses is known
+//! up to the error.
 
 use super::affine::Affine;
 
-/// How far from the end of a range a quantity has to be to be on one side of it, as a share of the
-/// numbers: ten times what joint limits and the boundary of reach give way by.
+/// The least distance from the end of a range at which a quantity is certainly on one side of it, as a
+/// fraction of the numbers: ten times the tolerance of joint limits and of the boundary of reach.
 const MARGIN: f64 = 1e-11;
 
-/// Rounding of the closed form of a share.
+/// The rounding of the closed form of a share.
 const ROUNDING: f64 = 1e-12;
 
-/// Slopes that are smaller than this share of the second largest are taken for an error.
+/// Slopes smaller than this fraction of the second largest one are treated as errors.
 const SMALL: f64 = 1.0 / 16.0;
 
-/// Most coordinates of a box.
+/// The largest number of coordinates of a box.
 pub const MOST: usize = 8;
 
-/// Bounds of the share of a box that meets some conditions, and why they are apart.
+/// Bounds of the share of a box that meets some conditions, and what causes their difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share<const N: usize> {
-    /// At least this share does.
+    /// At least this share meets them.
     pub lower: f64,
-    /// At most this share does.
+    /// At most this share meets them.
     pub upper: f64,
-    /// What the errors of undecided conditions come from, by coordinate.
+    /// The errors of undecided conditions, by the coordinate that causes them.
     errors: [f64; N],
-    /// What moves undecided conditions, by coordinate.
+    /// The changes of undecided conditions by each coordinate.
     slopes: [f64; N],
-    /// How many conditions are undecided.
+    /// The number of undecided conditions.
     undecided: u32,
 }
 
 impl<const N: usize> Share<N> {
-    /// All of the box.
+    /// The whole box.
     pub const ALL: Self = Self::between(1.0, 1.0);
 
-    /// Nothing of it.
+    /// No part of the box.
     pub const NONE: Self = Self::between(0.0, 0.0);
 
     const fn between(lower: f64, upper: f64) -> Self {
@@ -63,7 +63,7 @@ impl<const N: usize> Share<N> {
         }
     }
 
-    /// Where both are met (Bonferroni's inequalities).
+    /// The share that meets both conditions (Bonferroni's inequalities).
     pub fn and(self, other: Self) -> Self {
         if self.is_none() || other.is_none() {
             return Self::NONE;
@@ -72,7 +72,7 @@ impl<const N: usize> Share<N> {
         self.combined(&other, lower, self.upper.min(other.upper))
     }
 
-    /// Where either is met.
+    /// The share that meets at least one of two conditions.
     pub fn or(self, other: Self) -> Self {
         if self.is_all() || other.is_all() {
             return Self::ALL;
@@ -81,22 +81,23 @@ impl<const N: usize> Share<N> {
         self.combined(&other, self.lower.max(other.lower), upper)
     }
 
-    /// Where one of the two is met, it is not said which of them a point asks for.
+    /// The share that meets the condition that applies, where each point has one of two conditions and it is
+    /// unknown which.
     pub fn either(self, other: Self) -> Self {
         let (lower, upper) = (self.and(other).lower, self.or(other).upper);
         self.combined(&other, lower, upper)
     }
 
-    /// What each coordinate contributes to the gap between the bounds. Where one condition alone is
-    /// undecided, only its error does; where several are, it is not known how much they have in common.
+    /// The contribution of each coordinate to the difference of the bounds. Where a single condition is
+    /// undecided, only its error contributes; where several are, their overlap is unknown too.
     pub fn contributions(&self) -> [f64; N] {
         std::array::from_fn(|i| {
             self.errors[i] + if self.undecided > 1 { self.slopes[i] } else { 0.0 }
         })
     }
 
-    /// Where `quantity` lies in a range, whose ends count as inside; an end may be infinite. `slack` is
-    /// what is to be left of each end beside the margin.
+    /// The share for which `quantity` lies in a range, whose ends count as inside; an end may be infinite.
+    /// `slack` is added to the margin at each end.
     pub fn within(quantity: &Affine<N>, [low, high]: [f64; 2], slack: f64) -> Self {
         let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
         let (centre, radius) = (quantity.centre, quantity.radius());
@@ -121,10 +122,10 @@ impl<const N: usize> Share<N> {
         Self::undecided(quantity, inside.clamp(0.0, 1.0), outside.clamp(0.0, 1.0))
     }
 
-    /// The same where the quantity is known to whole multiples of `period`; the range is narrower.
+    /// The share for which `quantity`, known up to multiples of `period`, lies in a range narrower than that.
     pub fn within_turns(quantity: &Affine<N>, [low, high]: [f64; 2], period: f64) -> Self {
         let (from, to) = (quantity.low(), quantity.high());
-        // A few turns at most: else all is possible.
+        // Over a full period, everything is possible.
         if to - from >= period || !(to - from).is_finite() {
             return Self::undecided(quantity, 0.0, 1.0);
         }
@@ -133,19 +134,20 @@ impl<const N: usize> Share<N> {
         (first..=last).fold(Self::NONE, |share, turn| {
             let shift = period * turn as f64;
             let part = Self::within(quantity, [low + shift, high + shift], 0.0);
-            // The ranges have nothing in common: their shares add up.
+            // The ranges are disjoint: their shares add up.
             let lower = (share.lower + part.lower).min(1.0);
             let upper = (share.upper + part.upper).min(1.0);
             if lower >= 1.0 { Self::ALL } else { share.combined(&part, lower, upper) }
         })
     }
 
-    /// Where it does not lie in a range.
+    /// The share for which `quantity` does not lie in a range.
     pub fn outside(quantity: &Affine<N>, range: [f64; 2]) -> Self {
         let within = Self::within(quantity, range, 0.0);
         Self { lower: 1.0 - within.upper, upper: 1.0 - within.lower, ..within }
     }
 
+    /// An undecided condition on `quantity`, with these bounds of the share that meets it.
     fn undecided(quantity: &Affine<N>, lower: f64, upper: f64) -> Self {
         let spread = quantity.spread();
         let (all, error) = (spread.iter().sum::<f64>(), quantity.total_error());
@@ -164,7 +166,7 @@ impl<const N: usize> Share<N> {
 /// Bounds of the share of the cube `[-1, 1]^N` in which `slope · δ <= number`.
 ///
 /// With `a` the largest slope, it is `(H(number + a) - H(number - a)) / 2a`, where `H(t)` is the mean
-/// of `max(t - X, 0)` and `X` what the other slopes make up.
+/// of `max(t - X, 0)` and `X` the sum of the other slopes times their `δ`.
 fn share_below<const N: usize>(slope: &[f64; N], number: f64) -> [f64; 2] {
     let mut slopes = slope.map(f64::abs);
     slopes.sort_unstable_by(|a, b| b.total_cmp(a));
@@ -177,7 +179,7 @@ fn share_below<const N: usize>(slope: &[f64; N], number: f64) -> [f64; 2] {
     }
     let largest = slopes[0];
     let second = slopes.get(1).copied().unwrap_or(0.0);
-    // Without a slope c the share is off by c²/6 of the density's steepest slope, 1/(4 a b).
+    // Leaving out a slope c changes the share by at most c²/6 of the density's steepest slope, 1/(4 a b).
     let mut off = ROUNDING;
     let mut kept = 1;
     for &small in &slopes[1..] {
@@ -204,7 +206,7 @@ fn mean_above(slopes: &[f64], t: f64) -> f64 {
         return 0.0;
     }
     if t > 0.0 {
-        // Less to cancel on the other side.
+        // There is less cancellation on the other side.
         return t + mean_above(slopes, -t);
     }
     let power = slopes.len() as i32 + 1;

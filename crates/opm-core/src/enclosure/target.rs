@@ -15,7 +15,7 @@ pub struct PlanarTarget<const N: usize> {
 }
 
 impl<const N: usize> PlanarTarget<N> {
-    /// The displacement back.
+    /// The inverse displacement.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conj();
         let back = rotation * self.translation;
@@ -28,18 +28,18 @@ impl<const N: usize> PlanarTarget<N> {
 pub struct Rotation<const N: usize>(pub [[Affine<N>; 3]; 3]);
 
 impl<const N: usize> Rotation<N> {
-    /// `R v`.
+    /// The product `R v`.
     pub fn apply(&self, v: &Vector3<f64>) -> [Affine<N>; 3] {
         self.0.map(|row| row[0] * v.x + row[1] * v.y + row[2] * v.z)
     }
 
-    /// `Rᵀ v`.
+    /// The product `Rᵀ v`.
     pub fn apply_back(&self, v: &Vector3<f64>) -> [Affine<N>; 3] {
         let rows = &self.0;
         [0, 1, 2].map(|i| rows[0][i] * v.x + rows[1][i] * v.y + rows[2][i] * v.z)
     }
 
-    /// `R M`.
+    /// The product `R M`.
     pub fn after(&self, m: &Matrix3<f64>) -> Self {
         Self(self.0.map(|row| {
             [0, 1, 2].map(|j| row[0] * m[(0, j)] + row[1] * m[(1, j)] + row[2] * m[(2, j)])
@@ -47,7 +47,7 @@ impl<const N: usize> Rotation<N> {
     }
 }
 
-/// `a · v`.
+/// The product `a · v`.
 pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
     v[0] * a.x + v[1] * a.y + v[2] * a.z
 }
@@ -57,7 +57,7 @@ pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
 pub enum Target<const N: usize> {
     Planar(PlanarTarget<N>),
     Spherical(Rotation<N>),
-    /// Angle and advance.
+    /// The angle and the advance about and along an axis.
     Cylindrical(Affine<N>, Affine<N>),
     Translational(Plane<N>),
 }
@@ -72,7 +72,7 @@ impl<const N: usize> Target<N> {
         }
     }
 
-    /// The target, which is one in a plane.
+    /// The target, which must be a displacement of a plane.
     pub fn planar(&self) -> &PlanarTarget<N> {
         match self {
             Self::Planar(g) => g,
@@ -82,7 +82,7 @@ impl<const N: usize> Target<N> {
         }
     }
 
-    /// The target, which is one about a centre.
+    /// The target, which must be a rotation about a centre.
     pub fn spherical(&self) -> &Rotation<N> {
         match self {
             Self::Spherical(r) => r,
@@ -92,7 +92,7 @@ impl<const N: usize> Target<N> {
         }
     }
 
-    /// Angle and advance of the target, which is one about and along an axis.
+    /// The angle and the advance of the target, which must be a displacement about and along an axis.
     pub fn cylindrical(&self) -> [Affine<N>; 2] {
         match *self {
             Self::Cylindrical(angle, advance) => [angle, advance],
@@ -102,7 +102,7 @@ impl<const N: usize> Target<N> {
         }
     }
 
-    /// The target, which is a translation in a plane.
+    /// The target, which must be a translation in a plane.
     pub fn translational(&self) -> &Plane<N> {
         match self {
             Self::Translational(t) => t,
@@ -116,13 +116,13 @@ impl<const N: usize> Target<N> {
 /// A joint's displacement from home over a box: a [`JointDisplacement`](crate::group::JointDisplacement).
 #[derive(Clone, Copy, Debug)]
 pub enum Enclosed<const N: usize> {
-    /// A rotation to this unit vector.
-    Unit(Plane<N>),
-    /// A rotation to the direction of this vector.
-    Turn(Plane<N>),
-    /// An angle modulo a turn.
+    /// A rotation by the angle of this unit vector.
+    UnitDirection(Plane<N>),
+    /// A rotation by the angle of this vector, which need not have unit length.
+    Direction(Plane<N>),
+    /// An angle modulo a revolution.
     Angle(Affine<N>),
-    /// A length, or an angle that counts whole turns.
+    /// A length, or an angle that counts revolutions.
     Value(Affine<N>),
 }
 
@@ -130,32 +130,32 @@ impl<const N: usize> Enclosed<N> {
     /// The opposite displacement.
     pub fn inverse(self) -> Self {
         match self {
-            Self::Unit(e) => Self::Unit(e.conj()),
-            Self::Turn(e) => Self::Turn(e.conj()),
+            Self::UnitDirection(e) => Self::UnitDirection(e.conj()),
+            Self::Direction(e) => Self::Direction(e.conj()),
             Self::Angle(angle) => Self::Angle(-angle),
             Self::Value(value) => Self::Value(-value),
         }
     }
 
     /// The rotation as a unit vector.
-    fn turn(self) -> Plane<N> {
+    fn unit_vector(self) -> Plane<N> {
         match self {
-            Self::Unit(e) => e,
-            Self::Turn(e) => e.direction(),
-            Self::Angle(angle) | Self::Value(angle) => angle.turn(),
+            Self::UnitDirection(e) => e,
+            Self::Direction(e) => e.direction(),
+            Self::Angle(angle) | Self::Value(angle) => angle.unit_vector(),
         }
     }
 
-    /// As a number; a turn to a whole number of turns.
+    /// The displacement as a number; a rotation up to full revolutions.
     pub fn number(self) -> Affine<N> {
         match self {
-            Self::Unit(e) | Self::Turn(e) => e.argument(),
+            Self::UnitDirection(e) | Self::Direction(e) => e.argument(),
             Self::Angle(number) | Self::Value(number) => number,
         }
     }
 }
 
-/// `v · exp(I τ)`: see [`IntersectionMotion::after`].
+/// The product `v · exp(I τ)`: see [`IntersectionMotion::after`].
 pub fn after<const N: usize>(
     motion: IntersectionMotion,
     v: &Target<N>,
@@ -164,7 +164,7 @@ pub fn after<const N: usize>(
     match motion {
         IntersectionMotion::Planar(PlanarMotion::Turn) => {
             let v = v.planar();
-            Target::Planar(PlanarTarget { rotation: v.rotation * tau.turn(), ..*v })
+            Target::Planar(PlanarTarget { rotation: v.rotation * tau.unit_vector(), ..*v })
         }
         IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
             let v = v.planar();
@@ -172,7 +172,7 @@ pub fn after<const N: usize>(
             Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
         }
         IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-            let e = tau.turn();
+            let e = tau.unit_vector();
             Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
                 let first = Affine::products([[x, e.re], [y, e.im]]);
                 [first, Affine::products([[y, e.re], [-x, e.im]]), z]
@@ -192,7 +192,7 @@ pub fn after<const N: usize>(
     }
 }
 
-/// `exp(I τ) · b`: see [`IntersectionMotion::before`].
+/// The product `exp(I τ) · b`: see [`IntersectionMotion::before`].
 pub fn before<const N: usize>(
     motion: IntersectionMotion,
     b: &Target<N>,
@@ -200,7 +200,7 @@ pub fn before<const N: usize>(
 ) -> Target<N> {
     match motion {
         IntersectionMotion::Planar(PlanarMotion::Turn) => {
-            let (b, e) = (b.planar(), tau.turn());
+            let (b, e) = (b.planar(), tau.unit_vector());
             Target::Planar(PlanarTarget {
                 rotation: e * b.rotation,
                 translation: e * b.translation,
@@ -212,7 +212,7 @@ pub fn before<const N: usize>(
             Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
         }
         IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-            let (e, [x, y, z]) = (tau.turn(), b.spherical().0);
+            let (e, [x, y, z]) = (tau.unit_vector(), b.spherical().0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
                 row(&|i| Affine::products([[x[i], e.re], [-y[i], e.im]])),
@@ -230,38 +230,41 @@ pub fn before<const N: usize>(
 /// One coordinate of a box of poses.
 #[derive(Clone, Copy, Debug)]
 pub enum Coordinate<const N: usize> {
-    /// Linear in the box.
+    /// A coordinate that is linear in the box.
     Linear(Affine<N>),
-    /// An angle of which the box is even in the cosine or sine: as the unit vector at it, of `nu` less its
-    /// home value.
+    /// An angle that the box replaces by its cosine or sine, as a unit vector at `xi`, or at `nu` minus its
+    /// value at home.
     Polar(Plane<N>),
 }
 
 impl<const N: usize> Coordinate<N> {
+    /// The coordinate minus `home`, for a length or a linear angle.
     fn minus(self, home: f64) -> Affine<N> {
         match self {
             Self::Linear(value) => value - home,
-            Self::Polar(_) => unreachable!("what is tilted in a sphere is turned by, not moved"),
+            Self::Polar(_) => {
+                unreachable!("a coordinate that tilts an axis is an angle, not a length")
+            }
         }
     }
 
-    /// The unit vector at the angle, less what it is measured from.
-    fn turn(self, home: f64) -> Plane<N> {
+    /// The unit vector at the angle minus `home`.
+    fn unit_vector(self, home: f64) -> Plane<N> {
         match self {
-            Self::Linear(value) => (value - home).turn(),
+            Self::Linear(value) => (value - home).unit_vector(),
             Self::Polar(e) => e,
         }
     }
 }
 
-/// What [`Task`](crate::task::Task) makes of coordinates, over a box of them.
+/// The displacements that [`Task`](crate::task::Task) computes from coordinates, over a box of them.
 pub mod task {
     use super::{Affine, Coordinate, PlanarTarget, Plane, Rotation, Target};
     use crate::group::{CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion};
     use crate::task::Task;
     use nalgebra::Complex;
 
-    /// `v` for the first coordinates of a box: see [`Task::lower`].
+    /// The displacement `v` for the first coordinates of a box: see [`Task::lower`].
     pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
         let home = |i: usize| task.coordinates[i].home;
         let q = |i: usize| pose[i].minus(home(i));
@@ -269,12 +272,12 @@ pub mod task {
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
                     PlanarMotion::Turn => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Slide(_) => pose[2].turn(home(2)),
+                    PlanarMotion::Slide(_) => pose[2].unit_vector(home(2)),
                 },
                 translation: Plane { re: q(0), im: q(1) },
             }),
             IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-                Target::Spherical(tilt(pose[0].turn(home(0)), pose[1].turn(home(1))))
+                Target::Spherical(tilt(pose[0].unit_vector(home(0)), pose[1].unit_vector(home(1))))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
@@ -288,7 +291,7 @@ pub mod task {
         }
     }
 
-    /// `b` for the remaining coordinates of a box: see [`Task::upper`].
+    /// The displacement `b` for the remaining coordinates of a box: see [`Task::upper`].
     pub fn upper<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
         let home = |i: usize| task.coordinates[task.lower_count + i].home;
         let q = |i: usize| pose[i].minus(home(i));
@@ -298,17 +301,21 @@ pub mod task {
         let none = Affine::constant(0.0);
         match task.upper_intersection {
             IntersectionMotion::Spherical(SphericalMotion::Turn) => {
-                let absolute = euler(pose[0].turn(0.0), pose[1].turn(0.0), pose[2].turn(0.0));
+                let absolute = euler(
+                    pose[0].unit_vector(0.0),
+                    pose[1].unit_vector(0.0),
+                    pose[2].unit_vector(0.0),
+                );
                 Target::Spherical(match task.home_orientation_inverse() {
                     Some(inverse) => absolute.after(inverse),
                     None => absolute,
                 })
             }
             IntersectionMotion::Planar(PlanarMotion::Turn) => {
-                planar(pose[2].turn(home(2)), q(0), q(1))
+                planar(pose[2].unit_vector(home(2)), q(0), q(1))
             }
             IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
-                planar(pose[1].turn(home(1)), none, q(0))
+                planar(pose[1].unit_vector(home(1)), none, q(0))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
                 Target::Cylindrical(q(0), q(1))
@@ -322,16 +329,16 @@ pub mod task {
         }
     }
 
-    /// `Rx(mu) Ry(nu)`.
+    /// The rotation `Rx(mu) Ry(nu)`.
     fn tilt<const N: usize>(mu: Plane<N>, nu: Plane<N>) -> Rotation<N> {
         let (none, cm, sm, cn, sn) = (Affine::constant(0.0), mu.re, mu.im, nu.re, nu.im);
         Rotation([[cn, none, sn], [sm * sn, cm, -(sm * cn)], [-(cm * sn), sm, cm * cn]])
     }
 
-    /// `Rz(zeta) Ry(xi) Rz(psi)`.
+    /// The rotation `Rz(zeta) Ry(xi) Rz(psi)`.
     fn euler<const N: usize>(zeta: Plane<N>, xi: Plane<N>, psi: Plane<N>) -> Rotation<N> {
         let (cx, sx) = (xi.re, xi.im);
-        // Ry(xi) Rz(psi), its first two rows then turned about z.
+        // Ry(xi) Rz(psi), its first two rows then rotated about z.
         let first = [cx * psi.re, -(cx * psi.im), sx];
         let second = [psi.im, psi.re, Affine::constant(0.0)];
         Rotation([

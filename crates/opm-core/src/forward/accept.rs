@@ -108,7 +108,8 @@ impl Search<'_> {
         let compiled = &m.legs[leg];
         let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
         // Most ways already have the lower joints elsewhere: they are dismissed before the rest is solved.
-        let quick = compiled.cut == Section::Upper && !self.plan.legs[leg].lower.is_empty();
+        let quick =
+            compiled.split_section == Section::Upper && !self.plan.legs[leg].lower.is_empty();
         let [v, b] = pose;
         let cuts = Branch::BOTH.map(|branch| match quick {
             true => {
@@ -156,8 +157,8 @@ impl Search<'_> {
 
     fn section_off(&self, section: &CompiledSection, amounts: &[JointDisplacement; 3]) -> f64 {
         let mut off = 0.0_f64;
-        for (slot, &amount) in section.slots.iter().zip(amounts) {
-            if let Some(ChainCoordinate { coordinate, drive: Some(drive) }) = *slot {
+        for (slot, &amount) in section.coordinates.iter().zip(amounts) {
+            if let Some(ChainCoordinate { number: coordinate, actuated: Some(drive) }) = *slot {
                 let (value, turn) = (self.amounts[drive], self.turns[drive]);
                 off = off.max(self.apart(coordinate, amount, value, turn));
             }
@@ -173,9 +174,9 @@ impl Search<'_> {
             (&compiled.upper, &one.upper, &other.upper),
         ];
         sections.iter().all(|(section, one, other)| {
-            section.slots.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
+            section.coordinates.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
                 let Some(slot) = slot else { return true };
-                self.apart(slot.coordinate, *one, other.value(), other.unit_direction()) < APART
+                self.apart(slot.number, *one, other.value(), other.unit_direction()) < APART
             })
         })
     }

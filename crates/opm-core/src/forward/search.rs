@@ -73,7 +73,7 @@ impl<'a> Search<'a> {
                 self.with_lower(&v, &known);
             }
             Anchor::Tracks(tracked) => {
-                let tracks = tracked.map(|tracked| self.track(tracked.leg, tracked.slot));
+                let tracks = tracked.map(|tracked| self.track(tracked.leg, tracked.joint));
                 let [Some(first), Some(second)] = tracks else { return };
                 match first.meetings(&second, m.closure.size) {
                     None => self.loose(Section::Lower),
@@ -87,8 +87,8 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            Anchor::Level { leg, slot } => {
-                let Some(Condition::Flat { normal: [a, b], value }) = self.lower(*leg, *slot)
+            Anchor::Level { leg, joint } => {
+                let Some(Condition::Flat { normal: [a, b], value }) = self.lower(*leg, *joint)
                 else {
                     return;
                 };
@@ -106,7 +106,7 @@ impl<'a> Search<'a> {
                         let cut = m.task().lower_intersection.displacement(tau);
                         let own = held.lower.iter().filter_map(|slot| self.lower(number, *slot));
                         conditions.extend(own.map(|c| c.before(&cut)));
-                    } else if leg.cut == Section::Lower {
+                    } else if leg.split_section == Section::Lower {
                         let own = held.lower.iter().filter_map(|slot| self.lower(number, *slot));
                         conditions.extend(own);
                     }
@@ -128,9 +128,9 @@ impl<'a> Search<'a> {
 
     /// The amount of a held slot.
     fn amount(&self, leg: usize, section: Section, slot: usize) -> JointDisplacement {
-        let slot = self.manipulator.legs[leg].section(section).slots[slot];
+        let slot = self.manipulator.legs[leg].section(section).coordinates[slot];
         JointDisplacement::Value(
-            slot.and_then(|slot| slot.drive).map_or(0.0, |drive| self.amounts[drive]),
+            slot.and_then(|slot| slot.actuated).map_or(0.0, |drive| self.amounts[drive]),
         )
     }
 
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
 
     fn track(&self, leg: usize, slot: usize) -> Option<Track> {
         let compiled = &self.manipulator.legs[leg];
-        match compiled.cut {
+        match compiled.split_section {
             Section::Lower => Track::of_condition(&self.lower(leg, slot)?),
             Section::Upper => {
                 let amounts = [0, 1, 2].map(|slot| self.amount(leg, Section::Lower, slot));
@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
     /// With `v` known: every combination of the legs' τ.
     fn with_lower(&mut self, v: &Displacement, known: &[Option<JointDisplacement>]) {
         // As the pose has it: then what is within half a turn here is so there.
-        let (v, turned) = self.manipulator.task().without_turn(v);
+        let (v, turned) = self.manipulator.task().without_shared_rotation(v);
         let v = &v;
         let mut options: Vec<[Option<JointDisplacement>; 2]> = Vec::with_capacity(known.len());
         let mut closes = true;
@@ -220,7 +220,7 @@ impl<'a> Search<'a> {
     fn taus(&self, number: usize, v: &Displacement) -> Taus {
         let m = self.manipulator;
         let (leg, held) = (&m.legs[number], &self.plan.legs[number]);
-        match leg.cut {
+        match leg.split_section {
             Section::Upper => {
                 for &slot in &held.lower {
                     let Some(condition) = self.lower(number, slot) else { continue };
@@ -268,7 +268,7 @@ impl<'a> Search<'a> {
             let own = self.plan.legs[number].upper.iter().filter_map(|&slot| {
                 Condition::new(chain, slot, self.amount(number, Section::Upper, slot))
             });
-            match (leg.cut, tau) {
+            match (leg.split_section, tau) {
                 (Section::Upper, Some(tau)) => {
                     let tau = match tau {
                         JointDisplacement::Direction(_) if upper.commutes() => {
@@ -307,7 +307,7 @@ impl<'a> Search<'a> {
     /// taken within half a turn. Zero where there is no such leg.
     fn slider_angle(&self, taus: &[Option<JointDisplacement>]) -> f64 {
         let legs = self.manipulator.legs.iter().zip(taus);
-        let slider_angle = legs.filter_map(|(leg, tau)| match (leg.cut, tau) {
+        let slider_angle = legs.filter_map(|(leg, tau)| match (leg.split_section, tau) {
             (Section::Upper, Some(tau)) if slides(&leg.upper.chain) => Some(tau.value()),
             _ => None,
         });
@@ -381,7 +381,9 @@ fn first_at<G>(
 /// Whether a chain of the cut and one joint is a spline: the joint slides where the cut turns.
 fn slides(chain: &Chain) -> bool {
     match chain {
-        Chain::Cylindrical(chain) => chain.joints()[0].turn != 0.0 && chain.joints()[1].turn == 0.0,
+        Chain::Cylindrical(chain) => {
+            chain.joints()[0].rotation != 0.0 && chain.joints()[1].rotation == 0.0
+        }
         Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => false,
     }
 }

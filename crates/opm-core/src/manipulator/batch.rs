@@ -1,10 +1,10 @@
 //! Inverse kinematics of many poses at once.
 //!
-//! Poses are solved a block at a time, step by step for all of the block: displacements, each leg's two
-//! chains, angles, limits. Every step is a loop over the block of what [`Manipulator::inverse`] does for
-//! one pose, compiled for the processor at hand, and gives the same to the bit. What is not straight
-//! arithmetic (a pose on the boundary of reach of a sphere, an angle of a million radians) is rare: such poses are
-//! marked, and left to [`Manipulator::inverse`].
+//! Poses are solved in blocks, and every step is done for the whole block: displacements, each leg's two
+//! chains, angles, limits. Every step is a loop over the block of what [`Manipulator::inverse`] does for one
+//! pose, compiled for the processor at hand, and the results are equal to the bit. Poses that need more than
+//! straight-line arithmetic (a pose on a sphere's boundary of reach, an angle of a million radians) are
+//! rare: they are marked and left to [`Manipulator::inverse`].
 
 mod lanes;
 mod section;
@@ -15,58 +15,59 @@ use super::{Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
-use lanes::{Amounts, Column, Displacements, LANES, Mask};
+use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
-use section::{Found, Side};
+use section::{Found, Side, Step};
 
-/// Where [`Manipulator::inverse_many`] puts what it finds: a row for every pose.
+/// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose.
 #[derive(Debug)]
 pub struct BatchOutput<'a> {
     /// Every joint coordinate, in the order of [`Manipulator::coordinates`], row after row; radians and
     /// metres, NaN in the rows of poses that are out of reach.
     pub joints: &'a mut [f64],
-    /// Every imaginary joint, in the order of [`Manipulator::imaginary`], likewise.
+    /// Every imaginary joint, in the order of [`Manipulator::imaginary`], row after row; radians
+    /// and metres, NaN in the rows of poses that are out of reach.
     pub imaginary: &'a mut [f64],
-    /// In reach.
+    /// Whether each pose is in reach.
     pub reachable: &'a mut [bool],
-    /// In reach, and all joint coordinates within their limits.
+    /// Whether each pose is in reach with all joint coordinates within their limits.
     pub within_limits: &'a mut [bool],
 }
 
-/// Why many poses cannot be computed with.
+/// Why a batch of poses cannot be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BatchError {
-    /// One of the poses cannot be computed with.
+    /// One of the poses is not valid.
     #[error("pose {row}: {error}")]
     Pose {
-        /// The number of its row, from zero.
+        /// The number of its row, counted from zero.
         row: usize,
-        /// What is wrong with it.
+        /// The reason why the pose is not valid.
         error: PoseError,
     },
-    /// The numbers given are not whole poses.
-    #[error("{given} numbers, expected a multiple of {width}, the number of task coordinates")]
+    /// The length of the input is not a multiple of the number of task coordinates.
+    #[error("{given} number{}, expected a multiple of {width}, the number of task coordinates", if *given == 1 { "" } else { "s" })]
     Poses {
-        /// How many numbers were given.
+        /// The length of the input.
         given: usize,
-        /// How many a pose has.
+        /// The number of task coordinates.
         width: usize,
     },
-    /// A slice of the output has not one row for every pose.
-    #[error("{given} elements in {slice} of the output, expected {expected}")]
+    /// A slice of the output does not have one row for every pose.
+    #[error("`{slice}` of the output has {given} element{}, expected {expected}", if *given == 1 { "" } else { "s" })]
     Output {
-        /// The field of [`BatchOutput`].
+        /// The name of the field of [`BatchOutput`].
         slice: &'static str,
-        /// How many elements it has.
+        /// The number of elements it has.
         given: usize,
-        /// How many it needs.
+        /// The number of elements it needs.
         expected: usize,
     },
 }
 
 impl BatchOutput<'_> {
-    /// Refuses slices that have not one row for every pose.
+    /// Returns an error for a slice that does not have one row for every pose.
     fn check(&self, count: usize, [joints, imaginary]: [usize; 2]) -> Result<(), BatchError> {
         let slices = [
             ("joints", self.joints.len(), count * joints),
@@ -92,28 +93,29 @@ pub struct Batch {
     solution: Solution,
 }
 
-/// What is known of a block of poses.
+/// The poses and results of a block, by columns.
 #[derive(Clone, Debug)]
 struct Block {
-    /// A column a task coordinate.
+    /// One column for every task coordinate.
     pose: Vec<Column>,
     v: Displacements,
     b: Displacements,
     lower: Found,
     upper: Found,
-    tau: Amounts,
+    tau: DisplacementColumns,
     shifted: Displacements,
-    /// A column a joint coordinate.
+    /// One column for every joint coordinate.
     joints: Vec<Column>,
     imaginary: Vec<Column>,
     status: Status,
 }
 
+/// What is known of the reachability of each pose of a block.
 #[derive(Clone, Debug)]
 struct Status {
-    /// Out of reach of some leg.
+    /// Whether a pose is certainly out of reach of some leg.
     beyond: Mask,
-    /// Some leg's closed form does not tell.
+    /// Whether the general case of some leg's closed form does not apply to a pose.
     open: Mask,
     within_limits: Mask,
 }
@@ -131,7 +133,7 @@ impl Manipulator {
                 b: [[0.0; LANES]; 9],
                 lower: Found::new(),
                 upper: Found::new(),
-                tau: Amounts::new(),
+                tau: DisplacementColumns::new(),
                 shifted: [[0.0; LANES]; 9],
                 joints: columns(self.coordinates.len()),
                 imaginary: columns(self.imaginary.len()),
@@ -141,12 +143,13 @@ impl Manipulator {
         }
     }
 
-    /// [`Manipulator::inverse`] of many poses, row after row, to the bit, several times as fast.
+    /// Solves many poses, row after row. The results are equal to those of [`Manipulator::inverse`] to the
+    /// bit, several times as fast.
     ///
     /// # Errors
-    /// The first pose with a coordinate that is not a finite number (what `out` then holds means
-    /// nothing), numbers that are not whole poses, or a slice of `out` that has not one row for every
-    /// pose.
+    /// The first pose with a coordinate that is not a finite number (the contents of `out` are then
+    /// unspecified), an input that is not a whole number of poses, or a slice of `out` that does not have one
+    /// row for every pose.
     ///
     /// ```
     /// use opm_core::{BatchOutput, Manipulator};
@@ -154,11 +157,11 @@ impl Manipulator {
     /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
     /// let poses = [0.0, 0.0, 0.0, 0.2, 0.0, /* the second one: */ 0.01, 0.0, 0.0, 0.26, 0.0];
     /// let (joints, imaginary) = (manipulator.coordinates().len(), manipulator.imaginary().len());
-    /// let (mut values, mut cuts) = (vec![0.0; 2 * joints], vec![0.0; 2 * imaginary]);
+    /// let (mut values, mut imaginary_values) = (vec![0.0; 2 * joints], vec![0.0; 2 * imaginary]);
     /// let (mut reachable, mut within_limits) = ([false; 2], [false; 2]);
     /// let mut output = BatchOutput {
     ///     joints: &mut values,
-    ///     imaginary: &mut cuts,
+    ///     imaginary: &mut imaginary_values,
     ///     reachable: &mut reachable,
     ///     within_limits: &mut within_limits,
     /// };
@@ -198,14 +201,14 @@ impl Manipulator {
             batch.block.give(widths, &mut block_output);
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
-                self.inverse_row(pose, mode, &mut batch.solution, row, &mut block_output)
+                self.inverse_one(pose, mode, &mut batch.solution, row, &mut block_output)
                     .map_err(|error| refused((row, error)))?;
             }
         }
         Ok(())
     }
 
-    /// Looks for a pose that cannot be computed with.
+    /// Returns an error for the first pose that is not valid.
     fn check(&self, poses: &[f64], block: &Block) -> Result<(), (usize, PoseError)> {
         let fits = |column: &Column| column.iter().all(|value| value.abs() <= LARGEST);
         if block.pose.iter().all(fits) {
@@ -217,8 +220,8 @@ impl Manipulator {
         })
     }
 
-    /// One row, by itself.
-    fn inverse_row(
+    /// Solves the pose of one row by [`Manipulator::inverse`].
+    fn inverse_one(
         &self,
         pose: &[f64],
         mode: Mode,
@@ -245,7 +248,7 @@ impl Manipulator {
     }
 }
 
-/// Solves a block.
+/// Solves a block with the instructions of the processor at hand.
 struct Solve<'a> {
     manipulator: &'a Manipulator,
     mode: Mode,
@@ -267,7 +270,7 @@ impl WithSimd for Solve<'_> {
 }
 
 impl Block {
-    /// Takes poses over, and fills up with the last one.
+    /// Copies poses into the block, and fills its remaining lanes with the last one.
     fn take(&mut self, poses: &[f64], width: usize) {
         for (number, column) in self.pose.iter_mut().enumerate() {
             let mut last = 0.0;
@@ -279,7 +282,7 @@ impl Block {
         }
     }
 
-    /// Gives rows away, open ones too.
+    /// Writes the block's results to rows, including the rows that are still open.
     fn give(&self, widths: [usize; 2], out: &mut BatchOutput<'_>) {
         let mut tables = [
             (&mut *out.joints, &self.joints, widths[0]),
@@ -304,12 +307,12 @@ impl Block {
         }
     }
 
-    /// A row that is to be solved by itself.
+    /// Whether a row has to be solved by [`Manipulator::inverse`].
     fn is_open(&self, row: usize) -> bool {
         self.status.open[row] != 0 && self.status.beyond[row] == 0
     }
 
-    /// `v` and `b` of every pose.
+    /// Computes `v` and `b` of every pose.
     #[inline(always)]
     fn displace(&mut self, manipulator: &Manipulator) {
         let task = &manipulator.task;
@@ -337,52 +340,54 @@ impl Block {
         }
     }
 
-    /// Both chains of a leg.
+    /// Solves both chains of a leg.
     #[inline(always)]
     fn solve_leg(&mut self, manipulator: &Manipulator, mode: Mode, number: usize) {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
         let branches = manipulator.modes.branches(mode, number);
         for section in leg.order() {
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
-            let given = section == leg.cut;
+            let is_first = section == leg.split_section;
             let (of_section, branch, found, target) = match section {
                 Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
             };
-            let target = if given { target } else { &*shifted };
+            let target = if is_first { target } else { &*shifted };
             section::solve(&of_section.chain, branch, target, found);
             status.note(found);
-            if given {
-                let cut = match section {
+            if is_first {
+                let imaginary_joint = match section {
                     Section::Lower => leg.lower.chain.freedoms() - 1,
                     Section::Upper => 0,
                 };
-                section::unwind(leg.unwinds, &found.amounts[cut], tau);
+                section::unwind(leg.unwinds, &found.displacements[imaginary_joint], tau);
                 match section {
                     Section::Lower => {
-                        let way = (task.upper_intersection, Side::Before);
-                        section::shift(way, b, tau, shifted);
+                        let step = Step { motion: task.upper_intersection, side: Side::Before };
+                        section::shift(step, b, tau, shifted);
                         section::invert(tau);
                     }
                     Section::Upper => {
-                        let way = (task.lower_intersection, Side::After);
-                        section::shift(way, v, tau, shifted);
+                        let step = Step { motion: task.lower_intersection, side: Side::After };
+                        section::shift(step, v, tau, shifted);
                     }
                 }
             }
         }
     }
 
-    /// The values of a leg's joints.
+    /// Computes the values of a leg's joints.
     #[inline(always)]
     fn report(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
         for (section, found) in [(&leg.lower, &self.lower), (&leg.upper, &self.upper)] {
-            for (slot, amounts) in section.slots.iter().zip(&found.amounts) {
-                let Some(slot) = slot else { continue };
-                let number = slot.coordinate;
+            for (coordinate, displacements) in section.coordinates.iter().zip(&found.displacements)
+            {
+                let Some(coordinate) = coordinate else { continue };
+                let number = coordinate.number;
                 section::report(
-                    (&manipulator.limits[number], manipulator.coordinates[number].home),
-                    amounts,
+                    &manipulator.limits[number],
+                    manipulator.coordinates[number].home,
+                    displacements,
                     &mut self.joints[number],
                     &mut self.status.within_limits,
                 );
@@ -396,12 +401,13 @@ impl Block {
 }
 
 impl Status {
-    /// What a chain found. Of poses that an earlier chain did not hold for it means nothing.
+    /// Records a chain's result. It is ignored for poses to which an earlier chain's general case did not
+    /// apply.
     #[inline(always)]
     fn note(&mut self, found: &Found) {
         for lane in 0..LANES {
-            let sure = self.open[lane] ^ 1;
-            self.beyond[lane] |= found.beyond[lane] & sure;
+            let valid = self.open[lane] ^ 1;
+            self.beyond[lane] |= found.beyond[lane] & valid;
             self.open[lane] |= (found.holds[lane] | found.beyond[lane]) ^ 1;
         }
     }

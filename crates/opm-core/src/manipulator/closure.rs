@@ -1,5 +1,5 @@
-//! How far the legs fail to close: their products of exponentials as they stand in the mechanism, without
-//! any decomposition, against the pose of the platform.
+//! The closure error of the legs: the products of exponentials of their joints, without any decomposition,
+//! compared with the pose of the platform.
 
 use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
@@ -9,16 +9,16 @@ use nalgebra::{
     DMatrix, DVector, Isometry3, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
 };
 
-/// The legs, ready to be multiplied.
+/// The legs' joints, for products of exponentials.
 #[derive(Clone, Debug)]
 pub struct Closure {
     legs: Vec<Vec<LegJoint>>,
     platform: Point3<f64>,
-    /// The mechanism's, metres.
+    /// The characteristic length of the mechanism, metres.
     pub size: f64,
 }
 
-/// One joint, and its values at home.
+/// One joint and its values at home.
 #[derive(Clone, Debug)]
 enum LegJoint {
     Screw {
@@ -60,14 +60,14 @@ impl Closure {
             .legs
             .iter()
             .map(|leg| {
-                let mut motions = Vec::new();
+                let mut joints = Vec::new();
                 for joint in &leg.joints {
                     let (actuated, c) = (joint.actuated, &joint.coordinates);
                     if joint.kind == JointKind::Spherical {
                         let home = Vector3::from_fn(|i, _| c[i].home);
-                        motions.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
+                        joints.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
                     } else {
-                        motions.extend(
+                        joints.extend(
                             joint.screws().into_iter().zip(c).map(|(screw, c)| LegJoint::Screw {
                                 screw,
                                 home: c.home,
@@ -76,14 +76,14 @@ impl Closure {
                         );
                     }
                 }
-                motions
+                joints
             })
             .collect();
         Self { legs, platform: mechanism.platform, size: frame(mechanism).length }
     }
 
-    /// The largest distance of a leg's end from where the platform at `target` has it: radians plus the
-    /// way of the reference point over the size.
+    /// The largest closure error of a leg, with the platform displaced from home by `target`: the angle in
+    /// radians plus the distance of the reference point over the size.
     pub fn residual(&self, joints: &[f64], target: &Isometry3<f64>) -> f64 {
         let mut first = 0;
         self.legs.iter().fold(0.0, |largest, leg| {
@@ -93,26 +93,25 @@ impl Closure {
     }
 
     fn end(&self, leg: &[LegJoint], joints: &[f64], first: &mut usize) -> Isometry3<f64> {
-        leg.iter().fold(Isometry3::identity(), |g, motion| {
-            let g = g * motion.displacement(&joints[*first..]);
-            *first += motion.values();
+        leg.iter().fold(Isometry3::identity(), |g, joint| {
+            let g = g * joint.displacement(&joints[*first..]);
+            *first += joint.values();
             g
         })
     }
 
     fn apart(&self, end: &Isometry3<f64>, target: &Isometry3<f64>) -> f64 {
         // The sine of half the angle, twice: acos would lose half of the digits.
-        let turn = end.rotation.rotation_to(&target.rotation).into_inner();
-        let way = (end * self.platform - target * self.platform).norm();
-        2.0 * turn.imag().norm() + way / self.size
+        let rotation = end.rotation.rotation_to(&target.rotation).into_inner();
+        let distance = (end * self.platform - target * self.platform).norm();
+        2.0 * rotation.imag().norm() + distance / self.size
     }
 
-    /// Moves the passive joints of every leg so that it closes, the actuated ones held: Newton's steps by
-    /// least squares. For joints that were found from the pose alone where the actuated ones are all but
-    /// undone by it: near a serial singularity the root of the rounding is left in them. Takes and returns
-    /// the residual.
+    /// Moves the passive joints of every leg so that it closes, with the actuated joints held, by Newton's
+    /// method with least squares. Near a serial singularity, joints that were computed from the pose have
+    /// errors of the order of the root of the rounding, which this removes. Takes and returns the residual.
     pub fn settle(&self, joints: &mut [f64], target: &Isometry3<f64>, residual: f64) -> f64 {
-        /// Where the passive joints are singular themselves, a step only halves what is left.
+        /// The number of steps: where the passive joints are singular, each only halves the error.
         const STEPS: usize = 40;
         let mut residual = residual;
         let mut tried = joints.to_vec();
@@ -134,40 +133,47 @@ impl Closure {
     }
 
     fn step(&self, leg: &[LegJoint], joints: &mut [f64], target: &Isometry3<f64>) {
-        /// What is damped is below the rounding of what is solved for.
+        /// Small enough that damping changes the solution by less than its rounding.
         const DAMPING: f64 = 1e-12;
         let mut g = Isometry3::identity();
         let (mut columns, mut passive) = (Vec::new(), Vec::new());
         let mut at = 0;
-        // Lengths over the size, about the platform's point.
+        // Lengths are divided by the size; screws are taken about the platform's point.
         let about = Translation3::from(-(target * self.platform).coords);
         let unit = |screw: Screw| {
             let moved =
                 screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
             Screw { linear: moved.linear / self.size, ..moved }.to_vector()
         };
-        for motion in leg {
-            let moved = g * motion.displacement(&joints[at..]);
-            match motion {
+        for joint in leg {
+            let moved = g * joint.displacement(&joints[at..]);
+            match joint {
                 LegJoint::Screw { screw, actuated: false, .. } => {
                     columns.push(unit(screw.transformed(&g)));
-                    passive.push((at, motion, g.rotation));
+                    passive.push((at, joint, g.rotation));
                 }
                 LegJoint::Ball { point, actuated: false, .. } => {
                     let point = g * Point3::from(*point);
                     let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
                     columns.extend(axes.map(|axis| unit(Screw::rotation(axis, point))));
-                    passive.push((at, motion, g.rotation));
+                    passive.push((at, joint, g.rotation));
                 }
                 LegJoint::Screw { .. } | LegJoint::Ball { .. } => {}
             }
             g = moved;
-            at += motion.values();
+            at += joint.values();
         }
         let error = {
-            let turn = (target.rotation * g.rotation.inverse()).scaled_axis();
-            let way = (target * self.platform - g * self.platform) / self.size;
-            Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+            let rotation = (target.rotation * g.rotation.inverse()).scaled_axis();
+            let translation = (target * self.platform - g * self.platform) / self.size;
+            Vector6::new(
+                rotation.x,
+                rotation.y,
+                rotation.z,
+                translation.x,
+                translation.y,
+                translation.z,
+            )
         };
         if columns.is_empty() {
             return;
@@ -181,14 +187,14 @@ impl Closure {
         let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { return };
         let mut step = step.iter();
         let mut next = || step.next().copied().unwrap_or(0.0);
-        for (at, motion, before) in passive {
-            match motion {
+        for (at, joint, before) in passive {
+            match joint {
                 LegJoint::Screw { .. } => joints[at] += next(),
                 LegJoint::Ball { home, .. } => {
-                    let turn = Vector3::from_fn(|_, _| next());
-                    let turn = UnitQuaternion::from_scaled_axis(before.inverse() * turn);
+                    let rotation = Vector3::from_fn(|_, _| next());
+                    let rotation = UnitQuaternion::from_scaled_axis(before.inverse() * rotation);
                     let held = Vector3::from_column_slice(&joints[at..at + 3]) - home;
-                    let vector = (turn * UnitQuaternion::from_scaled_axis(held)).scaled_axis();
+                    let vector = (rotation * UnitQuaternion::from_scaled_axis(held)).scaled_axis();
                     joints[at..at + 3].copy_from_slice((home + vector).as_slice());
                 }
             }

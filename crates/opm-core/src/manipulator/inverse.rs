@@ -1,8 +1,9 @@
 //! Inverse kinematics: one working mode, all of them, or the actuated joints alone.
 //!
-//! Every function here is called alike. It takes a pose and a buffer that [`Manipulator`] made before,
-//! and returns what it wrote there: `Ok(Some(solution))`. A pose out of reach is an answer, `Ok(None)`;
-//! the buffer then says which legs are. An error means that the pose is no pose. Nothing allocates.
+//! Every function here has the same convention. It takes a pose and a buffer that a method of
+//! [`Manipulator`] made, and returns what it wrote to the buffer: `Ok(Some(solution))`. For a pose out of
+//! reach it returns `Ok(None)`, and the buffer tells which legs do not reach it. An error means that the
+//! pose is not valid. Nothing allocates.
 
 use super::leg::{ChainCoordinate, CompiledSection, LegSolution, Section};
 use super::{Manipulator, Mode};
@@ -11,69 +12,70 @@ use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// Coordinates beyond this size are refused: their fourth powers, which the lengths of products of
-/// two are the roots of, would overflow.
+/// The largest absolute value of a coordinate of a pose, radians or metres: the fourth power of a larger one,
+/// which intermediate results contain, would overflow.
 pub const LARGEST: f64 = 1e75;
 
-/// A pose that cannot be computed with.
+/// Why a pose is not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PoseError {
-    /// Another number of coordinates than the manipulator has.
-    #[error("{given} coordinates, expected {expected}")]
+    /// The number of coordinates is not that of the manipulator.
+    #[error("{given} coordinate{}, expected {expected}", if *given == 1 { "" } else { "s" })]
     Length {
-        /// How many were given.
+        /// The number of coordinates given.
         given: usize,
-        /// How many there are.
+        /// The number of task coordinates.
         expected: usize,
     },
-    /// Not a number, infinite, or too large.
+    /// A coordinate is NaN, infinite, or larger than [`LARGEST`].
     #[error("{name} is {value:?}, expected a number of at most {LARGEST:?}")]
     NotFinite {
-        /// The coordinate.
+        /// The name of the coordinate.
         name: &'static str,
         /// Its value.
         value: f64,
     },
-    /// A name that is not a task coordinate's.
+    /// There is no task coordinate with this name.
     #[error("no task coordinate is called {name}, expected {expected}")]
     Unknown {
         /// The name that was given.
         name: String,
-        /// The names that there are.
+        /// The names of the task coordinates, separated by commas.
         expected: String,
     },
 }
 
-/// A leg that a pose is out of reach of.
+/// A leg that does not reach a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unreachable {
-    /// Number of the leg.
+    /// The number of the leg.
     pub leg: usize,
-    /// Which of its sections does not close.
+    /// The section of the leg that does not close.
     pub section: Section,
-    /// By how much the section fails to reach.
+    /// The distance or angle by which the section does not reach.
     pub deficit: ReachDeficit,
 }
 
-/// Every joint in one working mode at one pose. [`Manipulator::solution`] makes one, to be written to.
+/// Every joint in one working mode at one pose. [`Manipulator::solution`] makes a buffer of this type.
 ///
-/// Its numbers can be read and not changed: velocities and Jacobians start from them.
+/// Its numbers are read-only, since velocities and Jacobians are computed from them.
 #[derive(Debug, PartialEq)]
 pub struct Solution {
     pub(crate) joints: Vec<f64>,
     pub(crate) imaginary: Vec<f64>,
-    /// Every leg's displacement along the intersection motion, reported or not.
-    cuts: Vec<f64>,
-    /// Where it is a solution: what velocities start from.
-    pub(crate) place: SolvedPose,
-    /// Every leg's displacements from home, as its chains find them.
+    /// Every leg's displacement along the intersection motion, radians or metres, whether it is reported as an
+    /// imaginary joint or not.
+    taus: Vec<f64>,
+    /// The pose that was solved, from which velocities are computed.
+    pub(crate) solved: SolvedPose,
+    /// Every leg's displacements from home, as its chains give them.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
     pub(crate) unreachable: Vec<Unreachable>,
 }
 
-/// A pose, and its two displacements `g = v · b`.
+/// A pose and its two displacements, `g = v · b`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SolvedPose {
     pub pose: Vec<f64>,
@@ -110,10 +112,10 @@ impl Solution {
     /// The pose that this is the solution of, in the order of [`Manipulator::task_coordinates`].
     #[inline]
     pub fn pose(&self) -> &[f64] {
-        &self.place.pose
+        &self.solved.pose
     }
 
-    /// Itself, where every leg closes.
+    /// This solution, if every leg closes.
     #[inline]
     fn reached(&self) -> Option<&Self> {
         self.unreachable.is_empty().then_some(self)
@@ -133,13 +135,13 @@ impl Clone for Solution {
         }
     }
 
-    /// Takes over what another solution of the same manipulator holds, without allocating.
+    /// Copies another solution of the same manipulator without allocating.
     fn clone_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         self.imaginary.clone_from(&other.imaginary);
-        self.cuts.clone_from(&other.cuts);
-        self.place.pose.clone_from(&other.place.pose);
-        (self.place.v, self.place.b) = (other.place.v, other.place.b);
+        self.taus.clone_from(&other.taus);
+        self.solved.pose.clone_from(&other.solved.pose);
+        (self.solved.v, self.solved.b) = (other.solved.v, other.solved.b);
         self.legs.clone_from(&other.legs);
         self.within_limits = other.within_limits;
         self.unreachable.clone_from(&other.unreachable);
@@ -147,7 +149,7 @@ impl Clone for Solution {
 }
 
 /// The actuated and the imaginary joints in one working mode at one pose.
-/// [`Manipulator::actuated_joints`] makes one, to be written to.
+/// [`Manipulator::actuated_joints`] makes a buffer of this type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActuatedJoints {
     actuated: Vec<f64>,
@@ -176,26 +178,26 @@ impl ActuatedJoints {
     }
 }
 
-/// Every leg's solutions at one pose; made by [`Manipulator::all_modes`].
+/// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
 #[derive(Clone, Debug)]
 pub struct AllModes {
-    place: SolvedPose,
+    solved: SolvedPose,
     legs: Vec<LegModes>,
 }
 
-/// A leg's solutions, by [`super::mode::ModeLayout::of_leg`]; `None` for combinations that it does
-/// not have, and before the first pose.
+/// A leg's solutions in the order of [`super::mode::ModeLayout::of_leg`]; `None` for combinations that the
+/// leg does not have, and before the first pose.
 type LegModes = [Option<Result<LegSolution, Unreachable>>; 4];
 
 impl Manipulator {
-    /// A buffer for [`Manipulator::inverse`]. It holds home, which a first
+    /// A buffer for [`Manipulator::inverse`]. It holds the values at home, which the first call of
     /// [`Manipulator::inverse_near`] starts from.
     pub fn solution(&self) -> Solution {
         Solution {
             joints: self.coordinates.iter().map(|c| c.home).collect(),
             imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
-            cuts: vec![0.0; self.legs.len()],
-            place: self.place_at_home(),
+            taus: vec![0.0; self.legs.len()],
+            solved: self.solved_at_home(),
             legs: vec![LegSolution::HOME; self.legs.len()],
             within_limits: false,
             unreachable: Vec::with_capacity(self.legs.len()),
@@ -213,10 +215,10 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        AllModes { place: self.place_at_home(), legs: vec![[None; 4]; self.legs.len()] }
+        AllModes { solved: self.solved_at_home(), legs: vec![[None; 4]; self.legs.len()] }
     }
 
-    fn place_at_home(&self) -> SolvedPose {
+    fn solved_at_home(&self) -> SolvedPose {
         let pose = self.task.home();
         let (v, b) = (self.task.lower(&pose), self.task.upper(&pose[self.task.lower_count..]));
         SolvedPose { pose, v, b }
@@ -226,7 +228,7 @@ impl Manipulator {
     /// their values at home.
     ///
     /// # Errors
-    /// A name that is not a task coordinate's, or a value that is not a finite number.
+    /// A name is not that of a task coordinate, or a value is not a finite number.
     ///
     /// ```
     /// use opm_core::Manipulator;
@@ -257,10 +259,10 @@ impl Manipulator {
     }
 
     /// Every joint at a pose in one working mode, angles within half a revolution of home; `None` where
-    /// the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says of which legs).
+    /// the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists the legs).
     ///
     /// # Errors
-    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    /// The pose has the wrong length, or a coordinate that is not a finite number.
     ///
     /// ```
     /// use opm_core::Manipulator;
@@ -281,15 +283,15 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
-        self.solve_legs(mode, buffer, Turns::NearHome);
+        self.displace(pose, &mut buffer.solved)?;
+        self.solve_legs(mode, buffer, Revolutions::NearHome);
         Ok(buffer.reached())
     }
 
-    /// As [`Manipulator::inverse`], but each angle is the one nearest to what the buffer held before:
+    /// Does the same as [`Manipulator::inverse`], but each angle is the one nearest to what the buffer held before:
     /// along a trajectory no joint jumps by a revolution, not even to stay within its limits, and
-    /// [`Solution::within_limits`] is said of that angle. Out of reach, the buffer keeps the last good
-    /// values.
+    /// [`Solution::within_limits`] refers to that angle. Where the pose is out of reach, the buffer keeps the
+    /// last values that were in reach.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
@@ -300,12 +302,12 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
-        self.solve_legs(mode, buffer, Turns::NearHeld);
+        self.displace(pose, &mut buffer.solved)?;
+        self.solve_legs(mode, buffer, Revolutions::NearHeld);
         Ok(buffer.reached())
     }
 
-    /// The actuated and the imaginary joints at a pose in one working mode, and nothing else; `None`
+    /// The actuated and the imaginary joints alone at a pose in one working mode; `None`
     /// where the pose is out of reach. Angles are within half a revolution of home.
     ///
     /// # Errors
@@ -320,7 +322,7 @@ impl Manipulator {
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let tau = if leg.upper_decides {
+            let tau = if leg.upper_constrains {
                 let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
                     return Ok(None);
                 };
@@ -353,8 +355,8 @@ impl Manipulator {
         pose: &[f64],
         buffer: &'a mut AllModes,
     ) -> Result<Option<&'a AllModes>, PoseError> {
-        self.displace(pose, &mut buffer.place)?;
-        let SolvedPose { v, b, .. } = buffer.place;
+        self.displace(pose, &mut buffer.solved)?;
+        let SolvedPose { v, b, .. } = buffer.solved;
         for (number, (leg, modes)) in self.legs.iter().zip(&mut buffer.legs).enumerate() {
             *modes = [None; 4];
             for (part, mode) in self.modes.leg_modes(number).enumerate() {
@@ -371,8 +373,8 @@ impl Manipulator {
     }
 
     /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
-    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer says
-    /// of which legs), or where `all` has not seen a pose yet.
+    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists
+    /// the legs), or where `all` does not hold a pose yet.
     pub fn solution_in_mode<'a>(
         &self,
         all: &AllModes,
@@ -383,14 +385,14 @@ impl Manipulator {
         buffer.within_limits = true;
         for (number, modes) in all.legs.iter().enumerate() {
             match &modes[self.modes.of_leg(mode, number)] {
-                Some(Ok(solution)) => self.write(number, solution, buffer, Turns::NearHome),
+                Some(Ok(solution)) => self.write(number, solution, buffer, Revolutions::NearHome),
                 Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
                 None => return None,
             }
         }
-        let SolvedPose { pose, v, b } = &all.place;
-        buffer.place.pose.copy_from_slice(pose);
-        (buffer.place.v, buffer.place.b) = (*v, *b);
+        let SolvedPose { pose, v, b } = &all.solved;
+        buffer.solved.pose.copy_from_slice(pose);
+        (buffer.solved.v, buffer.solved.b) = (*v, *b);
         buffer.reached()
     }
 
@@ -407,7 +409,7 @@ impl Manipulator {
                 leg.lower.admits(&self.limits, &solution.lower)
                     && leg.upper.admits(&self.limits, &solution.upper)
             };
-            // No two legs share a choice, so that the first mode is made of each leg's first.
+            // Legs share no choices, so that the first mode consists of the first choices of each leg.
             let mode = (self.modes.leg_modes(number).zip(modes))
                 .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
                 .0;
@@ -416,7 +418,7 @@ impl Manipulator {
         self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
 
-    /// `v` and `b` of a pose, which must have finite coordinates.
+    /// The displacements `v` and `b` of a pose, or an error if the pose is not valid.
     pub(crate) fn displacements(
         &self,
         pose: &[f64],
@@ -425,7 +427,7 @@ impl Manipulator {
         Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
     }
 
-    /// Refuses a pose with a wrong number of coordinates, or one that is not a finite number.
+    /// Returns an error for a pose with a wrong number of coordinates, or with one that is not a finite number.
     #[inline]
     pub(crate) fn check_pose(&self, pose: &[f64]) -> Result<(), PoseError> {
         let coordinates = &self.task.coordinates;
@@ -440,11 +442,11 @@ impl Manipulator {
         Ok(())
     }
 
-    /// Keeps a pose and its displacements, which must have finite coordinates.
+    /// Stores a pose and its displacements, or returns an error if the pose is not valid.
     #[inline]
-    fn displace(&self, pose: &[f64], place: &mut SolvedPose) -> Result<(), PoseError> {
-        (place.v, place.b) = self.displacements(pose)?;
-        place.pose.copy_from_slice(pose);
+    fn displace(&self, pose: &[f64], solved: &mut SolvedPose) -> Result<(), PoseError> {
+        (solved.v, solved.b) = self.displacements(pose)?;
+        solved.pose.copy_from_slice(pose);
         Ok(())
     }
 
@@ -452,30 +454,30 @@ impl Manipulator {
     fn write_actuated(
         &self,
         section: &CompiledSection,
-        amounts: &[JointDisplacement; 3],
+        displacements: &[JointDisplacement; 3],
         out: &mut ActuatedJoints,
     ) {
-        out.within_limits &= section.admits(&self.limits, amounts);
+        out.within_limits &= section.admits(&self.limits, displacements);
         if !section.driven {
             return;
         }
-        for (slot, &amount) in section.slots.iter().zip(amounts) {
-            if let Some(ChainCoordinate { coordinate, drive: Some(drive) }) = *slot {
-                let home = self.coordinates[coordinate].home;
-                out.actuated[drive] = home + self.limits[coordinate].report(amount);
+        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
+            if let Some(ChainCoordinate { number, actuated: Some(actuated) }) = *coordinate {
+                let home = self.coordinates[number].home;
+                out.actuated[actuated] = home + self.limits[number].report(displacement);
             }
         }
     }
 
-    fn solve_legs(&self, mode: Mode, out: &mut Solution, turns: Turns) {
-        let SolvedPose { v, b, .. } = out.place;
+    fn solve_legs(&self, mode: Mode, out: &mut Solution, revolutions: Revolutions) {
+        let SolvedPose { v, b, .. } = out.solved;
         out.unreachable.clear();
         out.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let near = turns.near(out.cuts[number], 0.0);
+            let near = revolutions.near(out.taus[number], 0.0);
             match leg.solve(&self.task, [&v, &b], branches, near) {
-                Ok(solution) => self.write(number, &solution, out, turns),
+                Ok(solution) => self.write(number, &solution, out, revolutions),
                 Err((section, deficit)) => {
                     out.unreachable.push(Unreachable { leg: number, section, deficit });
                 }
@@ -483,22 +485,28 @@ impl Manipulator {
         }
     }
 
-    /// Reports a leg's solution, angles within half a turn of home.
+    /// Writes a leg's solution to `out`, with angles within π of home.
     pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
-        self.write(number, solution, out, Turns::NearHome);
+        self.write(number, solution, out, Revolutions::NearHome);
     }
 
-    /// Reports a leg's solution.
+    /// Writes a leg's solution to `out`.
     #[inline]
-    fn write(&self, number: usize, solution: &LegSolution, out: &mut Solution, turns: Turns) {
+    fn write(
+        &self,
+        number: usize,
+        solution: &LegSolution,
+        out: &mut Solution,
+        revolutions: Revolutions,
+    ) {
         let leg = &self.legs[number];
         out.legs[number] = *solution;
-        self.write_section(&leg.lower, &solution.lower, out, turns);
-        self.write_section(&leg.upper, &solution.upper, out, turns);
-        out.cuts[number] = solution.tau.nearest(turns.near(out.cuts[number], 0.0));
+        self.write_section(&leg.lower, &solution.lower, out, revolutions);
+        self.write_section(&leg.upper, &solution.upper, out, revolutions);
+        out.taus[number] = solution.tau.nearest(revolutions.near(out.taus[number], 0.0));
         if let Some(imaginary) = leg.imaginary {
             let joint = &self.imaginary[imaginary];
-            let near = turns.near(out.imaginary[imaginary], joint.home);
+            let near = revolutions.near(out.imaginary[imaginary], joint.home);
             out.imaginary[imaginary] = joint.value(solution.tau, near);
         }
     }
@@ -507,16 +515,16 @@ impl Manipulator {
     fn write_section(
         &self,
         section: &CompiledSection,
-        amounts: &[JointDisplacement; 3],
+        displacements: &[JointDisplacement; 3],
         out: &mut Solution,
-        turns: Turns,
+        revolutions: Revolutions,
     ) {
-        let home = |coordinate: usize| self.coordinates[coordinate].home;
-        // At most half a turn, a rotation vector is the nearest to none.
-        if matches!(section.chain, Chain::Ball(_)) && turns == Turns::NearHeld {
-            let first = section.slots[0].map_or(0, |slot| slot.coordinate);
+        let home = |number: usize| self.coordinates[number].home;
+        // Otherwise the rotation vector, at most π long, is the one nearest to zero already.
+        if matches!(section.chain, Chain::Ball(_)) && revolutions == Revolutions::NearHeld {
+            let first = section.coordinates[0].map_or(0, |coordinate| coordinate.number);
             let near = Vector3::from_fn(|i, _| out.joints[first + i] - home(first + i));
-            let vector = nearest_rotation(Vector3::from_fn(|i, _| amounts[i].value()), &near);
+            let vector = nearest_rotation(Vector3::from_fn(|i, _| displacements[i].value()), &near);
             for i in 0..3 {
                 out.within_limits &=
                     self.limits[first + i].admits(JointDisplacement::Value(vector[i]));
@@ -524,27 +532,27 @@ impl Manipulator {
             }
             return;
         }
-        for (slot, &amount) in section.slots.iter().zip(amounts) {
-            let Some(ChainCoordinate { coordinate, .. }) = *slot else { continue };
-            let home = home(coordinate);
-            let held = (turns == Turns::NearHeld).then(|| out.joints[coordinate] - home);
-            let (value, within) = self.limits[coordinate].place(amount, held);
-            out.joints[coordinate] = home + value;
+        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
+            let Some(ChainCoordinate { number, .. }) = *coordinate else { continue };
+            let home = home(number);
+            let held = (revolutions == Revolutions::NearHeld).then(|| out.joints[number] - home);
+            let (value, within) = self.limits[number].place(displacement, held);
+            out.joints[number] = home + value;
             out.within_limits &= within;
         }
     }
 }
 
-/// At which whole number of turns an angle is reported.
+/// How the number of full revolutions of a reported angle is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turns {
-    /// Within half a turn of home, or where the limits allow it.
+enum Revolutions {
+    /// The angle is within π of home, or within the limits where that is possible.
     NearHome,
-    /// Nearest to the value that the buffer holds.
+    /// The angle is the one nearest to the value that the buffer holds.
     NearHeld,
 }
 
-impl Turns {
+impl Revolutions {
     #[inline]
     fn near(self, held: f64, home: f64) -> f64 {
         match self {
@@ -557,8 +565,8 @@ impl Turns {
 impl AllModes {
     /// The legs that are out of reach in every mode.
     pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        // Of the first combination, where none closes.
-        let closes = |leg: &LegModes| leg.iter().any(|way| matches!(way, Some(Ok(_))));
+        // The deficit reported is that of the leg's first combination.
+        let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
         self.legs.iter().filter(move |leg| !closes(leg)).filter_map(|leg| leg[0]?.err())
     }
 
@@ -572,19 +580,20 @@ impl AllModes {
     }
 }
 
-/// The rotation vector of the same rotation, whole turns added, that is nearest to `reference`.
+/// The rotation vector nearest to `reference` among those of the same rotation, which differ by full
+/// revolutions.
 fn nearest_rotation(vector: Vector3<f64>, reference: &Vector3<f64>) -> Vector3<f64> {
-    /// A rotation by less is none but for rounding, and its axis is anything.
+    /// A rotation by a smaller angle is the identity up to rounding, and its axis is arbitrary.
     const NONE: f64 = 1e-14;
     let angle = vector.norm();
     if angle < NONE {
-        // Whole turns about any axis are no rotation: the nearest axis is the reference's.
+        // Full revolutions about any axis are the identity: the nearest axis is that of the reference.
         let turns = (reference.norm() / TAU).round();
         return if turns == 0.0 { vector } else { reference.normalize() * (TAU * turns) };
     }
     let axis = vector / angle;
     let turns = (reference.dot(&axis) - angle) / TAU;
-    // Half a turn is as near as its opposite: it stays what it is.
+    // A rotation by π is as near as its opposite: it is not changed.
     if turns.abs() <= 0.5 { vector } else { axis * (angle + TAU * turns.round()) }
 }
 
@@ -593,9 +602,9 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// Limits are tested on the vector that a ball gives, so that the reported one must be the same.
+    /// Limits are tested on the vector that the closed form gives, so that the reported one must be the same.
     #[test]
-    fn a_half_turn_from_home_stays_what_it_is() {
+    fn a_rotation_by_pi_is_not_changed() {
         for half in [Vector3::z() * PI, Vector3::z() * -PI] {
             assert_eq!(nearest_rotation(half, &Vector3::zeros()), half);
             assert_eq!(nearest_rotation(half, &half), half);
@@ -604,9 +613,10 @@ mod tests {
         assert!((beyond - Vector3::z() * (0.1 + PI)).norm() < 1e-12);
     }
 
-    /// A ball that goes on turning passes through a whole turn, where its rotation is none.
+    /// A spherical joint that keeps rotating passes through a full revolution, where its rotation is the
+    /// identity.
     #[test]
-    fn a_whole_turn_does_not_jump_to_none() {
+    fn a_full_revolution_does_not_jump_to_zero() {
         let round = Vector3::new(0.6, 0.0, -0.8) * TAU;
         for rounding in [Vector3::zeros(), Vector3::x() * 1e-16, Vector3::new(0.0, -3e-16, 1e-16)] {
             for before in [round * 0.999, round, round * 1.001, round * -2.0] {

@@ -1,4 +1,4 @@
-//! One leg, cut in two closed-form chains.
+//! One leg, split into two closed-form chains.
 
 use crate::chain::limits::Limits;
 use crate::chain::screws::{determinant_scale, screws};
@@ -14,95 +14,103 @@ use nalgebra::{Unit, Vector3};
 
 /// Why a leg has no closed form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RefusedLeg {
-    /// Its sections do not have the numbers of freedoms that fix them.
+    /// The numbers of freedoms in the leg's two sections do not fit the subspaces.
     #[error(
-        "{lower} freedoms in its lower section and {upper} in its upper one; closed-form inverse \
-         kinematics needs {dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1
+        "{lower} freedom{} in its lower section and {upper} in its upper one, expected {dim_lower} and {}, or \
+         {} and {dim_upper}, for closed-form inverse kinematics",
+        if *lower == 1 { "" } else { "s" },
+        dim_upper - 1,
+        dim_lower - 1
     )]
     Freedoms {
-        /// In its lower section.
+        /// The number of freedoms in its lower section.
         lower: usize,
-        /// In its upper section.
+        /// The number of freedoms in its upper section.
         upper: usize,
-        /// Dimensions of the lower subspace.
+        /// The dimension of the lower subspace.
         dim_lower: usize,
-        /// Dimensions of the upper subspace.
+        /// The dimension of the upper subspace.
         dim_upper: usize,
     },
-    /// One of its sections has no closed form.
+    /// One of the leg's sections has no closed form.
     #[error("its {section} section has no closed form: {error}")]
     Chain {
-        /// Which.
+        /// The section.
         section: Section,
-        /// Why.
+        /// Why it has no closed form.
         error: ChainError,
     },
 }
 
-/// Where a chain's amount goes.
+/// The joint coordinate that a joint of a chain stands for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChainCoordinate {
-    /// Number of the joint coordinate in the mechanism.
-    pub coordinate: usize,
-    /// Its number among the actuated ones.
-    pub drive: Option<usize>,
+    /// The number of the joint coordinate in the mechanism.
+    pub number: usize,
+    /// Its number among the actuated coordinates; `None` where it is passive.
+    pub actuated: Option<usize>,
 }
 
-/// One section: its chain, and where the chain's amounts go (`None`: the cut).
+/// One section of a leg: its chain, and the chain's joint coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct CompiledSection {
     pub chain: Chain,
-    /// The chain's screws at home: see `chain::screws`.
+    /// The screws of the chain's joints at home: see `chain::screws`.
     pub screws: [Vector3<f64>; 3],
-    /// What the determinant of the screws is measured in.
+    /// The unit of the determinant of the screws: see `chain::screws::determinant_scale`.
     pub scale: f64,
-    pub slots: [Option<ChainCoordinate>; 3],
-    /// Any of its coordinates has limits.
+    /// The joint coordinates of the chain's joints, base first; `None` for the imaginary joint, and for
+    /// elements beyond the chain's freedoms.
+    pub coordinates: [Option<ChainCoordinate>; 3],
+    /// Whether any of its coordinates has limits.
     pub limited: bool,
-    /// Any of its coordinates is actuated.
+    /// Whether any of its coordinates is actuated.
     pub driven: bool,
 }
 
-/// A leg cut in two.
+/// A leg, split into two sections.
 #[derive(Clone, Debug)]
 pub(crate) struct CompiledLeg {
     pub lower: CompiledSection,
     pub upper: CompiledSection,
-    /// The section that takes the cut, and so is solved first when it is the upper one.
-    pub cut: Section,
-    /// Number of its imaginary joint.
+    /// The section that the imaginary joint belongs to. It is solved first.
+    pub split_section: Section,
+    /// The number of its imaginary joint among those that are reported; `None` where it is not reported.
     pub imaginary: Option<usize>,
-    /// Where the lower section closes, on each branch, if that is a region of the plane.
+    /// The region in which the lower section closes, on each branch; `None` where it is not a region of the
+    /// plane.
     pub shapes: [Option<Shape>; 2],
-    /// The upper section has a say in whether the leg follows, or drives it.
-    pub upper_decides: bool,
-    /// The cut is a turn, and the section that it is handed on to counts whole turns.
+    /// Whether the upper section constrains the leg: it is limited or actuated, or may be out of reach though
+    /// the lower section closes.
+    pub upper_constrains: bool,
+    /// Whether the imaginary joint rotates about an axis on which full revolutions are counted.
     pub unwinds: bool,
 }
 
-/// What a leg is compiled in.
+/// What compiling a leg needs to know of the manipulator.
 #[derive(Clone, Copy)]
 pub(crate) struct CompileContext<'a> {
     pub task: &'a Task,
-    /// Each coordinate's number among the actuated ones.
-    pub drives: &'a [Option<usize>],
+    /// For each joint coordinate, its number among the actuated ones; `None` where it is passive.
+    pub actuated: &'a [Option<usize>],
     pub limits: &'a [Limits],
-    /// Of the mechanism, metres.
+    /// The characteristic length of the mechanism, metres.
     pub size: f64,
 }
 
-/// One solution of a leg: displacements from home.
+/// One solution of a leg: the displacements of its joints from home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegSolution {
     pub lower: [JointDisplacement; 3],
     pub upper: [JointDisplacement; 3],
-    /// Along the intersection motion.
+    /// The displacement along the intersection motion.
     pub tau: JointDisplacement,
 }
 
 impl LegSolution {
-    /// No displacement.
+    /// All joints at home.
     pub const HOME: Self = {
         let none = JointDisplacement::Value(0.0);
         Self { lower: [none; 3], upper: [none; 3], tau: none }
@@ -110,72 +118,74 @@ impl LegSolution {
 }
 
 impl CompiledLeg {
-    /// Compiles `leg`, whose first coordinate has the number `first` in the mechanism.
+    /// Compiles `leg`, whose first joint coordinate has the number `first` in the mechanism.
     pub fn new(
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        CompileContext { task, drives, limits, size }: CompileContext<'_>,
+        CompileContext { task, actuated, limits, size }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
-        let cut = if (lower, upper) == (dim_lower, dim_upper - 1) {
+        let split_section = if (lower, upper) == (dim_lower, dim_upper - 1) {
             Section::Upper
         } else if (lower, upper) == (dim_lower - 1, dim_upper) {
             Section::Lower
         } else {
             return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper });
         };
-        let cut_joint = match task.cut_point {
+        let imaginary_joint = match task.intersection_point {
             Some(point) => ChainJoint::Screw { axis: task.direction, point, pitch: 0.0 },
             None => ChainJoint::Slide { axis: task.direction },
         };
         let compile = |section: Section, subspace: &Subspace, freedoms: &[Freedom]| {
             let mut joints = chain_joints(leg, freedoms);
-            let mut slots = [None; 3];
-            let shift = usize::from(section == Section::Upper && cut == Section::Upper);
-            for (slot, freedom) in slots[shift..].iter_mut().zip(freedoms) {
-                let coordinate = first + coordinate_number(leg, *freedom);
-                *slot = Some(ChainCoordinate { coordinate, drive: drives[coordinate] });
+            let mut coordinates = [None; 3];
+            let shift = usize::from(section == Section::Upper && split_section == Section::Upper);
+            for (slot, freedom) in coordinates[shift..].iter_mut().zip(freedoms) {
+                let number = first + coordinate_number(leg, *freedom);
+                *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
             }
-            if section == cut {
-                joints.insert(if section == Section::Upper { 0 } else { joints.len() }, cut_joint);
+            if section == split_section {
+                joints.insert(
+                    if section == Section::Upper { 0 } else { joints.len() },
+                    imaginary_joint,
+                );
             }
             let refused = |error| RefusedLeg::Chain { section, error };
             let chain = Chain::new(subspace, &joints).map_err(refused)?;
             let screws = screws(subspace, &joints).map_err(refused)?;
-            let slot = || slots.iter().flatten();
+            let own = || coordinates.iter().flatten();
             Ok(CompiledSection {
                 chain,
                 screws,
                 scale: determinant_scale(subspace.kind, &screws, size),
-                slots,
-                limited: slot().any(|s| limits[s.coordinate].any()),
-                driven: slot().any(|s| s.drive.is_some()),
+                coordinates,
+                limited: own().any(|c| limits[c.number].any()),
+                driven: own().any(|c| c.actuated.is_some()),
             })
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let of_joint =
-            lower.slots.map(|slot| slot.map_or(&Limits::Free, |s| &limits[s.coordinate]));
+        let of_joint = lower.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
         let shapes = Branch::BOTH.map(|branch| lower.chain.shape(branch, of_joint));
-        // Solved second, an upper section may be out of reach; a ball never is.
-        let may_fail = cut == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
+        // An upper section that is solved second may be out of reach; a spherical joint never is.
+        let may_fail = split_section == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
         Ok(Self {
-            upper_decides: upper.limited || upper.driven || may_fail,
+            upper_constrains: upper.limited || upper.driven || may_fail,
             lower,
             upper,
-            cut,
+            split_section,
             shapes,
             imaginary: None,
-            unwinds: task.cut_point.is_some()
+            unwinds: task.intersection_point.is_some()
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
     }
 
     /// The sections in the order in which they are solved.
     pub fn order(&self) -> [Section; 2] {
-        match self.cut {
+        match self.split_section {
             Section::Upper => [Section::Upper, Section::Lower],
             Section::Lower => [Section::Lower, Section::Upper],
         }
@@ -188,8 +198,8 @@ impl CompiledLeg {
         }
     }
 
-    /// The lower joints and the cut, near zero where whole turns count: all that matters where the
-    /// upper section does not decide.
+    /// The lower joints' displacements and that along the intersection motion, within π where revolutions are
+    /// counted. This suffices for a leg that its upper section does not constrain.
     #[inline(always)]
     pub fn solve_actuated(
         &self,
@@ -197,7 +207,7 @@ impl CompiledLeg {
         [v, b]: [&Displacement; 2],
         branches: LegBranches,
     ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
-        match self.cut {
+        match self.split_section {
             Section::Upper => {
                 let tau = self.unwound(self.upper.chain.first(b, branches.upper)?, 0.0);
                 let lower = self.solve_lower(task, v, tau, branches.lower)?;
@@ -210,7 +220,8 @@ impl CompiledLeg {
         }
     }
 
-    /// Solves the closure for `v · b`. Where whole turns count, the cut is taken nearest to `near`.
+    /// Solves the closure for `v · b`. Where revolutions are counted, the displacement along the intersection
+    /// motion is taken nearest to `near`.
     #[inline(always)]
     pub fn solve(
         &self,
@@ -219,8 +230,8 @@ impl CompiledLeg {
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
-        let of = |section: Section| move |gap: ReachDeficit| (section, gap);
-        match self.cut {
+        let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
+        match self.split_section {
             Section::Upper => {
                 let upper =
                     self.upper.chain.inverse(b, branches.upper).map_err(of(Section::Upper))?;
@@ -232,20 +243,20 @@ impl CompiledLeg {
             Section::Lower => {
                 let lower =
                     self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
-                // L · exp(I c) = v, with c the cut's amount: τ = -c and U = exp(I c) · b.
-                let cut = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
-                let target = task.upper_intersection.before(b, cut);
+                // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
+                let step = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
+                let target = task.upper_intersection.before(b, step);
                 let upper = self
                     .upper
                     .chain
                     .inverse(&target, branches.upper)
                     .map_err(of(Section::Upper))?;
-                Ok(LegSolution { lower, upper, tau: cut.inverse() })
+                Ok(LegSolution { lower, upper, tau: step.inverse() })
             }
         }
     }
 
-    /// Where the lower section closes, if that is a region of the plane.
+    /// The region in which the lower section closes, if it is a region of the plane.
     pub fn shape(&self, branch: Branch) -> Option<&Shape> {
         let [plus, minus] = &self.shapes;
         match branch {
@@ -254,17 +265,19 @@ impl CompiledLeg {
         }
     }
 
-    /// Whether the cut is a turn, and handed on to a section that counts whole turns.
+    /// Whether the imaginary joint rotates about an axis on which full revolutions are counted.
     pub fn unwinds(&self) -> bool {
         self.unwinds
     }
 
+    /// The displacement along the intersection motion, as the angle nearest to `near` where revolutions are
+    /// counted.
     #[inline(always)]
-    pub fn unwound(&self, cut: JointDisplacement, near: f64) -> JointDisplacement {
-        if self.unwinds { JointDisplacement::Value(cut.nearest(near)) } else { cut }
+    pub fn unwound(&self, tau: JointDisplacement, near: f64) -> JointDisplacement {
+        if self.unwinds { JointDisplacement::Value(tau.nearest(near)) } else { tau }
     }
 
-    /// `L = v · exp(I τ)`: the lower joints.
+    /// Solves `L = v · exp(I τ)` for the lower joints.
     #[inline(always)]
     pub fn solve_lower(
         &self,
@@ -278,13 +291,15 @@ impl CompiledLeg {
 }
 
 impl CompiledSection {
-    /// Whether the amounts of this section's chain are within the limits.
+    /// Whether the displacements of this section's chain are within the limits.
     #[inline]
-    pub fn admits(&self, limits: &[Limits], amounts: &[JointDisplacement; 3]) -> bool {
+    pub fn admits(&self, limits: &[Limits], displacements: &[JointDisplacement; 3]) -> bool {
         !self.limited
-            || self.slots.iter().zip(amounts).all(|(slot, &amount)| match slot {
-                Some(slot) => limits[slot.coordinate].admits(amount),
-                None => true,
+            || self.coordinates.iter().zip(displacements).all(|(coordinate, &displacement)| {
+                match coordinate {
+                    Some(coordinate) => limits[coordinate.number].admits(displacement),
+                    None => true,
+                }
             })
     }
 }
@@ -296,7 +311,7 @@ pub(crate) struct LegBranches {
     pub upper: Branch,
 }
 
-/// The freedoms of a section as chain joints; the three of a spherical joint are one.
+/// The freedoms of a section as chain joints; the three freedoms of a spherical joint are one chain joint.
 fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
     let mut joints = Vec::with_capacity(3);
     for freedom in freedoms {
@@ -318,7 +333,7 @@ fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
     joints
 }
 
-/// Number of a freedom among the leg's coordinates.
+/// The number of a freedom among the leg's coordinates.
 fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
     let before: usize =
         leg.joints[..freedom.joint].iter().map(crate::mechanism::joint::Joint::freedoms).sum();

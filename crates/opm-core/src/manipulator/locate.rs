@@ -1,7 +1,7 @@
-//! From a displacement of the platform to task coordinates, for every pair of subspaces.
+//! The task coordinates of a displacement of the platform, for every pair of subspaces.
 //!
-//! A displacement of the motion is taken apart in closed form (`Task::factors`). For any other one the nearest
-//! pose is found by least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
+//! A displacement in the manipulator's motion is factored in closed form (`Task::factors`). For any other one
+//! the nearest pose is found by least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
 //! reference point's position.
 
 use super::{Manipulator, PoseError};
@@ -11,36 +11,36 @@ use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// A rotation, radians, or a distance over the mechanism's size: a displacement that is off the
-/// motion by less is on it. Far above the rounding of the solution, far below any tolerance of a
-/// machine.
+/// A displacement that is outside the motion by less than this counts as inside: a rotation in radians, or
+/// a distance over the mechanism's size. It is far above the rounding of the solution and far below the
+/// tolerances of a machine.
 const ON: f64 = 1e-9;
 
-/// A rotation in radians beside a translation in metres, or the other way round, that is no more
-/// than what the least squares leave of it: machines are not a million times as large as they turn.
+/// A rotation in radians that is smaller than this fraction of the translation in metres, or vice versa, is
+/// a residue of the least squares and is not reported.
 const BESIDE: f64 = 1e-6;
 
-/// Starts: home, then poses spread over the angles.
+/// The number of starts: home, then poses spread over the angles.
 const STARTS: u32 = 24;
 
-/// Steps from one start. Near a solution each doubles the number of digits, but where the coordinates
-/// are singular (an Euler angle on its pole) it only halves the error.
+/// The number of steps from one start. Near a solution each step doubles the number of correct digits, but
+/// where the Euler angles are singular it only halves the error.
 const STEPS: usize = 200;
 
-/// A displacement of the platform that the manipulator's motion does not hold.
+/// A displacement of the platform that is outside the manipulator's motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutsideMotion {
-    /// The nearest pose that is in the motion: rotation counts by the mechanism's size.
+    /// The nearest pose. A rotation in radians is weighted by the mechanism's characteristic length.
     pub nearest: Vec<f64>,
-    /// Rotation vector from that pose's orientation to the one given, base coordinates, radians.
+    /// The rotation vector from that pose's orientation to the one given, base coordinates, radians.
     pub rotation: Vector3<f64>,
-    /// From that pose's platform point to the one given, base coordinates, metres.
+    /// The vector from that pose's platform point to the one given, base coordinates, metres.
     pub translation: Vector3<f64>,
 }
 
 impl OutsideMotion {
-    /// What it is outside by: a translation, a rotation, or both. A part that is rounding beside the
-    /// other is left out.
+    /// The translation, the rotation, or both, by which it is outside the motion. A part that is only rounding
+    /// compared to the other is left out.
     pub fn parts(&self) -> impl Iterator<Item = (Quantity, Vector3<f64>)> + use<> {
         let parts = [(Quantity::Length, self.translation), (Quantity::Angle, self.rotation)];
         let least = BESIDE * self.translation.norm().max(self.rotation.norm());
@@ -68,14 +68,14 @@ impl fmt::Display for OutsideMotion {
 }
 
 impl Manipulator {
-    /// Where the platform is at a pose, in SE(3): its reference point's position, metres, and its
-    /// orientation, in base coordinates.
+    /// The platform's pose in SE(3): the position of its reference point, metres, and its orientation, in base
+    /// coordinates.
     ///
-    /// The orientation is the turn from the base's directions that the platform has made, which at home
-    /// is none; where `zeta xi psi` measure it, it is theirs, and home's values are home's orientation.
+    /// The orientation at home is the identity, unless the task coordinates are `zeta xi psi`: then it is that
+    /// of their values at home about the upper frame's axes.
     ///
     /// # Errors
-    /// A pose of the wrong length, or with a coordinate that is not a finite number.
+    /// The pose has the wrong length, or a coordinate that is not a finite number.
     pub fn platform_pose(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
         Ok(self.displacement(pose)? * self.home_placement())
     }
@@ -89,7 +89,7 @@ impl Manipulator {
         Ok(self.task.displacement(pose))
     }
 
-    /// The task coordinates at which the platform is there: the inverse of
+    /// The task coordinates at which the platform has this pose: the inverse of
     /// [`Manipulator::platform_pose`].
     ///
     /// # Errors
@@ -104,10 +104,10 @@ impl Manipulator {
     }
 
     /// The pose whose displacement of the platform from home is `displacement` (base coordinates);
-    /// angles within half a turn of home. The inverse of [`Manipulator::displacement`].
+    /// angles are within π of home. The inverse of [`Manipulator::displacement`].
     ///
     /// # Errors
-    /// A displacement outside the motion `A · B`: how far, in which direction, and the nearest pose.
+    /// The displacement is outside the motion `A · B`: by how much, in which direction, and the nearest pose.
     pub fn locate(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
         let length = self.characteristic_length();
         let [v, b] = self.task.factors(displacement);
@@ -142,17 +142,17 @@ impl Manipulator {
         })
     }
 
-    /// The same pose with angles within half a turn of home, but those whose whole turns matter.
+    /// The same pose with angles within π of home, except angles that count revolutions.
     fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
         for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
-            if c.quantity == Quantity::Angle && !self.counts_turns(c.name) {
+            if c.quantity == Quantity::Angle && !self.counts_turns(c.kind()) {
                 *q -= TAU * whole_turns(*q - c.home);
             }
         }
         pose
     }
 
-    /// Home, then angles by an additive recurrence, which spreads over the torus.
+    /// A pose to start from: home, then angles by an additive recurrence, which covers them evenly.
     fn start(&self, number: u32) -> Vec<f64> {
         let n = f64::from(number);
         self.task_coordinates()
@@ -169,7 +169,7 @@ impl Manipulator {
             .collect()
     }
 
-    /// Least squares from `pose`, which it moves; returns what is left.
+    /// Moves `pose` to a least-squares minimum and returns the norm of the residual.
     fn approach(&self, target: &Isometry3<f64>, weight: f64, pose: &mut [f64]) -> f64 {
         let mut miss = self.miss(target, pose, weight);
         let mut damping = 1e-3;
@@ -198,20 +198,29 @@ impl Manipulator {
         miss.norm()
     }
 
-    /// From the pose to the target: rotation vector, and the platform point's way times `weight`.
+    /// The displacement from the pose to the target: the rotation vector, and the translation of the platform
+    /// point times `weight`.
     fn miss(&self, target: &Isometry3<f64>, pose: &[f64], weight: f64) -> Vector6<f64> {
         let here = self.task.displacement(pose);
-        let turn = (target.rotation * here.rotation.inverse()).scaled_axis();
-        let way = (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
-        Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z)
+        let rotation = (target.rotation * here.rotation.inverse()).scaled_axis();
+        let translation =
+            (target * self.mechanism.platform - here * self.mechanism.platform) * weight;
+        Vector6::new(
+            rotation.x,
+            rotation.y,
+            rotation.z,
+            translation.x,
+            translation.y,
+            translation.z,
+        )
     }
 
-    /// Derivative of the miss by the coordinates, central differences: exact enough, since what is
-    /// solved is `miss = 0`, not the derivative.
+    /// The derivative of [`Manipulator::miss`] by the coordinates, by central differences. They are accurate
+    /// enough: the derivative affects only the convergence, not the solution.
     fn sensitivity(&self, target: &Isometry3<f64>, weight: f64, pose: &[f64]) -> DMatrix<f64> {
         let mut jacobian = DMatrix::zeros(6, pose.len());
         for (i, c) in self.task_coordinates().iter().enumerate() {
-            // Lengths enter linearly: for them any step will do.
+            // The miss is linear in lengths: for them any step gives the derivative.
             let h =
                 1e-6 * if c.quantity == Quantity::Length { pose[i].abs().max(1.0) } else { 1.0 };
             let at = |q: f64| {

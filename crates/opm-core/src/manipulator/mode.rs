@@ -1,4 +1,4 @@
-//! Working modes: one sign for every two-valued choice.
+//! Working modes: one sign for every two-valued choice of a leg's chains.
 
 use super::leg::{CompiledLeg, LegBranches, Section};
 use crate::chain::Branch;
@@ -7,53 +7,55 @@ use crate::chain::Branch;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Mode(pub(super) u64);
 
-/// A mode string that does not fit the manipulator.
+/// A text that is not a working mode of the manipulator.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("working mode `{given}`: {problem}, expected {}", expected(example))]
 pub struct ModeError {
-    /// What was given.
+    /// The text that was given.
     pub given: String,
-    /// What is wrong with it.
+    /// The reason why it is not.
     pub problem: String,
-    /// A mode that fits, empty where there is nothing to choose.
+    /// A valid mode; empty where there are no choices.
     pub example: String,
 }
 
 fn expected(example: &str) -> String {
     match example {
         "" => "none: the mechanism has no choices, and one working mode".to_owned(),
-        _ => format!("one sign (+ or -) for every choice, a group a leg: `{example}`"),
+        _ => format!("one sign (+ or -) for every choice, in one group for each leg: `{example}`"),
     }
 }
 
 impl Mode {
-    /// This mode, and the choices of another leg.
+    /// This mode with the minus signs of another one added.
     #[must_use]
     pub(crate) fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
 
-/// Which choices each leg has, and their bits.
+/// The choices of each leg, and their bits in a [`Mode`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ModeLayout {
     legs: Vec<LegChoices>,
     count: u32,
 }
 
-/// The bits of a leg's choices; `None` where a section has one solution.
+/// The bits of a leg's choices; `None` where a section has a single solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct LegChoices {
     lower: Option<u32>,
     upper: Option<u32>,
-    upper_first: bool,
+    first: Section,
 }
 
 impl LegChoices {
-    /// Bits in the order in which they are written: as the sections are solved.
+    /// The bits in the order of the mode's text, which is the order in which the sections are solved.
     fn written(&self) -> impl Iterator<Item = u32> {
-        let order =
-            if self.upper_first { [self.upper, self.lower] } else { [self.lower, self.upper] };
+        let order = match self.first {
+            Section::Upper => [self.upper, self.lower],
+            Section::Lower => [self.lower, self.upper],
+        };
         order.into_iter().flatten()
     }
 }
@@ -64,8 +66,7 @@ impl ModeLayout {
         let legs = legs
             .iter()
             .map(|leg| {
-                let mut choices =
-                    LegChoices { lower: None, upper: None, upper_first: leg.cut == Section::Upper };
+                let mut choices = LegChoices { lower: None, upper: None, first: leg.split_section };
                 for section in leg.order() {
                     if leg.section(section).chain.has_choice() {
                         let bit = match section {
@@ -82,11 +83,12 @@ impl ModeLayout {
         Self { legs, count }
     }
 
-    /// Number of two-valued choices.
+    /// The number of two-valued choices.
     pub fn count(&self) -> u32 {
         self.count
     }
 
+    /// The branches of a leg's two chains in a mode.
     #[inline]
     pub fn branches(&self, mode: Mode, leg: usize) -> LegBranches {
         let branch = |bit: Option<u32>| match bit {
@@ -97,7 +99,7 @@ impl ModeLayout {
         LegBranches { lower: branch(choices.lower), upper: branch(choices.upper) }
     }
 
-    /// Every combination of a leg's own choices, as modes that are plus elsewhere.
+    /// The modes with every combination of one leg's choices, and plus for all other legs.
     pub fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
         let mut bits = [0; 2];
         let mut len = 0;
@@ -110,7 +112,7 @@ impl ModeLayout {
         })
     }
 
-    /// The part of a mode that is one leg's.
+    /// The number of a leg's combination of choices in a mode, in the order of [`ModeLayout::leg_modes`].
     #[inline]
     pub fn of_leg(&self, mode: Mode, leg: usize) -> usize {
         self.legs[leg]
@@ -119,6 +121,7 @@ impl ModeLayout {
             .fold(0, |part, (i, bit)| part | ((mode.0 >> bit & 1) as usize) << i)
     }
 
+    /// The text of a mode: one group of signs for each leg that has choices.
     pub fn format(&self, mode: Mode) -> String {
         let groups: Vec<String> = self
             .legs
@@ -131,7 +134,7 @@ impl ModeLayout {
         groups.join(" ")
     }
 
-    /// Reads signs; the spaces between them are free.
+    /// Parses the text of a mode; whitespace is ignored.
     pub fn parse(&self, text: &str) -> Result<Mode, ModeError> {
         let error = |problem: String| ModeError {
             given: text.to_owned(),

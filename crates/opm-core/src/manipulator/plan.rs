@@ -1,5 +1,5 @@
-//! In which order the sections of a mechanism are solved forwards: found once, from which joints are
-//! actuated and what the two subspaces are.
+//! The order in which forward kinematics solve the sections of a mechanism. It is found once, from the
+//! actuated joints and the two subspaces.
 
 mod flat;
 
@@ -11,61 +11,69 @@ use crate::group::JointDisplacement;
 use crate::task::Task;
 use flat::Flat;
 
-/// Why a mechanism's forward kinematics have no closed form here.
+/// Why a mechanism's forward kinematics have no closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoClosedForm {
-    /// No set of legs fixes where the intersection motion takes place.
-    #[error("its legs do not fix the lower section apart from the upper one")]
+    /// No set of legs determines the lower displacement up to the intersection motion.
+    #[error(
+        "the actuated joints do not determine the lower section independently of the upper one"
+    )]
     Lower,
-    /// Too few legs act on the upper section once the lower one is known.
-    #[error("its legs do not fix the upper section once the lower one is known")]
+    /// Too few legs constrain the upper section once the lower one is known.
+    #[error("the actuated joints do not determine the upper section once the lower one is known")]
     Upper,
-    /// A revolute with a motor, which does not tell its turns, on the axis of a screw, which counts them.
-    #[error("it drives a revolute on the axis of a screw: each turn is another assembly")]
+    /// An actuated revolute joint, which does not count revolutions, on the axis of a helical joint, which
+    /// does.
+    #[error(
+        "an actuated revolute joint is on the axis of a helical joint: each revolution of it is another assembly"
+    )]
     Turns,
-    /// A spherical joint with a motor.
-    #[error("it drives a spherical joint")]
+    /// A spherical joint is actuated.
+    #[error("a spherical joint is actuated")]
     Ball,
 }
 
-/// The order.
+/// The order in which forward kinematics solve the sections.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What each leg holds.
+    /// The actuated joints of each leg.
     pub legs: Vec<HeldLeg>,
-    /// How `v` is found, up to the intersection motion.
+    /// What determines `v` up to the intersection motion.
     pub anchor: Anchor,
 }
 
-/// The slots of a leg's two chains whose joints are actuated.
+/// The numbers of the actuated joints in a leg's two chains.
 #[derive(Clone, Debug)]
 pub struct HeldLeg {
     pub lower: Vec<usize>,
     pub upper: Vec<usize>,
 }
 
-/// What fixes `v`, up to the intersection motion.
+/// What determines `v` up to the intersection motion.
 #[derive(Clone, Debug)]
 pub enum Anchor {
     /// A leg whose lower joints are all actuated.
     Leg(usize),
-    /// Two legs, each of which keeps the axis of the shared rotation on a track.
+    /// Two legs, each of which keeps the axis of the intersection motion, a rotation, on a track.
     Tracks([Tracked; 2]),
-    /// A leg that keeps `v` on a level along which the intersection motion moves: the slot that does.
-    Level { leg: usize, slot: usize },
-    /// Legs whose imaginary joints move as one, `functional · b`: taken as the origin of the intersection
-    /// motion, it leaves as many conditions on `v` as there are freedoms.
+    /// A leg with an actuated joint that fixes the component of `v` perpendicular to the intersection motion;
+    /// `joint` is the number of that joint in the lower chain.
+    Level { leg: usize, joint: usize },
+    /// Coupled legs: the displacement of each along the intersection motion is `functional · b`, up to a known
+    /// constant. Measured from it, the legs impose as many conditions on `v` as it has freedoms.
     CoupledLegs { functional: [f64; 2], legs: Vec<usize> },
-    /// All displacements add up: a linear system.
+    /// Both subspaces are commutative: the pose solves a linear system.
     Flat(Flat),
 }
 
-/// A leg that keeps the axis on a track.
+/// A leg that keeps the axis of the intersection motion on a track.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracked {
     pub leg: usize,
-    /// The one lower slot that is free, of a leg without the cut there; the one that is held, with it.
-    pub slot: usize,
+    /// The number of a joint in the lower chain: the only free one of a leg that is split in its upper section;
+    /// the actuated one of a leg that is split in its lower section.
+    pub joint: usize,
 }
 
 impl Plan {
@@ -103,13 +111,13 @@ impl Plan {
     }
 }
 
-/// Whether a section on one axis has screws, and actuated revolutes.
+/// Whether a section on one axis has both helical joints and actuated revolute joints.
 fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool {
     let (mut screws, mut driven) = (false, false);
     for (leg, held) in legs.iter().zip(held) {
         let joints = match &leg.section(section).chain {
             Chain::Cylindrical(chain) => chain.joints(),
-            // Chains in other subspaces have no screws.
+            // Chains in other subspaces have no helical joints.
             Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
                 return false;
             }
@@ -118,40 +126,42 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             Section::Lower => &held.lower,
             Section::Upper => &held.upper,
         };
-        screws |= joints.iter().any(|joint| joint.turn != 0.0 && joint.advance != 0.0);
-        driven |= held.iter().any(|&slot| joints[slot].advance == 0.0);
+        screws |= joints.iter().any(|joint| joint.rotation != 0.0 && joint.advance != 0.0);
+        driven |= held.iter().any(|&joint| joints[joint].advance == 0.0);
     }
     screws && driven
 }
 
+/// The numbers of the actuated joints of a chain.
 fn held(section: &CompiledSection) -> Vec<usize> {
-    let driven = |slot: &usize| section.slots[*slot].is_some_and(|slot| slot.drive.is_some());
+    let driven =
+        |joint: &usize| section.coordinates[*joint].is_some_and(|joint| joint.actuated.is_some());
     (0..3).filter(driven).collect()
 }
 
-/// The ways in which `v` can be found, the simplest first.
+/// The anchors from which `v` can be found, the simplest first.
 fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
     let mut found = Vec::new();
     let whole = |(leg, held): (&CompiledLeg, &HeldLeg)| {
-        let real = leg.lower.chain.freedoms() - usize::from(leg.cut == Section::Lower);
+        let real = leg.lower.chain.freedoms() - usize::from(leg.split_section == Section::Lower);
         held.lower.len() == real
     };
     found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
     if task.lower.kind.commutes() {
-        let cut = task.lower_intersection.sum();
+        let along = task.lower_intersection.sum();
         found.extend((0..legs.len()).find_map(|leg| {
-            let level = |slot: &&usize| {
+            let level = |joint: &&usize| {
                 let c =
-                    Condition::new(&legs[leg].lower.chain, **slot, JointDisplacement::Value(0.0));
+                    Condition::new(&legs[leg].lower.chain, **joint, JointDisplacement::Value(0.0));
                 matches!(c, Some(Condition::Flat { normal: [a, b], .. })
-                    if (a * cut[0] + b * cut[1]).abs() <= LEVEL * a.hypot(b))
+                    if (a * along[0] + b * along[1]).abs() <= LEVEL * a.hypot(b))
             };
-            let slot = *held[leg].lower.iter().find(level)?;
-            Some(Anchor::Level { leg, slot })
+            let joint = *held[leg].lower.iter().find(level)?;
+            Some(Anchor::Level { leg, joint })
         }));
         return found;
     }
-    if task.cut_point.is_some() {
+    if task.intersection_point.is_some() {
         let tracked: Vec<Tracked> =
             (0..legs.len()).filter_map(|leg| tracked(leg, &legs[leg], &held[leg])).collect();
         if let [first, second, ..] = *tracked {
@@ -159,50 +169,53 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
         }
     }
     if task.upper.kind.commutes() {
-        found.extend(together(task, legs, held));
+        found.extend(coupled_legs(task, legs, held));
     }
     found
 }
 
-/// The sine of an angle between a condition's normal and the intersection motion that counts as a right
-/// one's complement: both are exact up to rounding.
+/// A condition's normal and the intersection motion are perpendicular where the cosine of the angle between
+/// them is below this: both are exact up to rounding.
 const LEVEL: f64 = 1e-12;
 
+/// The track on which a leg keeps the axis of the intersection motion, if it does.
 fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> {
-    let slot = match leg.cut {
+    let joint = match leg.split_section {
         Section::Upper if held.lower.len() == 2 => {
-            (0..3).find(|slot| !held.lower.contains(slot))?
+            (0..3).find(|joint| !held.lower.contains(joint))?
         }
         Section::Lower if held.lower.len() == 1 => held.lower[0],
         _ => return None,
     };
-    // Of a chain with the cut there may be one that leaves the axis where it likes.
-    let amounts = [JointDisplacement::Value(0.0); 3];
-    let track = match leg.cut {
-        Section::Upper => Track::of_chain(&leg.lower.chain, slot, &amounts),
+    // A held joint of a chain with the imaginary joint does not always constrain the axis.
+    let displacements = [JointDisplacement::Value(0.0); 3];
+    let track = match leg.split_section {
+        Section::Upper => Track::of_chain(&leg.lower.chain, joint, &displacements),
         Section::Lower => {
-            let condition = Condition::new(&leg.lower.chain, slot, amounts[0])?;
+            let condition = Condition::new(&leg.lower.chain, joint, displacements[0])?;
             Track::of_condition(&condition)
         }
     };
-    track.map(|_| Tracked { leg: number, slot })
+    track.map(|_| Tracked { leg: number, joint })
 }
 
-/// The functional of `b` that the cuts of most legs follow.
-fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
-    let cut = task.upper_intersection.sum();
-    // With its one upper joint passive, a leg's cut is what b has beside that joint's motion.
+/// The functional of `b` that gives the displacement along the intersection motion of the largest number of
+/// legs, if those determine `v`.
+fn coupled_legs(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Anchor> {
+    let along = task.upper_intersection.sum();
+    // With its one upper joint passive, a leg's displacement along I is the component of b along I when b is
+    // decomposed along I and that joint's motion.
     let functional = |leg: &CompiledLeg, held: &HeldLeg| {
-        if leg.cut == Section::Lower || !held.upper.is_empty() {
+        if leg.split_section == Section::Lower || !held.upper.is_empty() {
             return None;
         }
         let [_, [p, q]] = flat_joints(&leg.upper.chain)?;
-        let along = q * cut[0] - p * cut[1];
-        Some([q / along, -p / along])
+        let across = q * along[0] - p * along[1];
+        Some([q / across, -p / across])
     };
     let functionals: Vec<_> =
         legs.iter().zip(held).map(|(leg, held)| functional(leg, held)).collect();
-    let follows = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
+    let matches_functional = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
         other.is_some_and(|[a, b]| {
             (a - wanted[0]).abs().max((b - wanted[1]).abs()) <= LEVEL * wanted[0].hypot(wanted[1])
         })
@@ -210,13 +223,13 @@ fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Ancho
     let group = |wanted: &[f64; 2]| -> Vec<usize> {
         (0..legs.len())
             .filter(|&i| {
-                let driven = legs[i].cut == Section::Upper && !held[i].upper.is_empty();
-                follows(&functionals[i], wanted) || driven
+                let driven = legs[i].split_section == Section::Upper && !held[i].upper.is_empty();
+                matches_functional(&functionals[i], wanted) || driven
             })
             .collect()
     };
     let conditions = |group: &[usize]| -> usize {
-        let own = |i: &usize| legs[*i].cut == Section::Lower || group.contains(i);
+        let own = |i: &usize| legs[*i].split_section == Section::Lower || group.contains(i);
         (0..legs.len()).filter(own).map(|i| held[i].lower.len()).sum()
     };
     let best = functionals.iter().flatten().max_by_key(|wanted| conditions(&group(wanted)))?;
@@ -225,7 +238,7 @@ fn together(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<Ancho
         .then_some(Anchor::CoupledLegs { functional: *best, legs: members })
 }
 
-/// Whether the legs' conditions on `b` are enough once `v` is known.
+/// Whether the legs' conditions determine `b` once `v` is known.
 fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anchor) -> bool {
     let mut count = 0;
     let mut normals: Vec<[f64; 2]> = Vec::new();
@@ -235,11 +248,11 @@ fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anc
             Anchor::CoupledLegs { legs, .. } if legs.contains(&number) => true,
             _ => !held.lower.is_empty(),
         };
-        let cut = (leg.cut == Section::Upper && known).then_some(0);
-        for slot in cut.into_iter().chain(held.upper.iter().copied()) {
+        let split = (leg.split_section == Section::Upper && known).then_some(0);
+        for joint in split.into_iter().chain(held.upper.iter().copied()) {
             count += 1;
             if let Some(Condition::Flat { normal, .. }) =
-                Condition::new(&leg.upper.chain, slot, JointDisplacement::Value(0.0))
+                Condition::new(&leg.upper.chain, joint, JointDisplacement::Value(0.0))
             {
                 normals.push(normal);
             }

@@ -1,16 +1,15 @@
-//! Which poses are in reach, for those that share `b`: a slice of a sweep.
+//! Reachability of the poses that share `b`: a slice of a sweep.
 //!
-//! `b` decides each leg's imaginary joint, once for the whole slice. What is left is whether the leg's
-//! lower chain closes on `v · exp(I τ)` within its limits: a fixed shape in the plane of `v`, or a
-//! question a pose.
+//! `b` determines each leg's displacement τ along the intersection motion, once for the whole slice. It
+//! remains to decide whether the leg's lower chain closes at `v · exp(I τ)` within its limits. The answer is
+//! a fixed region in the plane of `v`, or is computed pose by pose.
 //!
-//! One section alone is asked in the same way: the upper one whether `b` leaves every leg that is cut
-//! there a way ([`Manipulator::upper_closes`]), the lower one with the displacements τ of its cuts given
-//! ([`Manipulator::lower_leg_branches`]). A pose is in reach where `b` is in that of the upper section and
-//! `v` with `τ(b)` in that of the lower one. A leg that is cut in its lower section is the lower
-//! section's alone, if its upper joints always close and neither drive nor limit it
-//! ([`Manipulator::workspace_factorises`]); if they do, too, the whole reaches less than its two sections
-//! have in common.
+//! Each section can be examined alone: the upper one by whether every leg that is split there closes at `b`
+//! ([`Manipulator::upper_closes`]), the lower one with the displacements τ given
+//! ([`Manipulator::lower_leg_branches`]). If the workspace factorises
+//! ([`Manipulator::workspace_factorises`]), a pose is in reach exactly where `b` is in reach of the upper
+//! section, and `v` with `τ(b)` in reach of the lower one. It does not factorise where a leg that is split
+//! in its lower section has upper joints that are limited, actuated or may be out of reach.
 
 use super::leg::{CompiledLeg, LegBranches, Section};
 use super::{ImaginaryJoint, Manipulator, Mode};
@@ -18,35 +17,36 @@ use crate::chain::region::Region;
 use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Complex;
 
-/// One way in which a leg can follow a slice of poses that share `b`.
+/// One branch of a leg's solutions over a slice of poses that share `b`.
 #[derive(Clone, Copy, Debug)]
 pub struct LegBranch {
     pub(super) leg: usize,
     pub(super) branches: LegBranches,
-    /// Found from `b`, where the leg's upper section takes the cut.
+    /// The displacement along the intersection motion, where the leg is split in its upper section.
     pub(super) tau: Option<JointDisplacement>,
-    /// `b`, where the leg takes the cut in its lower section, and its upper one has a say at every pose.
+    /// The displacement `b`, where the leg is split in its lower section and its upper section constrains it.
     pub(super) with_upper: Option<Displacement>,
 }
 
 impl LegBranch {
-    /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where whole turns
-    /// do not matter) or metres; `None` of a leg that is cut in its lower section.
-    pub fn cut(&self) -> Option<f64> {
+    /// The leg's displacement along the intersection motion, radians (in `(-π, π]` where revolutions are not
+    /// counted) or metres; `None` for a leg that is split in its lower section.
+    pub fn intersection_displacement(&self) -> Option<f64> {
         self.tau.map(JointDisplacement::value)
     }
 
-    /// Whether the leg follows alike in every slice: `b` makes no difference to it.
+    /// Whether the leg's feasibility is the same in every slice: it does not depend on `b`.
     pub fn is_independent_of_slice(&self) -> bool {
         self.tau.is_none() && self.with_upper.is_none()
     }
 
-    /// Number of the leg.
+    /// The number of the leg.
     pub fn leg(&self) -> usize {
         self.leg
     }
 
-    /// The displacement as the direction of a vector, where it is a turn of which whole turns do not matter.
+    /// The displacement along the intersection motion as the direction of a vector, which need not have unit
+    /// length, where it is a rotation that does not count revolutions.
     pub fn direction(&self) -> Option<Complex<f64>> {
         match self.tau {
             Some(JointDisplacement::Direction(direction)) => Some(direction),
@@ -56,31 +56,34 @@ impl LegBranch {
 }
 
 impl Manipulator {
-    /// Number of legs.
+    /// The number of legs.
     pub fn legs(&self) -> usize {
         self.legs.len()
     }
 
-    /// The ways in which a leg can follow the slice of poses with this `b`: in one working mode, or
-    /// (`None`) in any. At most four; none where its upper section does not close.
+    /// Adds to `found` the branches of a leg over the slice of poses with this `b`, in one working mode, or
+    /// (`None`) in all of them. There are at most four, and none where the leg is split in its upper section
+    /// and that does not close.
+    #[doc(hidden)]
     pub fn leg_branches(
         &self,
         leg: usize,
         b: &Displacement,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) {
         let compiled = &self.legs[leg];
         let mut solve = |branches: LegBranches| {
-            let tau = match compiled.cut {
+            let tau = match compiled.split_section {
                 Section::Lower => None,
                 Section::Upper => {
                     let chain = &compiled.upper.chain;
                     let tau = if compiled.upper.limited {
                         let admitted = chain.inverse(b, branches.upper).ok();
-                        let admitted =
-                            admitted.filter(|amounts| compiled.upper.admits(&self.limits, amounts));
-                        admitted.map(|amounts| amounts[0])
+                        let admitted = admitted.filter(|displacements| {
+                            compiled.upper.admits(&self.limits, displacements)
+                        });
+                        admitted.map(|displacements| displacements[0])
                     } else {
                         chain.first(b, branches.upper).ok()
                     };
@@ -90,8 +93,8 @@ impl Manipulator {
                     }
                 }
             };
-            let with_upper = (tau.is_none() && compiled.upper_decides).then_some(*b);
-            ways.push(LegBranch { leg, branches, tau, with_upper });
+            let with_upper = (tau.is_none() && compiled.upper_constrains).then_some(*b);
+            found.push(LegBranch { leg, branches, tau, with_upper });
         };
         match mode {
             Some(mode) => solve(self.modes.branches(mode, leg)),
@@ -103,39 +106,43 @@ impl Manipulator {
         }
     }
 
-    /// What the lower section alone may choose beside `v`: the displacement along the intersection
-    /// motion of every leg that is cut in its upper section, as an imaginary joint. Those that
-    /// [`Manipulator::imaginary`] has are among them; the others follow from these, or stay at home.
-    pub fn cuts(&self) -> Vec<ImaginaryJoint> {
+    /// The free displacements of the lower section alone, other than `v`: the displacement along the
+    /// intersection motion of every leg that is split in its upper section, as an imaginary joint. They include
+    /// the joints of [`Manipulator::imaginary`] of those legs; the others depend on these, or stay at home.
+    #[doc(hidden)]
+    pub fn intersection_joints(&self) -> Vec<ImaginaryJoint> {
         let legs = self.mechanism.legs.iter().enumerate();
-        legs.filter(|&(number, _)| self.legs[number].cut == Section::Upper)
+        legs.filter(|&(number, _)| self.legs[number].split_section == Section::Upper)
             .map(|(number, leg)| ImaginaryJoint::new(leg, number, &self.task))
             .collect()
     }
 
-    /// Whether whole turns of the cuts matter: a helical joint follows them.
-    pub fn cuts_count_turns(&self) -> bool {
+    /// Whether the full revolutions of these displacements matter, since a helical joint turns with them.
+    #[doc(hidden)]
+    pub fn intersection_counts_turns(&self) -> bool {
         let counts =
             |leg: &CompiledLeg| leg.lower.chain.counts_turns() || leg.upper.chain.counts_turns();
         self.legs.iter().any(counts)
     }
 
-    /// The ways in which a leg's lower section alone can follow where its cut is at the displacement
-    /// `tau` along the intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in
-    /// one working mode, or (`None`) in any. A leg that is cut in its lower section has no use for it.
+    /// Adds to `found` the branches of a leg's lower section alone, with the leg displaced by `tau` along the
+    /// intersection motion ([`ImaginaryJoint::displacement`]), radians or metres, in one working mode, or
+    /// (`None`) in all of them. For a leg that is split in its lower section, `tau` is ignored.
+    #[doc(hidden)]
     pub fn lower_leg_branches(
         &self,
         leg: usize,
         tau: f64,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) {
         let compiled = &self.legs[leg];
-        let tau = (compiled.cut == Section::Upper).then_some(JointDisplacement::Value(tau));
+        let tau =
+            (compiled.split_section == Section::Upper).then_some(JointDisplacement::Value(tau));
         let mut push = |branches: LegBranches| {
-            // Choices of the upper section make no difference.
-            if ways.iter().all(|way| way.branches.lower != branches.lower) {
-                ways.push(LegBranch { leg, branches, tau, with_upper: None });
+            // The choices of the upper section do not affect the lower one.
+            if found.iter().all(|branch| branch.branches.lower != branches.lower) {
+                found.push(LegBranch { leg, branches, tau, with_upper: None });
             }
         };
         match mode {
@@ -148,49 +155,53 @@ impl Manipulator {
         }
     }
 
-    /// Whether the upper section alone closes at `b` within its limits, in one working mode, or
-    /// (`None`) in any: all that legs cut there ask of `b`. `ways` is working memory.
+    /// Whether every leg that is split in its upper section closes there at `b` within its limits, in one
+    /// working mode, or (`None`) in any. `found` is working memory.
+    #[doc(hidden)]
     pub fn upper_closes(
         &self,
         b: &Displacement,
         mode: Option<Mode>,
-        ways: &mut Vec<LegBranch>,
+        found: &mut Vec<LegBranch>,
     ) -> bool {
         (0..self.legs.len()).all(|leg| {
-            ways.clear();
-            self.leg_branches(leg, b, mode, ways);
-            !ways.is_empty()
+            found.clear();
+            self.leg_branches(leg, b, mode, found);
+            !found.is_empty()
         })
     }
 
-    /// Whether the two sections alone decide on every pose: no leg that is cut in its lower section
-    /// has upper joints that are limited, actuated, or may be out of reach.
+    /// Whether the two sections together decide the reachability of every pose: no leg that is split in its
+    /// lower section has upper joints that are limited, actuated, or may be out of reach.
     pub fn workspace_factorises(&self) -> bool {
-        self.legs.iter().all(|leg| leg.cut == Section::Upper || !leg.upper_decides)
+        self.legs.iter().all(|leg| leg.split_section == Section::Upper || !leg.upper_constrains)
     }
 
-    /// The imaginary joint's number and value, for a leg that has one.
-    pub fn imaginary_value(&self, way: &LegBranch) -> Option<(usize, f64)> {
-        let number = self.legs[way.leg].imaginary?;
+    /// The number and the value (radians or metres) of the imaginary joint of a branch; `None` where its leg
+    /// has no reported one.
+    #[doc(hidden)]
+    pub fn imaginary_value(&self, branch: &LegBranch) -> Option<(usize, f64)> {
+        let number = self.legs[branch.leg].imaginary?;
         let joint = &self.imaginary[number];
-        Some((number, joint.value(way.tau?, joint.home)))
+        Some((number, joint.value(branch.tau?, joint.home)))
     }
 
-    /// Whether a leg follows to `v`, within its limits.
+    /// Whether a leg closes at `v` on a branch within its limits.
+    #[doc(hidden)]
     #[inline]
-    pub fn reaches(&self, way: &LegBranch, v: &Displacement) -> bool {
-        let leg = &self.legs[way.leg];
-        match (way.tau, &way.with_upper) {
+    pub fn reaches(&self, branch: &LegBranch, v: &Displacement) -> bool {
+        let leg = &self.legs[branch.leg];
+        match (branch.tau, &branch.with_upper) {
             (Some(tau), _) => leg
-                .solve_lower(&self.task, v, tau, way.branches.lower)
-                .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
+                .solve_lower(&self.task, v, tau, branch.branches.lower)
+                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, None) => leg
                 .lower
                 .chain
-                .inverse(v, way.branches.lower)
-                .is_ok_and(|amounts| leg.lower.admits(&self.limits, &amounts)),
+                .inverse(v, branch.branches.lower)
+                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, Some(b)) => {
-                leg.solve(&self.task, [v, b], way.branches, 0.0).is_ok_and(|solution| {
+                leg.solve(&self.task, [v, b], branch.branches, 0.0).is_ok_and(|solution| {
                     leg.lower.admits(&self.limits, &solution.lower)
                         && leg.upper.admits(&self.limits, &solution.upper)
                 })
@@ -198,17 +209,18 @@ impl Manipulator {
         }
     }
 
-    /// Where the leg follows to, as a region of the plane: of the translations that may be added to the
-    /// displacement `v`, in units of `1 / scale`. The same answer as [`Manipulator::reaches`] gives,
-    /// rounding apart. `None` where `v` does not move a plane or the leg's limits leave no region of that
-    /// shape.
+    /// The translations that can be added to the displacement `v` such that a leg closes on a branch, in units
+    /// of `1 / scale`. It agrees with [`Manipulator::reaches`] up to rounding. `None` where `v` is not a
+    /// displacement of a plane, or where the leg's limits make the translations more than a convex set with a
+    /// convex hole.
+    #[doc(hidden)]
     #[inline(always)]
-    pub fn region(&self, way: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
-        if way.with_upper.is_some() {
+    pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
+        if branch.with_upper.is_some() {
             return None;
         }
-        let shape = self.legs[way.leg].shape(way.branches.lower)?;
-        let target = match way.tau {
+        let shape = self.legs[branch.leg].shape(branch.branches.lower)?;
+        let target = match branch.tau {
             Some(tau) => &self.task.lower_intersection.after(v, tau),
             None => v,
         };

@@ -3,11 +3,11 @@
 use super::{CompileError, Manipulator};
 use crate::mechanism::{examples, file};
 
-/// Why there is no manipulator to a mechanism file.
+/// Why a mechanism file does not give a manipulator.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The text is not that of a mechanism: every problem, with its line and column.
+    /// The text does not describe a mechanism. The error lists every problem with its line and column.
     #[error(transparent)]
     File(#[from] file::FileErrors),
     /// The mechanism has no closed form.
@@ -41,7 +41,7 @@ impl Manipulator {
     /// One of the mechanisms that opm ships, by its name ([`examples::EXAMPLES`] lists them).
     ///
     /// # Errors
-    /// A name that is none of theirs.
+    /// The name is not that of a shipped mechanism, or the mechanism has no closed form.
     ///
     /// ```
     /// use opm_core::Manipulator;

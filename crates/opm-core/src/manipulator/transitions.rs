@@ -1,127 +1,138 @@
-//! Where along a row of a sweep a leg may begin or cease to follow.
+//! The transitions of a leg along a row of a sweep: where it may begin or cease to reach the pose.
 //!
-//! In a row all coordinates but the first are fixed, and the target of the leg's lower chain moves along
-//! a [`Path`](crate::group::Path). What the leg does changes only where the path meets the [`Surface`]s of
-//! its chain: a joint at its limit, two branches that meet. A leg may take the cut in its lower section,
-//! with an upper section that constrains it. In a slice only the cut moves the upper section's target, so
-//! that what the upper section allows is arcs of the cut's displacement. Their ends are limits of the cut,
-//! the last joint of the lower chain.
+//! In a row all coordinates except the first are fixed, and the target of the leg's lower chain moves along
+//! a [`Path`](crate::group::Path). Feasibility changes only where the path meets the [`Surface`]s of the
+//! chain: where a joint is at its limit, or two branches meet. A leg may be split in its lower section, with
+//! an upper section that constrains it. In a slice only the imaginary joint moves the upper section's
+//! target, so that the upper section allows intervals of that joint's displacement. Their ends are limits of
+//! the imaginary joint, the last joint of the lower chain.
 
 use super::leg::CompiledSection;
 use super::{LegBranch, Manipulator};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
-use crate::chain::surface::Surface;
+use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, JointDisplacement};
 use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
 use std::f64::consts::PI;
 
-/// How far a cut may slide, in sizes of the leg, and its upper section still be asked for: beyond, its
-/// rounding is no longer that of a number of that size.
+/// The largest translation of the imaginary joint for which transitions are computed, in sizes of the leg:
+/// beyond it, the rounding is larger than that of the leg's lengths.
 const FAR: f64 = 1e4;
 
-/// What can change a leg's mind within a slice.
+/// The targets at which a leg's feasibility can change within a slice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transitions {
     surfaces: Vec<Surface>,
-    /// Ends of what the upper section allows, each known to within a share.
-    cuts: Vec<(Surface, f64)>,
-    /// No number of the leg is larger, metres.
+    /// The targets at which the imaginary joint is at an end of what the upper section allows, each with the
+    /// uncertainty of that end.
+    tau_limits: Vec<(Surface, f64)>,
+    /// An upper bound of the leg's lengths, metres.
     size: f64,
-    /// How far the cut may slide for the above to hold, metres.
-    most: Option<f64>,
+    /// The largest translation of the imaginary joint for which the surfaces are complete, metres; `None`
+    /// where it is not limited.
+    largest_tau: Option<f64>,
 }
 
 impl CompiledSection {
-    /// Where the section's chain enters and leaves its limits, and where its branches meet; `None` where
-    /// there is no closed form for that.
+    /// The surfaces at which the section's chain enters and leaves its limits, and at which its branches
+    /// meet; `None` where they have no closed form.
     fn surfaces(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
         let mut surfaces = self.chain.folds();
-        for (joint, slot) in self.slots.iter().enumerate() {
-            let Some(slot) = slot else { continue };
-            for end in self.chain.ends(joint, &limits[slot.coordinate]).into_iter().flatten() {
+        for (joint, coordinate) in self.coordinates.iter().enumerate() {
+            let Some(coordinate) = coordinate else { continue };
+            for end in self.chain.ends(joint, &limits[coordinate.number]).into_iter().flatten() {
                 surfaces.push(self.chain.held(joint, end)?);
             }
         }
         Some(surfaces)
     }
 
-    /// The sum of its lengths, limits included.
+    /// The sum of the section's lengths, limits included, metres.
     fn size(&self, manipulator: &Manipulator) -> f64 {
         let limit = |coordinate: usize| {
             let (low, high) = manipulator.limits[coordinate].range();
             let length = manipulator.coordinates[coordinate].quantity == Quantity::Length;
             if length && low.is_finite() { low.abs().max(high.abs()) } else { 0.0 }
         };
-        let limits: f64 = self.slots.iter().flatten().map(|slot| limit(slot.coordinate)).sum();
+        let limits: f64 =
+            self.coordinates.iter().flatten().map(|coordinate| limit(coordinate.number)).sum();
         self.chain.size() + limits
     }
 }
 
 impl Manipulator {
-    /// What can change a leg's mind within the slice. `None` where no closed form tells: limits on
-    /// the rotation vector of a spherical joint.
-    pub fn transitions(&self, way: &LegBranch) -> Option<Transitions> {
-        let leg = &self.legs[way.leg];
+    /// The transitions of a leg within a slice. `None` where they have no closed form: with limits on the
+    /// rotation vector of a spherical joint.
+    #[doc(hidden)]
+    pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
+        let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
-        let mut breaks = Transitions {
+        let mut transitions = Transitions {
             surfaces: leg.lower.surfaces(&self.limits)?,
-            cuts: Vec::new(),
+            tau_limits: Vec::new(),
             size,
-            most: None,
+            largest_tau: None,
         };
-        if let Some(b) = &way.with_upper {
-            self.add_cuts(way, b, &mut breaks)?;
+        if let Some(b) = &branch.with_upper {
+            self.add_tau_limits(branch, b, &mut transitions)?;
         }
-        Some(breaks)
+        Some(transitions)
     }
 
-    /// What the upper section allows, as limits of the cut.
-    fn add_cuts(&self, way: &LegBranch, b: &Displacement, breaks: &mut Transitions) -> Option<()> {
-        let leg = &self.legs[way.leg];
+    /// Adds the ends of what the upper section allows, as limits of the imaginary joint.
+    fn add_tau_limits(
+        &self,
+        branch: &LegBranch,
+        b: &Displacement,
+        transitions: &mut Transitions,
+    ) -> Option<()> {
+        let leg = &self.legs[branch.leg];
         let last = leg.lower.chain.freedoms() - 1;
-        breaks.size += leg.upper.size(self) + b.size();
-        let turns = self.task.cut_point.is_some();
-        let most = if turns { PI } else { FAR * breaks.size };
-        breaks.most = (!turns).then_some(most);
-        let span = Span { from: -most, to: most, step: 0.0 };
+        transitions.size += leg.upper.size(self) + b.size();
+        let rotation = self.task.intersection_point.is_some();
+        let largest_tau = if rotation { PI } else { FAR * transitions.size };
+        transitions.largest_tau = (!rotation).then_some(largest_tau);
+        let span = Span { from: -largest_tau, to: largest_tau, step: 0.0 };
         let path = self.task.upper_intersection.path(b);
         let hold = |at: f64| {
-            let amount = if turns {
+            let displacement = if rotation {
                 JointDisplacement::Direction(unit(at))
             } else {
                 JointDisplacement::Value(at)
             };
-            leg.lower.chain.held(last, amount)
+            leg.lower.chain.held(last, displacement)
         };
-        let size = breaks.size;
-        let cuts = &mut breaks.cuts;
+        let size = transitions.size;
+        let tau_limits = &mut transitions.tau_limits;
         for surface in leg.upper.surfaces(&self.limits)? {
-            surface.meet(&path, &span, [size, 0.0], &mut |[from, to]| {
+            surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
-                let share = if turns { blur } else { blur / size };
-                cuts.extend(hold(0.5 * (from + to)).map(|surface| (surface, share)));
+                let share = if rotation { blur } else { blur / size };
+                tau_limits.extend(hold(0.5 * (from + to)).map(|surface| (surface, share)));
             });
         }
         if leg.unwinds {
-            // Where it is unwound to the other side.
-            cuts.extend(hold(PI).map(|surface| (surface, 0.0)));
+            // The angle within π of home jumps there.
+            tau_limits.extend(hold(PI).map(|surface| (surface, 0.0)));
         }
         Some(())
     }
 
-    /// Gives the intervals of a span of the first coordinate in which the leg may change its mind, when
-    /// the other coordinates of `v` are `others`: outside of them, it follows everywhere between two or
-    /// nowhere, as [`Manipulator::reaches`] says.
-    pub fn changes(
+    /// Calls `found` with the intervals of a span of the first coordinate in which the leg's feasibility may
+    /// change, with the other coordinates of `v` at `others`. Between two of them, [`Manipulator::reaches`] is
+    /// the same everywhere.
+    #[doc(hidden)]
+    pub fn feasibility_changes(
         &self,
-        (way, breaks): (&LegBranch, &Transitions),
+        branch: &LegBranch,
+        transitions: &Transitions,
         others: &[f64],
         span: &Span,
         found: &mut impl FnMut([f64; 2]),
     ) {
-        let leg = &self.legs[way.leg];
+        let leg = &self.legs[branch.leg];
         let home = self.task.coordinates[0].home;
         let moved = Span { from: span.from - home, to: span.to - home, step: span.step };
         let mut found = |[from, to]: [f64; 2]| found([from + home, to + home]);
@@ -130,28 +141,28 @@ impl Manipulator {
             pose[1..=others.len()].copy_from_slice(others);
             self.task.lower(&pose)
         };
-        let start = match way.tau {
+        let start = match branch.tau {
             Some(tau) => self.task.lower_intersection.after(&at(home), tau),
             None => at(home),
         };
         let path = self.task.row(&start);
-        let size = breaks.size + path.size(moved.reach());
-        for surface in &breaks.surfaces {
-            surface.meet(&path, &moved, [size, 0.0], &mut found);
+        let size = transitions.size + path.size(moved.reach());
+        for surface in &transitions.surfaces {
+            surface.meet(&path, &moved, Uncertainty { size, blur: 0.0 }, &mut found);
         }
-        // A cut that slides farther than the leg is long is linear along the row: most at one of its ends.
+        // A translation far longer than the leg is linear along the row: it is largest at one of the ends.
         let beyond = |most: f64| {
             [span.from, span.to].into_iter().any(|first| {
-                let amounts = leg.lower.chain.inverse(&at(first), way.branches.lower);
+                let displacements = leg.lower.chain.inverse(&at(first), branch.branches.lower);
                 let last = leg.lower.chain.freedoms() - 1;
-                amounts.is_ok_and(|amounts| amounts[last].value().abs() > most)
+                displacements.is_ok_and(|displacements| displacements[last].value().abs() > most)
             })
         };
-        if breaks.most.is_some_and(beyond) {
+        if transitions.largest_tau.is_some_and(beyond) {
             found([moved.from, moved.to]);
         }
-        for (surface, blur) in &breaks.cuts {
-            surface.meet(&path, &moved, [size, *blur], &mut found);
+        for (surface, blur) in &transitions.tau_limits {
+            surface.meet(&path, &moved, Uncertainty { size, blur: *blur }, &mut found);
         }
     }
 }

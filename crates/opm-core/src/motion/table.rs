@@ -115,7 +115,7 @@ fn read_table(
             values.resize(times.len(), coordinate.home);
         }
         let wraps =
-            coordinate.quantity == Quantity::Angle && !manipulator.counts_turns(coordinate.name);
+            coordinate.quantity == Quantity::Angle && !manipulator.counts_turns(coordinate.kind());
         if wraps {
             unwrap(values);
         }

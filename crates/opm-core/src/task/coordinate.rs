@@ -1,4 +1,4 @@
-//! The coordinates of a pose: what each of them is, and which a section has.
+//! The coordinates of a pose: the kinds of coordinates, and those of each section.
 
 use crate::group::{Subspace, SubspaceKind};
 use crate::numeric::Quantity;
@@ -32,7 +32,7 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
-    /// All of them.
+    /// Every kind.
     pub const ALL: [Self; 11] = [
         Self::X,
         Self::Y,
@@ -69,7 +69,7 @@ impl CoordinateKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// Whether it is an angle or a length.
+    /// Whether the coordinate is an angle or a length.
     pub const fn quantity(self) -> Quantity {
         match self {
             Self::X | Self::Y | Self::Z | Self::W => Quantity::Length,
@@ -83,9 +83,10 @@ impl CoordinateKind {
 /// One coordinate of the pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskCoordinate {
-    /// Name, unique among the mechanism's task coordinates: that of its [`kind`](Self::kind).
+    kind: CoordinateKind,
+    /// The name of its [`kind`](Self::kind), unique among the mechanism's task coordinates.
     pub name: &'static str,
-    /// Angle or length.
+    /// Whether it is an angle or a length.
     pub quantity: Quantity,
     /// The value at home, radians or metres.
     pub home: f64,
@@ -94,19 +95,16 @@ pub struct TaskCoordinate {
 impl TaskCoordinate {
     /// A coordinate with its value at home, radians or metres.
     pub const fn new(kind: CoordinateKind, home: f64) -> Self {
-        Self { name: kind.name(), quantity: kind.quantity(), home }
+        Self { kind, name: kind.name(), quantity: kind.quantity(), home }
     }
 
-    /// What it measures.
-    ///
-    /// # Panics
-    /// If it was not made by [`TaskCoordinate::new`] and has a name that no kind has.
-    pub fn kind(&self) -> CoordinateKind {
-        CoordinateKind::from_name(self.name).expect("a task coordinate has the name of its kind")
+    /// What the coordinate measures.
+    pub const fn kind(&self) -> CoordinateKind {
+        self.kind
     }
 }
 
-/// The coordinates of `v`. Home values of lengths are those of the reference point.
+/// The coordinates of `v`. The values of lengths at home are the coordinates of the reference point.
 pub(super) fn of_lower(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
     use CoordinateKind::{Mu, Nu, Theta, X, Y, Z};
     let at = frame.home();
@@ -121,7 +119,7 @@ pub(super) fn of_lower(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> 
     }
 }
 
-/// The coordinates of `b`, likewise.
+/// The coordinates of `b`. The values of lengths at home are the coordinates of the reference point.
 pub(super) fn of_upper(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
     use CoordinateKind::{Phi, Psi, W, X, Xi, Y, Z, Zeta};
     let at = frame.home();

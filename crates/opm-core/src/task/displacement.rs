@@ -1,17 +1,19 @@
-//! From the coordinates of a section to its displacement.
+//! The displacement of a section from its coordinates.
 
 use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
 use crate::numeric::angle::sin_cos;
 use nalgebra::{Complex, Matrix3};
 
-/// Which coordinates a section has: its subspace, and whether the intersection motion is a rotation.
+/// What determines the coordinates of a section: its subspace, and whether the intersection motion is a
+/// rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Form {
     pub kind: SubspaceKind,
-    pub turn: bool,
+    pub rotation: bool,
 }
 
-/// `v` for its coordinates and their values at home: straight arithmetic where `form` is a constant.
+/// The displacement `v` from its coordinates and their values at home. Where `form` is a constant, this is
+/// straight-line arithmetic.
 #[inline(always)]
 pub(crate) fn lower_displacement(
     form: Form,
@@ -20,7 +22,7 @@ pub(crate) fn lower_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
+    match (form.kind, form.rotation) {
         (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
         (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
         (SubspaceKind::Spherical, _) => {
@@ -34,7 +36,8 @@ pub(crate) fn lower_displacement(
     }
 }
 
-/// As [`lower_displacement`], `b`; of a sphere, of which the coordinates are absolute, the orientation.
+/// The displacement `b` from its coordinates and their values at home. The coordinates of a sphere are
+/// absolute: for them this is the orientation, not the displacement from home.
 #[inline(always)]
 pub(crate) fn upper_displacement(
     form: Form,
@@ -43,7 +46,7 @@ pub(crate) fn upper_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.turn) {
+    match (form.kind, form.rotation) {
         (SubspaceKind::Spherical, _) => {
             // Three calls, where a map would not be inlined.
             let [zeta, xi, psi] = at;
@@ -64,19 +67,19 @@ fn unit_of((sin, cos): (f64, f64)) -> Complex<f64> {
     Complex::new(cos, sin)
 }
 
-/// `Rx(mu) Ry(nu)`, of the angles' sines and cosines.
+/// The rotation `Rx(mu) Ry(nu)`, from the angles' sines and cosines.
 #[inline(always)]
 pub(super) fn tilt([(sm, cm), (sn, cn)]: [(f64, f64); 2]) -> Matrix3<f64> {
     Matrix3::new(cn, 0.0, sn, sm * sn, cm, -sm * cn, -cm * sn, sm, cm * cn)
 }
 
-/// `Rz(zeta) Ry(xi) Rz(psi)`.
+/// The rotation `Rz(zeta) Ry(xi) Rz(psi)`.
 #[inline]
 pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
     euler_of([zeta, xi, psi].map(sin_cos))
 }
 
-/// The same, of the angles' sines and cosines.
+/// The rotation `Rz(zeta) Ry(xi) Rz(psi)`, from the angles' sines and cosines.
 #[inline(always)]
 fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
     Matrix3::new(

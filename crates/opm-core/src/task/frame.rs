@@ -1,4 +1,4 @@
-//! The frame of a section's subspace, from the geometry and from what the file says.
+//! The frame of a section's subspace, from the geometry and from the file's hints.
 
 use super::{FrameProblem, TaskError};
 use crate::group::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
@@ -7,18 +7,17 @@ use crate::mechanism::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
-/// The intersection motion and the platform: what both frames are laid by.
+/// The intersection motion and the platform, from which both frames are chosen.
 pub(super) struct Meeting {
-    /// Direction of the intersection motion.
+    /// The unit direction of the intersection motion, base coordinates.
     pub axis: Unit<Vector3<f64>>,
-    /// A point of its axis at home, where it is a rotation.
+    /// A point of its axis at home, base coordinates; `None` where it is a translation.
     pub point: Option<Point3<f64>>,
-    /// The platform's reference point at home.
+    /// The platform's reference point at home, base coordinates.
     pub platform: Point3<f64>,
 }
 
-/// The frame of a subspace, by the rules in the docs of the module above and by what the file
-/// says.
+/// The frame of a subspace, by the rules in the docs of [`task`](crate::task) and the file's hints.
 pub(super) fn lay(
     class: &SubspaceClass,
     section: Section,
@@ -80,28 +79,29 @@ pub(super) fn lay(
     })
 }
 
-/// A direction perpendicular to `third`: base x laid into the plane, or base y where x is nearly normal.
+/// A unit direction perpendicular to `third`: the base's x projected into the plane, or its y where x is
+/// nearly normal to the plane.
 fn beside(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    /// Base x leans out of the plane by more than about 84 degrees: too far to lay it down.
+    /// Beyond this cosine (84 degrees out of the plane), the base's x is not used.
     const STEEP: f64 = 0.995;
     let base = if third.x.abs() > STEEP { Vector3::y() } else { Vector3::x() };
     Unit::new_normalize(base - third.into_inner() * third.dot(&base))
 }
 
-/// A right-handed frame with this first and third direction, which are perpendicular.
+/// The right-handed frame with this first and third direction, which must be perpendicular.
 fn triad(first: Unit<Vector3<f64>>, third: Unit<Vector3<f64>>) -> Matrix3<f64> {
     let second = third.cross(&first);
     Matrix3::from_columns(&[first.into_inner(), second, third.into_inner()])
 }
 
-/// The normal of a plane with this first direction: where the plane is level the one that points
-/// up, where it is upright the one that lets the second direction point up, and between these the
-/// one that lets both do so most.
+/// The sense of a plane's normal, for a first direction in it: the one for which the sum of the normal and
+/// the second direction points up. In a horizontal plane the normal then points up; in a vertical plane the
+/// second direction does.
 fn standing(normal: Unit<Vector3<f64>>, first: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     if points_up(&(normal.into_inner() + normal.cross(&first))) { normal } else { -normal }
 }
 
-/// What a file says of a frame, to be held against the geometry.
+/// The file's hints on a frame, which are checked against the geometry.
 struct Checked<'a> {
     hints: &'a FrameHints,
     section: Section,
@@ -110,7 +110,7 @@ struct Checked<'a> {
 }
 
 impl Checked<'_> {
-    /// What the geometry leaves free.
+    /// The keys that the geometry leaves free to choose.
     fn free(&self) -> Vec<TaskKey> {
         let keys: &[fn(Section) -> TaskKey] = match (self.kind, self.section, self.rotation) {
             (SubspaceKind::Planar, _, true) => &[TaskKey::X, TaskKey::Origin],
@@ -128,6 +128,7 @@ impl Checked<'_> {
         keys.iter().map(|key| key(self.section)).collect()
     }
 
+    /// Returns an error for a hint on a key that is not free.
     fn refuse_what_is_not_free(&self) -> Result<(), TaskError> {
         let (h, s) = (self.hints, self.section);
         let given = [
@@ -147,6 +148,7 @@ impl Checked<'_> {
         }
     }
 
+    /// The unit direction of a hint, if it is given.
     fn given(&self, key: TaskKey) -> Option<Unit<Vector3<f64>>> {
         let given = match key {
             TaskKey::X(_) => self.hints.x,
@@ -157,7 +159,8 @@ impl Checked<'_> {
         given.map(Unit::new_normalize)
     }
 
-    /// The direction of this line that the file asks for; what it says must be along it.
+    /// The direction of `line` in the sense of the file's hint, if there is one. The hint must be along the
+    /// line.
     fn sense(
         &self,
         key: TaskKey,
@@ -171,7 +174,7 @@ impl Checked<'_> {
         Ok(Some(if given.dot(&line) < 0.0 { -line } else { line }))
     }
 
-    /// The direction perpendicular to another that the file asks for; what it says must be so.
+    /// The direction of the file's hint, if there is one. The hint must be perpendicular to `to`.
     fn perpendicular(
         &self,
         key: TaskKey,
@@ -180,7 +183,10 @@ impl Checked<'_> {
         let Some(given) = self.given(key) else { return Ok(None) };
         if given.dot(&to).abs() > TOLERANCE {
             let (given, to) = (given.into_inner().into(), to.into_inner().into());
-            return Err(TaskError::Frame { key, problem: FrameProblem::NotSquare { given, to } });
+            return Err(TaskError::Frame {
+                key,
+                problem: FrameProblem::NotPerpendicular { given, to },
+            });
         }
         Ok(Some(Unit::new_normalize(given.into_inner() - to.into_inner() * to.dot(&given))))
     }

@@ -1,4 +1,4 @@
-//! From two displacements `g = v · b` back to the coordinates of the pose.
+//! The coordinates of the pose from the two displacements of `g = v · b`.
 
 use super::Task;
 use crate::group::{
@@ -10,26 +10,28 @@ use crate::numeric::angle::{sin_cos, whole_turns};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
 
-/// The sine of an angle between two axes that counts as none: the rounding of a rotation.
+/// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
 const POLE: f64 = 1e-13;
 
 impl Task {
-    /// The coordinates of `v · b`, whatever the share of the intersection motion that is in `v`, angles
-    /// within half a turn of home (but those in a cylinder as they are). Of the two triples of Euler
-    /// angles of a rotation, the one nearer to home; on the pole, both outer angles move alike.
+    /// The coordinates of `v · b`, however the displacement along the intersection motion is distributed
+    /// between `v` and `b`. Angles are within π of home, except those of a cylinder, which count revolutions.
+    /// Of the two triples of Euler angles of a rotation it is the one nearer to home; where they are singular,
+    /// `zeta` and `psi` are changed from home by equal amounts.
     ///
     /// # Panics
     /// If `v` or `b` is a displacement of another kind of subspace.
+    #[doc(hidden)]
     pub fn pose(&self, v: &Displacement, b: &Displacement) -> Vec<f64> {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
         let home = |i: usize| self.coordinates[i].home;
-        // b takes, or gives, all of the intersection motion that is to be in it.
-        let rotation = self.cut_point.is_some();
+        // Moves the displacement along I to the factor that is not taken modulo I.
+        let rotation = self.intersection_point.is_some();
         let (v, handed) = if rotation {
-            self.without_turn(v)
+            self.without_shared_rotation(v)
         } else {
-            let advanced = self.advanced(b);
-            (self.lower_intersection.after(v, advanced), advanced.inverse())
+            let translation = self.shared_translation(b);
+            (self.lower_intersection.after(v, translation), translation.inverse())
         };
         let b = self.upper_intersection.before(b, handed);
         match v {
@@ -70,7 +72,7 @@ impl Task {
             Displacement::Cylindrical(g) => pose.push(home(0) + g.angle),
             Displacement::Translational(t) => pose.push(home(0) + t.im),
         }
-        // The angle of a cylinder counts whole turns.
+        // The angle of a cylinder counts revolutions.
         let counted = |kind: SubspaceKind| match kind {
             SubspaceKind::Cylindrical => true,
             SubspaceKind::Planar | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => {
@@ -86,22 +88,26 @@ impl Task {
         pose
     }
 
-    /// `v` without the turn about the shared axis that its coordinates do not have, and that turn: it was
-    /// applied first. Where the intersection motion is a translation, `v` itself.
-    pub(crate) fn without_turn(&self, v: &Displacement) -> (Displacement, JointDisplacement) {
-        if self.cut_point.is_none() {
+    /// The factors of `v`: the displacement that its coordinates describe, and the rotation about the shared
+    /// axis that is applied before it. Where the intersection motion is a translation, they are `v` itself and
+    /// zero.
+    pub(crate) fn without_shared_rotation(
+        &self,
+        v: &Displacement,
+    ) -> (Displacement, JointDisplacement) {
+        if self.intersection_point.is_none() {
             return (*v, JointDisplacement::Value(0.0));
         }
-        let turned = self.turned(v);
-        (self.lower_intersection.after(v, turned.inverse()), turned)
+        let rotation = self.shared_rotation(v);
+        (self.lower_intersection.after(v, rotation.inverse()), rotation)
     }
 
-    /// The turn about the shared axis that `v` has beyond its coordinates.
-    fn turned(&self, v: &Displacement) -> JointDisplacement {
+    /// The rotation about the shared axis in `v`, which its coordinates do not describe.
+    fn shared_rotation(&self, v: &Displacement) -> JointDisplacement {
         match v {
             Displacement::Planar(g) => JointDisplacement::Direction(g.rotation),
             Displacement::Spherical(r) => {
-                // Rx(mu) Ry(nu) without the rest: R = tilt · Rz.
+                // R = Rx(mu) Ry(nu) Rz: the last factor.
                 let [mu, nu] = tilt_angles(&r.column(2).into_owned());
                 let rest = super::displacement::tilt([mu, nu].map(sin_cos)).tr_mul(r);
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
@@ -111,8 +117,8 @@ impl Task {
         }
     }
 
-    /// The way along the shared direction that `b` has beyond its coordinates.
-    fn advanced(&self, b: &Displacement) -> JointDisplacement {
+    /// The translation along the shared direction in `b`, which its coordinates do not describe.
+    fn shared_translation(&self, b: &Displacement) -> JointDisplacement {
         let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
         JointDisplacement::Value(match self.upper_intersection {
             IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
@@ -129,17 +135,17 @@ impl Task {
     }
 }
 
-/// `mu nu` of a rotation that brings the third direction to this one.
+/// The angles `mu nu` of the rotation that takes the third direction to `axis`.
 pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
     [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
 }
 
-/// The same angle within half a turn of another.
+/// The angle plus full revolutions, within π of `home`.
 fn near(angle: f64, home: f64) -> f64 {
     angle - TAU * whole_turns(angle - home)
 }
 
-/// `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`, of all triples the one nearest to `home`.
+/// The angles `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`: of all triples, the one nearest to `home`.
 fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
     let sine = r[(0, 2)].hypot(r[(1, 2)]);
     if sine < POLE {
@@ -150,8 +156,8 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         return [home[0] + extra, xi, home[2] + up * extra];
     }
     let zeta = r[(1, 2)].atan2(r[(0, 2)]);
-    // Near the pole zeta is as vague as rounding over the sine, but zeta ± psi is not: psi is what this zeta
-    // leaves of the rotation.
+    // Near the singularity the error of zeta is the rounding over the sine, but zeta ± psi is accurate: psi
+    // is computed from what this zeta leaves of the rotation.
     let (sin, cos) = sin_cos(zeta);
     let psi = (cos * r[(1, 0)] - sin * r[(0, 0)]).atan2(cos * r[(1, 1)] - sin * r[(0, 1)]);
     let plain = [zeta, sine.atan2(r[(2, 2)]), psi];

@@ -19,8 +19,9 @@ const SHORT: f64 = 1e-6;
 /// and the cut where it is solved from there.
 pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     let compiled = leg.section(section);
-    let mut inputs = compiled.slots.map(|slot| slot.is_some_and(|slot| slot.drive.is_some()));
-    match (leg.cut, section) {
+    let mut inputs =
+        compiled.coordinates.map(|slot| slot.is_some_and(|slot| slot.actuated.is_some()));
+    match (leg.split_section, section) {
         (Section::Upper, Section::Upper) => inputs[0] = true,
         (Section::Lower, Section::Lower) if leg.upper.driven => {
             inputs[compiled.chain.freedoms() - 1] = true;
@@ -122,7 +123,7 @@ pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f6
     if !motion.is_rotation() {
         return length;
     }
-    match (&leg.lower.chain, leg.cut) {
+    match (&leg.lower.chain, leg.split_section) {
         (Chain::Planar(_), Section::Upper) => {
             let last = leg.lower.screws[2];
             let link = linear(&last).norm();

@@ -76,7 +76,7 @@ struct Basis {
 impl Basis {
     fn new(task: &Task, platform: &Point3<f64>) -> Self {
         let (kept, rest) = (task.upper.kind.basis(), task.lower.kind.basis());
-        let rotation = task.cut_point.is_some();
+        let rotation = task.intersection_point.is_some();
         let upper = if rotation { kept } else { task.upper_intersection.complement() };
         let lower = if rotation { task.lower_intersection.complement() } else { rest };
         let in_base = |subspace: &Subspace, twist: &LocalTwist| {
@@ -130,12 +130,12 @@ impl Manipulator {
         let mut bridges = vec![None; self.legs.len()];
         let mut lower_rows = Vec::new();
         for (number, leg) in self.legs.iter().enumerate() {
-            if leg.cut == Section::Upper {
+            if leg.split_section == Section::Upper {
                 bridges[number] = Some(bridged.len());
                 bridged.push(number);
             }
-            let slots = leg.lower.slots.iter().flatten();
-            lower_rows.extend(slots.filter(|s| s.drive.is_some()).map(|s| s.coordinate));
+            let slots = leg.lower.coordinates.iter().flatten();
+            lower_rows.extend(slots.filter(|s| s.actuated.is_some()).map(|s| s.number));
         }
         lower_rows.sort_unstable();
         let joints = self.coordinates().len();
@@ -159,7 +159,7 @@ impl Manipulator {
             driven,
             basis,
             legs: (0..self.legs.len()).map(|number| self.leg_differential(&home, number)).collect(),
-            v: home.place.v,
+            v: home.solved.v,
             cuts: home.legs.iter().map(|leg| leg.tau).collect(),
         }
     }
@@ -174,10 +174,10 @@ impl Manipulator {
             return Err(VelocityError::OutOfReach);
         }
         out.singular.clear();
-        out.v = at.place.v;
+        out.v = at.solved.v;
         let task = self.task();
-        let along = at.place.v.adjoint(&task.lower_intersection.unit_twist());
-        let lower = out.basis.lower.map(|twist| at.place.v.adjoint(&twist));
+        let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
+        let lower = out.basis.lower.map(|twist| at.solved.v.adjoint(&twist));
         let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
             let differential = self.leg_differential(at, number);
@@ -199,9 +199,9 @@ impl Manipulator {
             out.upper.row_mut(bridge).fill(0.0);
         }
         let leg = &self.legs[number];
-        for slot in leg.lower.slots.iter().chain(&leg.upper.slots).flatten() {
-            out.joints.row_mut(slot.coordinate).fill(0.0);
-            if let Some(row) = out.driven[slot.coordinate] {
+        for slot in leg.lower.coordinates.iter().chain(&leg.upper.coordinates).flatten() {
+            out.joints.row_mut(slot.number).fill(0.0);
+            if let Some(row) = out.driven[slot.number] {
                 out.lower.row_mut(row).fill(0.0);
             }
         }
@@ -224,7 +224,7 @@ impl Manipulator {
         // Rates along the cut from each component of the section twist, and what else follows from
         // it in the section that is solved second.
         let mut cut = [0.0; 6];
-        let (upper, carried) = match leg.cut {
+        let (upper, carried) = match leg.split_section {
             Section::Upper => {
                 let bridge = out.bridges[number].unwrap_or_default();
                 for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
@@ -252,11 +252,14 @@ impl Manipulator {
                 Section::Upper => (&upper, 0),
                 Section::Lower => (&moved.lower, n_upper),
             };
-            for (slot, joint) in compiled.slots.iter().zip(0..) {
+            for (slot, joint) in compiled.coordinates.iter().zip(0..) {
                 let Some(slot) = slot else { continue };
-                let row = slot.coordinate;
-                let by_cut =
-                    if section == leg.cut { 0.0 } else { differential.rate(joint, &carried) };
+                let row = slot.number;
+                let by_cut = if section == leg.split_section {
+                    0.0
+                } else {
+                    differential.rate(joint, &carried)
+                };
                 let mut rates = cut.map(|cut| by_cut * cut);
                 for (i, twist) in own.iter().enumerate() {
                     rates[start + i] += differential.rate(joint, twist);
@@ -285,11 +288,11 @@ impl Manipulator {
     /// The section twist for a unit rate of each task coordinate.
     fn pose_columns(&self, at: &Solution, out: &mut Jacobians) {
         let task = self.task();
-        let pose = &at.place.pose;
-        let v = &at.place.v;
+        let pose = &at.solved.pose;
+        let v = &at.solved.v;
         let n_upper = out.basis.counts[0];
         let n = pose.len();
-        let rotation = task.cut_point.is_some();
+        let rotation = task.intersection_point.is_some();
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
         let (of_v, of_b) = (task.lower_screws(pose), task.upper_screws(pose));
@@ -321,7 +324,7 @@ impl Manipulator {
     fn platform_columns(&self, at: &Solution, out: &mut Jacobians) {
         // In a frame that moves with v, the platform's point is b's image of it.
         let upper = &self.task().upper;
-        let point = upper.restored(&at.place.b.act(&out.basis.platform)).coords;
+        let point = upper.restored(&at.solved.b.act(&out.basis.platform)).coords;
         for (i, ([angular, linear], origin)) in out.basis.twists.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
             let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];

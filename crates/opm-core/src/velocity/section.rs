@@ -33,7 +33,7 @@ impl Differential {
         vector: impl FnOnce(usize) -> LocalTwist,
     ) -> Self {
         if let Chain::Ball(ball) = &section.chain {
-            let first = section.slots[0].map_or(0, |slot| slot.coordinate);
+            let first = section.coordinates[0].map_or(0, |slot| slot.number);
             let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
             let rows = ball.axes * vector.rates_of_spin();
             let reciprocal = if vector.is_singular() {

@@ -98,7 +98,7 @@ impl Layout {
         let cuts: Vec<_> = legs
             .iter()
             .map(|leg| {
-                let moves = match leg.cut {
+                let moves = match leg.split_section {
                     Section::Upper => leg.imaginary.is_some(),
                     // What the lower section passes on to an upper one that something drives.
                     Section::Lower => leg.upper.driven,
@@ -110,7 +110,8 @@ impl Layout {
             })
             .collect();
         // Where some leg is fixed to it, the frame between the sections moves along I as well.
-        let fixed = legs.iter().any(|leg| leg.cut == Section::Upper && leg.imaginary.is_none());
+        let fixed =
+            legs.iter().any(|leg| leg.split_section == Section::Upper && leg.imaginary.is_none());
         let lower_basis =
             if fixed { task.lower.kind.basis() } else { task.lower_intersection.complement() };
         let rows_of = |section: Section| {
@@ -241,7 +242,7 @@ impl Manipulator {
             let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
                 if let Some(column) = layout.cuts[number] {
-                    closure[(row, column)] = match leg.cut {
+                    closure[(row, column)] = match leg.split_section {
                         Section::Upper => cut * w.dot(&along),
                         Section::Lower => {
                             let last = leg.lower.chain.freedoms() - 1;
@@ -262,13 +263,13 @@ impl Manipulator {
             let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
                 if let Some(column) = layout.cuts[number] {
-                    closure[(row, column)] = match leg.cut {
+                    closure[(row, column)] = match leg.split_section {
                         Section::Upper => -cut * w.dot(&upper_along),
                         Section::Lower => cut * w.dot(&upper_along),
                     };
                 }
                 for (i, twist) in layout.upper_basis.iter().enumerate() {
-                    let carried = match leg.cut {
+                    let carried = match leg.split_section {
                         Section::Upper => *twist,
                         Section::Lower => {
                             let amount = cuts[number].inverse();

@@ -80,7 +80,7 @@ impl DomainAxis {
     fn parts(&self) -> Vec<Side> {
         let (min, max) = (self.min, self.max);
         let plain = |[min, max]: [f64; 2]| {
-            vec![Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), piece: None }]
+            vec![Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), half_turn: None }]
         };
         let shift = match &self.kind {
             Kind::Tilt(shift) if self.has_width() => *shift,
@@ -94,15 +94,15 @@ impl DomainAxis {
         let [first, last] = [from, to].map(|end| HalfTurn::of(end).number);
         (first..=last)
             .map(|number| {
-                let piece = HalfTurn { number };
-                let low = if number == first { piece.within(from) } else { 0.0 };
-                let high = if number == last { piece.within(to) } else { PI };
+                let half_turn = HalfTurn { number };
+                let low = if number == first { half_turn.within(from) } else { 0.0 };
+                let high = if number == last { half_turn.within(to) } else { PI };
                 // The middle and half the width of -cos, which a narrow range would lose its digits in.
                 let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
                 Side {
                     middle: -middle.cos() * half.cos(),
                     half: middle.sin() * half.sin(),
-                    piece: Some(piece),
+                    half_turn: Some(half_turn),
                 }
             })
             .filter(|side| side.half > 0.0)
@@ -285,9 +285,9 @@ impl Domain {
                     left -= 2.0 * part.half;
                     continue;
                 }
-                let value = match (part.piece, &axis.kind) {
-                    (Some(piece), Kind::Tilt(shift)) => {
-                        piece.angle(part.middle - part.half + left) - shift
+                let value = match (part.half_turn, &axis.kind) {
+                    (Some(half_turn), Kind::Tilt(shift)) => {
+                        half_turn.angle(part.middle - part.half + left) - shift
                     }
                     _ => axis.min + share * (axis.max - axis.min),
                 };
@@ -342,7 +342,7 @@ impl Domain {
 
 /// The coordinates of what is measured, each at its home value.
 fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
-    let cuts = manipulator.cuts();
+    let cuts = manipulator.intersection_joints();
     let lower = manipulator.task().lower_count;
     let kind = |number: usize, name: &str, home: f64| match name {
         _ if sections == Sections::Lower && number >= lower => {

@@ -5,7 +5,7 @@
 //! interval. The loops are over rows, branch-free, and compiled for the processor at hand.
 
 use super::runs::Run;
-use opm_core::chain::region::{self, Convex, Precision, Region, Section};
+use opm_core::chain::region::{self, Chord, Convex, Precision, Region};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
@@ -394,9 +394,9 @@ impl ConvexClip<'_> {
             Convex::Bands(bands) => {
                 intersect(rows, from, to, doubts, |y| region::common(bands, y, precision));
             }
-            Convex::Disc(disc) => intersect(rows, from, to, doubts, |y| disc.section(y, precision)),
+            Convex::Disc(disc) => intersect(rows, from, to, doubts, |y| disc.chord(y, precision)),
             Convex::Capsule(capsule) => {
-                intersect(rows, from, to, doubts, |y| capsule.section(y, precision));
+                intersect(rows, from, to, doubts, |y| capsule.chord(y, precision));
             }
         }
     }
@@ -418,10 +418,10 @@ impl ConvexClip<'_> {
                 region::common(bands, y, precision)
             }),
             Convex::Disc(disc) => {
-                subtract(rows, from, to, counts, is_tie, doubts, |y| disc.section(y, precision));
+                subtract(rows, from, to, counts, is_tie, doubts, |y| disc.chord(y, precision));
             }
             Convex::Capsule(capsule) => {
-                subtract(rows, from, to, counts, is_tie, doubts, |y| capsule.section(y, precision));
+                subtract(rows, from, to, counts, is_tie, doubts, |y| capsule.chord(y, precision));
             }
         }
     }
@@ -433,7 +433,7 @@ fn intersect(
     from: &Intervals,
     to: &mut Intervals,
     doubts: &mut impl Doubts,
-    chord: impl Fn(f64) -> Section,
+    chord: impl Fn(f64) -> Chord,
 ) {
     for i in rows.all() {
         let inside = chord(rows.at[i]);
@@ -452,7 +452,7 @@ fn subtract(
     counts: &mut [f64; ROWS],
     is_tie: impl Fn(f64) -> bool,
     doubts: &mut impl Doubts,
-    chord: impl Fn(f64) -> Section,
+    chord: impl Fn(f64) -> Chord,
 ) {
     let Hole { rows: met, missing, met: any } = to;
     let mut some = 0;

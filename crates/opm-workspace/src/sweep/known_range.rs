@@ -35,7 +35,7 @@ impl KnownRanges {
         if known.is_some_and(|known| known.contains(direction)) {
             return true;
         }
-        let Some(angle) = branch.cut() else { return false };
+        let Some(angle) = branch.intersection_displacement() else { return false };
         let here = KnownRange { angles: [angle; 2], directions: [direction; 2] };
         let KnownRange { angles: [least, most], directions } = known.get_or_insert(here);
         if angle < *least {

@@ -111,7 +111,7 @@ impl Row {
                 let step = sheet.scale.step;
                 let (from, to) = (axis.value(window.from) - step, axis.value(window.to - 1) + step);
                 let span = Span { from, to, step };
-                manipulator.changes((follow, known), others, &span, &mut |ends| {
+                manipulator.feasibility_changes(follow, known, others, &span, &mut |ends| {
                     let ends = ends.map(|end| (end - axis.min) / step);
                     self.transitions.add(ends, sheet.scale.extent);
                 });

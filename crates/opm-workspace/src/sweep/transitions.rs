@@ -1,7 +1,7 @@
 //! Rows of a leg branch that leaves no region of the plane. The places along a row where its feasibility can
-//! change are in closed form ([`Manipulator::changes`]); between two of them one pose decides for all.
+//! change are in closed form ([`Manipulator::feasibility_changes`]); between two of them one pose decides for all.
 //!
-//! [`Manipulator::changes`]: opm_core::manipulator::Manipulator::changes
+//! [`Manipulator::feasibility_changes`]: opm_core::manipulator::Manipulator::feasibility_changes
 
 use super::runs::{self, Run};
 

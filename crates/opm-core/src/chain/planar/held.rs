@@ -1,4 +1,5 @@
-//! Planar chains with one joint held: what is left are two joints, a link, a slider or a cross slide.
+//! Planar chains with one joint held. The two other joints then form a link, a slider with a pivot or a
+//! cross slide.
 
 use super::{PlanarChain, PlanarJoint};
 use crate::chain::surface::Surface;
@@ -7,10 +8,10 @@ use PlanarJoint::{Prismatic, Revolute};
 use nalgebra::Complex;
 
 impl PlanarChain {
-    /// The targets on which the chain closes with joint number `joint` at `amount`.
-    pub(in crate::chain) fn held(&self, joint: usize, amount: JointDisplacement) -> Surface {
+    /// The targets at which the chain closes with joint number `joint` held at `displacement`.
+    pub(in crate::chain) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
         let joints = self.joints();
-        let hold = joints[joint].displacement(amount);
+        let hold = joints[joint].displacement(displacement);
         let free = PlanarDisplacement::IDENTITY;
         match joint {
             // E₂E₃ = E₁⁻¹ g
@@ -22,30 +23,31 @@ impl PlanarChain {
         }
     }
 
-    /// The amounts of the middle joint at which the two branches meet, or two slides are parallel.
+    /// The displacements of the middle joint at which the two branches meet, or at which two sliders become
+    /// parallel.
     pub(in crate::chain) fn folds(&self) -> Vec<JointDisplacement> {
-        // A rotation that lays one direction along another, and that against it.
-        let laid = |from: Complex<f64>, to: Complex<f64>, reversed: bool| {
-            let turn = to * from.conj();
-            let turn = if reversed { turn.conj() } else { turn };
-            vec![JointDisplacement::Direction(turn), JointDisplacement::Direction(-turn)]
+        // The rotation of one direction to another, and the rotation to its opposite.
+        let aligned = |from: Complex<f64>, to: Complex<f64>, reversed: bool| {
+            let rotation = to * from.conj();
+            let rotation = if reversed { rotation.conj() } else { rotation };
+            vec![JointDisplacement::Direction(rotation), JointDisplacement::Direction(-rotation)]
         };
         let square = Complex::<f64>::i();
         match self.joints() {
             [Revolute { at: p1, .. }, Revolute { at: p2, reversed }, Revolute { at: p3, .. }] => {
-                laid(p3 - p2, p2 - p1, reversed)
+                aligned(p3 - p2, p2 - p1, reversed)
             }
             [Prismatic { along }, Revolute { at: p2, reversed }, Revolute { at: p3, .. }] => {
-                laid(p3 - p2, along * square, reversed)
+                aligned(p3 - p2, along * square, reversed)
             }
             [Revolute { at: p1, .. }, Revolute { at: p2, reversed }, Prismatic { along }] => {
-                laid(along, (p2 - p1) * square, reversed)
+                aligned(along, (p2 - p1) * square, reversed)
             }
             [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
                 vec![JointDisplacement::Value(-((p3 - p1) * along.conj()).re)]
             }
             [Prismatic { along: d1 }, Revolute { reversed, .. }, Prismatic { along: d3 }] => {
-                laid(d3, d1, reversed)
+                aligned(d3, d1, reversed)
             }
             [Revolute { .. }, Prismatic { .. }, Prismatic { .. }]
             | [Prismatic { .. }, Prismatic { .. }, Revolute { .. } | Prismatic { .. }] => {
@@ -54,12 +56,12 @@ impl PlanarChain {
         }
     }
 
-    /// Whether an amount of a joint is a turn.
-    pub(in crate::chain) fn turns(&self, joint: usize) -> bool {
+    /// Whether a joint's displacement is a rotation.
+    pub(in crate::chain) fn is_rotation(&self, joint: usize) -> bool {
         matches!(self.joints()[joint], Revolute { .. })
     }
 
-    /// The sum of its pivots' distances from the origin.
+    /// The sum of the pivots' distances from the origin, metres.
     pub(in crate::chain) fn size(&self) -> f64 {
         let size = |joint: &PlanarJoint| match joint {
             Revolute { at, .. } => at.norm(),
@@ -69,7 +71,7 @@ impl PlanarChain {
     }
 }
 
-/// The targets `g` with `first⁻¹ g last⁻¹` a product of the displacements of two joints.
+/// The targets `g` for which `first⁻¹ g last⁻¹` is a product of displacements of the two joints.
 fn pair(joints: [PlanarJoint; 2], [first, last]: [PlanarDisplacement; 2]) -> Surface {
     let back = last.inverse();
     match joints {
@@ -94,7 +96,7 @@ fn pair(joints: [PlanarJoint; 2], [first, last]: [PlanarDisplacement; 2]) -> Sur
     }
 }
 
-/// A joint, displaced.
+/// A joint moved by a displacement.
 fn carried(joint: &PlanarJoint, by: &PlanarDisplacement) -> PlanarJoint {
     match *joint {
         Revolute { at, reversed } => Revolute { at: by.apply(at), reversed },

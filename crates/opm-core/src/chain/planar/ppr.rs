@@ -1,4 +1,4 @@
-//! PPR: two sliders that carry a pivot. Seen from its end it is an RPP.
+//! PPR: two sliders that carry a pivot. In reverse order it is an RPP.
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, Rpp};
 use crate::chain::shape::Shape;
@@ -6,7 +6,7 @@ use crate::chain::{Attempt, ClosedForm};
 use crate::group::PlanarDisplacement;
 use nalgebra::Complex;
 
-/// Two sliders, then a pivot: one solution.
+/// Two sliders, then a pivot. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ppr(Rpp);
 
@@ -24,7 +24,7 @@ impl Ppr {
         [first, second, third]
     }
 
-    /// That of the RPP, backwards.
+    /// The shape in which the chain closes: that of the RPP, reversed.
     pub(super) fn shape(&self, [first, second]: [[f64; 2]; 2]) -> Shape {
         let backwards = |[low, high]: [f64; 2]| [-high, -low];
         self.0.shape([backwards(second), backwards(first)]).backwards()

@@ -1,4 +1,4 @@
-//! PRP: a pivot between two sliders. The target's rotation is the pivot's.
+//! PRP: a pivot between two sliders. The pivot's rotation is that of the target.
 
 use super::{Branch, Pivot, PlanarJoint, ReachDeficit, along, cross};
 use crate::chain::region::{Region, parallelogram};
@@ -7,7 +7,8 @@ use crate::chain::{Attempt, ClosedForm, DEGENERATE, REACH_TOLERANCE};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// A slider, a pivot and a slider: one solution, none where the two slides come to be parallel.
+/// A slider, a pivot and a slider. A target has one solution; where the two sliders become parallel, it has
+/// none or infinitely many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prp {
     slides: [Complex<f64>; 2],
@@ -24,12 +25,12 @@ impl Prp {
         [first, self.pivot.joint(), second]
     }
 
-    /// A parallelogram of which one side turns with the target.
+    /// The shape in which the chain closes: a parallelogram of which one side rotates with the target.
     pub(super) fn shape(&self, ranges: [[f64; 2]; 2]) -> Shape {
         Shape::sheared(*self, ranges)
     }
 
-    /// The parallelogram; `None` where the slides come to be nearly parallel.
+    /// The parallelogram for a rotation of the target; `None` where the sliders become nearly parallel.
     pub(in crate::chain) fn region(
         &self,
         rotation: Complex<f64>,
@@ -41,7 +42,7 @@ impl Prp {
         crossing.then(|| parallelogram(slides, offset, ranges))
     }
 
-    /// What the sliders have to make up for: the way of the pivot's own point of the outer link.
+    /// The displacement of the outer link's point at the pivot, which the sliders have to make.
     #[inline(always)]
     fn moved(&self, target: &PlanarDisplacement) -> Complex<f64> {
         target.apply(self.pivot.at) - self.pivot.at
@@ -55,14 +56,14 @@ impl ClosedForm for Prp {
     fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
         let turned = target.rotation * self.slides[1];
         let (s1, s3) = along(self.slides[0], turned, self.moved(target));
-        let turn = self.pivot.amount(target.rotation);
+        let rotation = self.pivot.displacement(target.rotation);
         let crossing = cross(self.slides[0], turned).abs() > REACH_TOLERANCE;
-        let amounts = [JointDisplacement::Value(s1), turn, JointDisplacement::Value(s3)];
-        Attempt { amounts, holds: crossing, beyond: false }
+        let displacements = [JointDisplacement::Value(s1), rotation, JointDisplacement::Value(s3)];
+        Attempt { displacements, holds: crossing, beyond: false }
     }
 
-    /// With the slides parallel only one line is in reach, and on it the sliders are free: they are then
-    /// given as the inner one alone.
+    /// With the sliders parallel, only targets on one line are in reach, and the two displacements are known
+    /// only by their sum: the inner slider is then given all of it.
     #[cold]
     fn exception(
         &self,
@@ -75,6 +76,6 @@ impl ClosedForm for Prp {
             return Err(ReachDeficit::length(aside));
         }
         let along = JointDisplacement::Value((moved * self.slides[0].conj()).re);
-        Ok([along, self.pivot.amount(target.rotation), JointDisplacement::Value(0.0)])
+        Ok([along, self.pivot.displacement(target.rotation), JointDisplacement::Value(0.0)])
     }
 }

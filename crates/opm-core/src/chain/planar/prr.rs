@@ -8,7 +8,7 @@ use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// A slider and a link between two pivots. `+` where the slider's root has the plus sign: the
+/// A slider and a link between two pivots. The branch is `+` where the slider's root has the plus sign: the
 /// slider is ahead of the link's outer pivot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prr {
@@ -27,22 +27,23 @@ impl Prr {
         Ok(Self { slide, pivots: [p2, p3], link, link_square: link.norm_sqr() })
     }
 
-    /// For the outer pivot at `outer`: its coordinate along the slide, from the inner pivot at
-    /// home, and the square of what the link has left along the slide. Within reach where that is
-    /// not negative; the slider is then at the sum or difference of the first and the root.
+    /// For the outer pivot at `outer`: its coordinate along the slide, measured from the inner pivot at
+    /// home, and the square of the link's component along the slide. The target is in reach where that square
+    /// is not negative; the slider is then at the coordinate plus or minus the root of the square.
     #[inline]
     fn triangle(&self, outer: Complex<f64>) -> (f64, f64) {
         let local = (outer - self.pivots[0].at) * self.slide.conj();
         (local.re, self.link_square - local.im * local.im)
     }
 
-    /// Whether the link can leave this square along the slide, the boundary of reach included.
+    /// Whether the target is in reach for this square of the link's component along the slide, the boundary
+    /// of reach included.
     #[inline]
     fn closes(&self, square: f64) -> bool {
         square >= -2.0 * REACH_TOLERANCE * self.link_square
     }
 
-    /// The home position of the outer pivot, which a target displaces.
+    /// The position of the outer pivot at home, to which targets are applied.
     #[inline]
     fn outer(&self) -> Complex<f64> {
         self.pivots[1].at
@@ -53,11 +54,12 @@ impl Prr {
         [PlanarJoint::Prismatic { along: self.slide }, inner, outer]
     }
 
-    /// What half the circle about the inner pivot sweeps, as the slider goes through its range: what
-    /// it sweeps from the one end on, without what it sweeps beyond the other. For the outer pivot.
+    /// The shape in which the chain closes. The places of the outer pivot are the area that half a circle
+    /// about the inner pivot sweeps as the slider goes through its range: the area swept from one end on,
+    /// less the area swept beyond the other end.
     pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
         let home = self.pivots[0].at;
-        // The slider is ahead of the outer pivot by the root, or behind: sweep towards that side.
+        // The slider is ahead of the outer pivot by the root, or behind it: sweep in that direction.
         let (along, start, end) = match branch {
             Branch::Plus => (self.slide, low, high),
             Branch::Minus => (-self.slide, -high, -low),
@@ -88,12 +90,12 @@ impl ClosedForm for Prr {
         let link = outer - self.pivots[0].at - self.slide * slider;
         let r2 = link * self.link.conj();
         let r3 = target.rotation * r2.conj();
-        let amounts = [
+        let displacements = [
             JointDisplacement::Value(slider),
-            self.pivots[0].amount(r2),
-            self.pivots[1].amount(r3),
+            self.pivots[0].displacement(r2),
+            self.pivots[1].displacement(r3),
         ];
-        Attempt::decided(amounts, self.closes(square))
+        Attempt::decided(displacements, self.closes(square))
     }
 
     #[cold]

@@ -1,4 +1,4 @@
-//! RPP: a pivot that carries two sliders. The target's rotation is the pivot's.
+//! RPP: a pivot that carries two sliders. The pivot's rotation is that of the target.
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, along, cross};
 use crate::chain::region::parallelogram;
@@ -7,7 +7,7 @@ use crate::chain::{Attempt, ClosedForm, DEGENERATE};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// A pivot, then two sliders: one solution.
+/// A pivot, then two sliders. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rpp {
     pivot: Pivot,
@@ -31,9 +31,10 @@ impl Rpp {
         [self.pivot.joint(), first, second]
     }
 
-    /// A parallelogram, turned with the target: see [`Shape::backwards`].
+    /// The shape in which the chain closes: a parallelogram that rotates with the target. See
+    /// [`Shape::backwards`].
     pub(super) fn shape(&self, ranges: [[f64; 2]; 2]) -> Shape {
-        // For the pivot, seen from the end: minus the way that the sliders go.
+        // The places of the pivot for the reversed chain: minus the sliders' translation.
         let places = parallelogram(self.slides, self.pivot.at, ranges).turned((-1.0).into());
         Shape::of_places(places, self.pivot.at).backwards()
     }
@@ -44,10 +45,13 @@ impl ClosedForm for Rpp {
 
     #[inline(always)]
     fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
-        // The pivot's own point of the outer link, turned back to home.
+        // The displacement of the outer link's point at the pivot, rotated back to home.
         let moved = target.apply(self.pivot.at) - self.pivot.at;
         let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
-        let turn = self.pivot.amount(target.rotation);
-        Attempt::decided([turn, JointDisplacement::Value(s2), JointDisplacement::Value(s3)], true)
+        let rotation = self.pivot.displacement(target.rotation);
+        Attempt::decided(
+            [rotation, JointDisplacement::Value(s2), JointDisplacement::Value(s3)],
+            true,
+        )
     }
 }

@@ -1,4 +1,4 @@
-//! RPR: a telescope between two pivots.
+//! RPR: a telescopic link between two pivots.
 
 use super::{Branch, Pivot, PlanarJoint, ReachDeficit};
 use crate::chain::region::{Convex, Disc, Region};
@@ -7,13 +7,13 @@ use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE, direction};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// A pivot, a slider and a pivot. `+` where the slider's root has the plus sign: the outer pivot is
-/// ahead of the foot of the inner one on the slide.
+/// A pivot, a slider and a pivot. The branch is `+` where the slider's root has the plus sign: the outer
+/// pivot is ahead of the foot of the perpendicular from the inner pivot to the slide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rpr {
     pivots: [Pivot; 2],
     slide: Complex<f64>,
-    /// From the inner to the outer pivot at home, along the slide (re) and perpendicular to it (im).
+    /// The vector from the inner to the outer pivot at home: along the slide (re) and perpendicular to it (im).
     offset: Complex<f64>,
 }
 
@@ -27,7 +27,8 @@ impl Rpr {
         [inner, PlanarJoint::Prismatic { along: self.slide }, outer]
     }
 
-    /// A ring about the first pivot, between the lengths that the slider allows, for the second.
+    /// The shape in which the chain closes. The places of the outer pivot are a ring about the inner one,
+    /// between the lengths that the slider allows.
     pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
         let [centre, outer] = self.pivots.map(|pivot| pivot.at);
         let [low, high] = [low + self.offset.re, high + self.offset.re];
@@ -46,7 +47,7 @@ impl Rpr {
         Shape::of_places(Region { whole: disc(aside + high * high), hole }, outer)
     }
 
-    /// From the inner pivot to the outer one.
+    /// The vector from the inner pivot to the outer one at a target.
     #[inline(always)]
     fn reach(&self, target: &PlanarDisplacement) -> Complex<f64> {
         target.apply(self.pivots[1].at) - self.pivots[0].at
@@ -65,12 +66,12 @@ impl ClosedForm for Rpr {
         let telescope = Complex::new(ahead, self.offset.im) * self.slide;
         let r1 = direction(reach * telescope.conj(), self.offset.norm_sqr());
         let r3 = target.rotation * r1.conj();
-        let amounts = [
-            self.pivots[0].amount(r1),
+        let displacements = [
+            self.pivots[0].displacement(r1),
             JointDisplacement::Value(ahead - self.offset.re),
-            self.pivots[1].amount(r3),
+            self.pivots[1].displacement(r3),
         ];
-        Attempt::decided(amounts, square >= -2.0 * REACH_TOLERANCE * aside)
+        Attempt::decided(displacements, square >= -2.0 * REACH_TOLERANCE * aside)
     }
 
     #[cold]

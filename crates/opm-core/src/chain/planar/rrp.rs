@@ -1,4 +1,4 @@
-//! RRP: a link whose outer pivot carries a slider. Seen from its end it is a PRR.
+//! RRP: a link whose outer pivot carries a slider. In reverse order it is a PRR.
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, Prr, ReachDeficit};
 use crate::chain::shape::Shape;
@@ -6,7 +6,7 @@ use crate::chain::{Attempt, ClosedForm};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// A link between two pivots, then a slider. `+` is the `+` of the PRR that it is seen from its end.
+/// A link between two pivots, then a slider. Its branch `+` is the branch `+` of the reversed chain, a PRR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rrp(Prr);
 
@@ -20,7 +20,7 @@ impl Rrp {
         [first, second, third]
     }
 
-    /// That of the PRR, backwards.
+    /// The shape in which the chain closes: that of the PRR, reversed.
     pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
         self.0.shape(branch, [-high, -low]).backwards()
     }

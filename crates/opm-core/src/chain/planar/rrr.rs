@@ -7,14 +7,15 @@ use crate::chain::{Attempt, ClosedForm, DEGENERATE, REACH_TOLERANCE, direction};
 use crate::group::{JointDisplacement, PlanarDisplacement};
 use nalgebra::Complex;
 
-/// Two links between three pivots. `+` where the second link turns counter-clockwise from the first.
+/// Two links between three pivots. The branch is `+` where the second link points counter-clockwise from
+/// the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rrr {
     pivots: [Pivot; 3],
     /// The links at home.
     first: Complex<f64>,
     second: Complex<f64>,
-    /// Rotation that lays the second link along the first, from home.
+    /// The rotation, from home, that aligns the second link with the first.
     straighten: Complex<f64>,
     /// `(|first|² + |second|²) / 2` and `|first| |second|`: the law of cosines.
     mean_square: f64,
@@ -38,20 +39,20 @@ impl Rrr {
         })
     }
 
-    /// Cosine of the angle from the first link to the second when the wrist is at `wrist`; within
+    /// The cosine of the angle from the first link to the second with the wrist at `wrist`. The target is in
     /// reach where it lies in `[-1, 1]`.
     #[inline]
     fn elbow_cosine(&self, wrist: Complex<f64>) -> f64 {
         ((wrist - self.pivots[0].at).norm_sqr() / 2.0 - self.mean_square) / self.product
     }
 
-    /// Whether the elbow can take this cosine, the boundary of reach included.
+    /// Whether the target is in reach for this cosine of the elbow, the boundary of reach included.
     #[inline]
     fn closes(cosine: f64) -> bool {
         cosine.abs() <= 1.0 + REACH_TOLERANCE
     }
 
-    /// A ring about the first pivot, for the wrist.
+    /// The shape in which the chain closes: the places of the wrist are a ring about the first pivot.
     pub(super) fn shape(&self) -> Shape {
         let swing = self.product * (1.0 + REACH_TOLERANCE);
         let disc = |half_square: f64| Convex::Disc(Disc::new(self.pivots[0].at, 2.0 * half_square));
@@ -60,7 +61,7 @@ impl Rrr {
         Shape::of_places(Region { whole: disc(self.mean_square + swing), hole }, self.wrist())
     }
 
-    /// The home position of the wrist, which a target displaces.
+    /// The position of the wrist at home, to which targets are applied.
     #[inline]
     fn wrist(&self) -> Complex<f64> {
         self.pivots[2].at
@@ -82,13 +83,14 @@ impl ClosedForm for Rrr {
         let cosine = cosine.clamp(-1.0, 1.0);
         let elbow = Complex::new(cosine, branch.sign() * (1.0 - cosine * cosine).sqrt());
         let r2 = elbow * self.straighten;
-        // The arm with its elbow so bent, at home's first angle, and where it must point.
+        // The vector from the first pivot to the wrist with the elbow bent and the first joint at home, and
+        // the vector that it must become.
         let bent = self.first + r2 * self.second;
         let reach = wrist - self.pivots[0].at;
         let r1 = direction(reach * bent.conj(), self.mean_square);
         let r3 = target.rotation * (r1 * r2).conj();
         let [p1, p2, p3] = self.pivots;
-        Attempt::decided([p1.amount(r1), p2.amount(r2), p3.amount(r3)], closes)
+        Attempt::decided([p1.displacement(r1), p2.displacement(r2), p3.displacement(r3)], closes)
     }
 
     #[cold]

@@ -1,23 +1,26 @@
-//! Numbers of many poses side by side, so that one loop works on all of them.
+//! Columns of numbers, one for each pose of a block, so that one loop works on all poses.
 
 use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacement};
 use nalgebra::{Complex, Matrix3};
 
-/// Poses that are solved together.
+/// The number of poses in a block.
 pub const LANES: usize = 64;
 
-/// A number of each.
+/// One number for each pose.
 pub type Column = [f64; LANES];
 
-/// Zero or one for each: as wide as the numbers that decide it, so that the loop needs no packing.
+/// Zero or one for each pose. It is as wide as the numbers it is computed from, so that loops need no
+/// packing.
 pub type Mask = [u64; LANES];
 
-/// A displacement of each, as many of the columns as it has numbers.
+/// One displacement for each pose, in as many of the columns as it has numbers.
 pub type Displacements = [Column; 9];
 
-/// A displacement that columns hold.
+/// A displacement that can be stored in columns.
 pub trait Lane {
+    /// The displacement of pose number `lane`.
     fn load(from: &Displacements, lane: usize) -> Self;
+    /// Stores the displacement of pose number `lane`.
     fn store(&self, to: &mut Displacements, lane: usize);
 }
 
@@ -76,34 +79,36 @@ impl Lane for Matrix3<f64> {
     }
 }
 
-/// An amount of each, all of one kind.
+/// One joint displacement for each pose, all of the same variant.
 #[derive(Clone, Debug)]
-pub struct Amounts {
-    /// They are turns, else values.
-    pub turns: bool,
-    /// Of turns the two components; of values, which are the first, the second is not to be read.
+pub struct DisplacementColumns {
+    /// Whether they are directions; otherwise they are values.
+    pub are_directions: bool,
+    /// The two components of directions, or values in the first column; the second one is then not valid.
     columns: [Column; 2],
 }
 
-impl Amounts {
+impl DisplacementColumns {
     pub fn new() -> Self {
-        Self { turns: false, columns: [[0.0; LANES]; 2] }
+        Self { are_directions: false, columns: [[0.0; LANES]; 2] }
     }
 
+    /// The displacement of pose number `lane`, which must be a direction.
     #[inline(always)]
-    pub fn turn(&self, lane: usize) -> JointDisplacement {
+    pub fn direction(&self, lane: usize) -> JointDisplacement {
         JointDisplacement::Direction(Complex::new(self.columns[0][lane], self.columns[1][lane]))
     }
 
+    /// The displacement of pose number `lane`, which must be a value.
     #[inline(always)]
     pub fn value(&self, lane: usize) -> JointDisplacement {
         JointDisplacement::Value(self.columns[0][lane])
     }
 
-    /// Of the kind that `turns` says.
+    /// Stores a displacement of the variant that `are_directions` tells.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, amount: JointDisplacement) {
-        match amount {
+    pub fn set(&mut self, lane: usize, displacement: JointDisplacement) {
+        match displacement {
             JointDisplacement::Direction(e) => {
                 (self.columns[0][lane], self.columns[1][lane]) = (e.re, e.im);
             }

@@ -1,7 +1,7 @@
-//! The steps of inverse kinematics, each a loop over the poses of a block: what kind of chain, cut or limits
-//! it is is decided outside of the loop, and what it does is what it does for one pose.
+//! The steps of inverse kinematics, each a loop over the poses of a block. The kind of chain, intersection
+//! motion or limits is decided outside of the loop; the loop does the same arithmetic as for one pose.
 
-use super::lanes::{Amounts, Column, Displacements, LANES, Lane, Mask};
+use super::lanes::{Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
 use crate::chain::cylindrical::WithRevolute;
 use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;
@@ -17,19 +17,21 @@ use crate::numeric::angle::sin_cos_reduced;
 use crate::task::{Form, Task, lower_displacement, upper_displacement};
 use nalgebra::Matrix3;
 
-/// What a section's chain finds.
+/// The result of a section's chain for every pose of a block.
 #[derive(Clone, Debug)]
 pub struct Found {
-    pub amounts: [Amounts; 3],
-    /// See [`Attempt`].
+    pub displacements: [DisplacementColumns; 3],
+    /// See [`Attempt::holds`].
     pub holds: Mask,
+    /// See [`Attempt::beyond`].
     pub beyond: Mask,
 }
 
 impl Found {
     pub fn new() -> Self {
-        let amounts = [Amounts::new(), Amounts::new(), Amounts::new()];
-        Self { amounts, holds: [0; LANES], beyond: [0; LANES] }
+        let displacements =
+            [DisplacementColumns::new(), DisplacementColumns::new(), DisplacementColumns::new()];
+        Self { displacements, holds: [0; LANES], beyond: [0; LANES] }
     }
 }
 
@@ -42,10 +44,10 @@ pub fn displace(
     home: [f64; 3],
     to: &mut Displacements,
 ) {
-    // With a constant form, the loop is straight.
+    // With a constant form, the loop has no branches.
     macro_rules! each {
-        ($kind:ident, $turn:expr) => {{
-            let form = Form { kind: SubspaceKind::$kind, turn: $turn };
+        ($kind:ident, $rotation:expr) => {{
+            let form = Form { kind: SubspaceKind::$kind, rotation: $rotation };
             for lane in 0..LANES {
                 let at = [at[0][lane], at[1][lane], at[2][lane]];
                 match section {
@@ -56,8 +58,8 @@ pub fn displace(
             }
         }};
     }
-    let Form { kind, turn } = task.form(section);
-    match (kind, turn) {
+    let Form { kind, rotation } = task.form(section);
+    match (kind, rotation) {
         (SubspaceKind::Planar, true) => each!(Planar, true),
         (SubspaceKind::Planar, false) => each!(Planar, false),
         (SubspaceKind::Spherical, _) => each!(Spherical, true),
@@ -73,7 +75,7 @@ pub fn displace(
 }
 
 impl Displacement {
-    /// Into the columns of its kind.
+    /// Stores a displacement in the columns of its kind.
     #[inline(always)]
     fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
@@ -114,56 +116,65 @@ where
     C::Target: Lane,
 {
     let chain = *chain;
-    // The kinds of the amounts are the chain's, whatever the target.
+    // The variants of the displacements depend on the chain alone.
     let first = chain.attempt(&C::Target::load(targets, 0), branch);
-    let [a, b, c] = &mut found.amounts;
-    for (amounts, amount) in [&mut *a, &mut *b, &mut *c].into_iter().zip(first.amounts) {
-        amounts.turns = matches!(amount, JointDisplacement::Direction(_));
+    let [a, b, c] = &mut found.displacements;
+    for (displacements, displacement) in
+        [&mut *a, &mut *b, &mut *c].into_iter().zip(first.displacements)
+    {
+        displacements.are_directions = matches!(displacement, JointDisplacement::Direction(_));
     }
     for lane in 0..LANES {
-        let Attempt { amounts, holds, beyond } =
+        let Attempt { displacements, holds, beyond } =
             chain.attempt(&C::Target::load(targets, lane), branch);
-        a.set(lane, amounts[0]);
-        b.set(lane, amounts[1]);
-        c.set(lane, amounts[2]);
+        a.set(lane, displacements[0]);
+        b.set(lane, displacements[1]);
+        c.set(lane, displacements[2]);
         found.holds[lane] = u64::from(holds);
         found.beyond[lane] = u64::from(beyond);
     }
 }
 
-/// Where a displacement `τ` along the intersection motion comes in.
+/// The side on which a displacement `τ` along the intersection motion is multiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// `v · exp(I τ)`.
+    /// The product `v · exp(I τ)`.
     After,
-    /// `exp(I τ) · b`.
+    /// The product `exp(I τ) · b`.
     Before,
+}
+
+/// A step along the intersection motion, on one side of a displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    pub motion: IntersectionMotion,
+    pub side: Side,
 }
 
 /// Moves displacements of a subspace along the intersection motion.
 #[inline(always)]
 pub fn shift(
-    (motion, side): (IntersectionMotion, Side),
+    Step { motion, side }: Step,
     from: &Displacements,
-    tau: &Amounts,
+    tau: &DisplacementColumns,
     to: &mut Displacements,
 ) {
     macro_rules! each {
-        ($group:ty, $motion:expr, $amount:ident) => {{
+        ($group:ty, $motion:expr, $read:ident) => {{
             let motion = $motion;
             for lane in 0..LANES {
                 let displacement = <$group as Subgroup>::Displacement::load(from, lane);
                 match side {
-                    Side::After => <$group>::after(&motion, &displacement, tau.$amount(lane)),
-                    Side::Before => <$group>::before(&motion, &displacement, tau.$amount(lane)),
+                    Side::After => <$group>::after(&motion, &displacement, tau.$read(lane)),
+                    Side::Before => <$group>::before(&motion, &displacement, tau.$read(lane)),
                 }
                 .store(to, lane);
             }
         }};
     }
-    match (motion, tau.turns) {
+    match (motion, tau.are_directions) {
         (IntersectionMotion::Planar(PlanarMotion::Turn), true) => {
-            each!(Planar, PlanarMotion::Turn, turn);
+            each!(Planar, PlanarMotion::Turn, direction);
         }
         (IntersectionMotion::Planar(PlanarMotion::Turn), false) => {
             each!(Planar, PlanarMotion::Turn, value);
@@ -172,13 +183,13 @@ pub fn shift(
             each!(Planar, PlanarMotion::Slide(along), value);
         }
         (IntersectionMotion::Spherical(SphericalMotion::Turn), true) => {
-            each!(Spherical, SphericalMotion::Turn, turn);
+            each!(Spherical, SphericalMotion::Turn, direction);
         }
         (IntersectionMotion::Spherical(SphericalMotion::Turn), false) => {
             each!(Spherical, SphericalMotion::Turn, value);
         }
         (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), true) => {
-            each!(Cylindrical, CylindricalMotion::Turn, turn);
+            each!(Cylindrical, CylindricalMotion::Turn, direction);
         }
         (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), false) => {
             each!(Cylindrical, CylindricalMotion::Turn, value);
@@ -192,32 +203,33 @@ pub fn shift(
     }
 }
 
-/// The values to report of amounts, and which of them are within the limits: cleared where not.
+/// Computes the values to report of displacements, and clears `within` where they are not within the limits.
 #[inline(always)]
 pub fn report(
-    (limits, home): (&Limits, f64),
-    amounts: &Amounts,
+    limits: &Limits,
+    home: f64,
+    displacements: &DisplacementColumns,
     values: &mut Column,
     within: &mut Mask,
 ) {
     macro_rules! each {
-        ($limits:expr, $amount:ident) => {{
+        ($limits:expr, $read:ident) => {{
             let limits = $limits;
             for lane in 0..LANES {
-                let (value, admitted) = limits.place(amounts.$amount(lane), None);
+                let (value, admitted) = limits.place(displacements.$read(lane), None);
                 values[lane] = home + value;
                 within[lane] &= u64::from(admitted);
             }
         }};
     }
-    match (*limits, amounts.turns) {
-        (Limits::Free, true) => each!(Limits::Free, turn),
+    match (*limits, displacements.are_directions) {
+        (Limits::Free, true) => each!(Limits::Free, direction),
         (Limits::Free, false) => each!(Limits::Free, value),
         (Limits::Range { low, high, arc: Some(arc) }, true) => {
-            each!(Limits::Range { low, high, arc: Some(arc) }, turn);
+            each!(Limits::Range { low, high, arc: Some(arc) }, direction);
         }
         (Limits::Range { low, high, arc: None }, true) => {
-            each!(Limits::Range { low, high, arc: None }, turn);
+            each!(Limits::Range { low, high, arc: None }, direction);
         }
         (Limits::Range { low, high, .. }, false) => {
             each!(Limits::Range { low, high, arc: None }, value);
@@ -225,14 +237,14 @@ pub fn report(
     }
 }
 
-/// An imaginary joint's values for displacements along the intersection motion.
+/// Computes an imaginary joint's values for displacements along the intersection motion.
 #[inline(always)]
-pub fn imaginary(joint: &ImaginaryJoint, tau: &Amounts, values: &mut Column) {
+pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut Column) {
     let (home, sign) = (joint.home, joint.sign);
-    let value = |amount: JointDisplacement| home + sign * amount.value();
-    if tau.turns {
+    let value = |displacement: JointDisplacement| home + sign * displacement.value();
+    if tau.are_directions {
         for (lane, to) in values.iter_mut().enumerate() {
-            *to = value(tau.turn(lane));
+            *to = value(tau.direction(lane));
         }
     } else {
         for (lane, to) in values.iter_mut().enumerate() {
@@ -241,25 +253,29 @@ pub fn imaginary(joint: &ImaginaryJoint, tau: &Amounts, values: &mut Column) {
     }
 }
 
-/// The cut, as an angle within half a turn of home where whole turns count.
+/// The imaginary joint's displacements, as angles within π of home where revolutions are counted.
 #[inline(always)]
-pub fn unwind(counts: bool, cut: &Amounts, tau: &mut Amounts) {
-    if counts && cut.turns {
-        tau.turns = false;
+pub fn unwind(
+    counts_revolutions: bool,
+    found: &DisplacementColumns,
+    tau: &mut DisplacementColumns,
+) {
+    if counts_revolutions && found.are_directions {
+        tau.are_directions = false;
         for lane in 0..LANES {
-            tau.set(lane, JointDisplacement::Value(cut.turn(lane).value()));
+            tau.set(lane, JointDisplacement::Value(found.direction(lane).value()));
         }
     } else {
-        tau.clone_from(cut);
+        tau.clone_from(found);
     }
 }
 
-/// The displacements back.
+/// Replaces the displacements by their inverses.
 #[inline(always)]
-pub fn invert(tau: &mut Amounts) {
-    if tau.turns {
+pub fn invert(tau: &mut DisplacementColumns) {
+    if tau.are_directions {
         for lane in 0..LANES {
-            tau.set(lane, tau.turn(lane).inverse());
+            tau.set(lane, tau.direction(lane).inverse());
         }
     } else {
         for lane in 0..LANES {

@@ -1,5 +1,5 @@
-//! Two sections whose displacements add up (cylindrical, translational plane): the legs' equations are
-//! linear in the pose, and are solved once for all actuated joints. For the 2-PPR + PPH manipulator this
+//! Two commutative subspaces (cylindrical, translational plane): the legs' equations are linear in the
+//! pose, and are solved once for all values of the actuated joints. For the 2-PPR + PPH manipulator this
 //! is the 3×3 system of its three sliders (Eqs. 27-28 of the paper).
 
 use super::super::{CompiledLeg, Section};
@@ -9,73 +9,77 @@ use crate::group::{Displacement, JointDisplacement};
 use crate::task::Task;
 use nalgebra::{DMatrix, DVector};
 
-/// A diagonal entry of the triangular factor this small beside the largest: the equations are dependent.
+/// The equations are dependent where a diagonal entry of the triangular factor is smaller than the largest
+/// one by this factor.
 const DEPENDENT: f64 = 1e-9;
 
 /// `v` and `b` as linear functions of the actuated joints' displacements from home.
 #[derive(Clone, Debug)]
 pub struct Flat {
-    /// Rows: the two numbers of `v`, the two of `b`; columns: actuated joints.
+    /// The rows are the two numbers of `v` and the two of `b`; the columns are the actuated joints.
     matrix: DMatrix<f64>,
 }
 
-/// A row of the system: coefficients of `v`, `b`, the legs' τ and, on the right, the actuated joints.
+/// An equation of the system: on the left the coefficients of `v`, `b` and the legs' τ, on the right those of
+/// the actuated joints.
 struct Row {
     left: Vec<f64>,
     right: Vec<f64>,
 }
 
 impl Flat {
-    /// Solves the system; `None` where the legs do not fix the pose.
+    /// Solves the system; `None` where the legs do not determine the pose.
     pub fn new(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], size: f64) -> Option<Self> {
-        let drives = held.iter().map(|leg| leg.lower.len() + leg.upper.len()).sum();
+        let actuated_count = held.iter().map(|leg| leg.lower.len() + leg.upper.len()).sum();
         let mut rows = vec![Row {
-            // b has no share of the intersection motion: v takes it all.
+            // b has no component along the intersection motion: v has all of it.
             left: {
                 let mut left = vec![0.0; 4 + legs.len()];
                 left[2..4].copy_from_slice(&task.upper_intersection.sum());
                 left
             },
-            right: vec![0.0; drives],
+            right: vec![0.0; actuated_count],
         }];
         for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
             for section in [Section::Lower, Section::Upper] {
                 let compiled = leg.section(section);
-                let (first, held, cut, sign) = match section {
+                let (first, held, motion, sign) = match section {
                     Section::Lower => (0, &held.lower, &task.lower_intersection, 1.0),
                     Section::Upper => (2, &held.upper, &task.upper_intersection, -1.0),
                 };
                 let joints = flat_joints(&compiled.chain)?;
-                let cut_slot = (section == leg.cut).then_some(match section {
+                let imaginary_joint = (section == leg.split_section).then_some(match section {
                     Section::Lower => 1,
                     Section::Upper => 0,
                 });
-                for slot in held.iter().copied().chain(cut_slot) {
-                    let one = Condition::new(&compiled.chain, slot, JointDisplacement::Value(1.0))?;
+                for joint in held.iter().copied().chain(imaginary_joint) {
+                    let one =
+                        Condition::new(&compiled.chain, joint, JointDisplacement::Value(1.0))?;
                     let Condition::Flat { normal: [a, b], .. } = one else { return None };
-                    let mut row = Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; drives] };
+                    let mut row =
+                        Row { left: vec![0.0; 4 + legs.len()], right: vec![0.0; actuated_count] };
                     row.left[first] = a;
                     row.left[first + 1] = b;
-                    let [p, q] = cut.sum();
-                    // v + I τ, or b − I τ, is what the real joints make; in a chain with the cut, the
-                    // row of its other joint is perpendicular to I.
+                    let [p, q] = motion.sum();
+                    // The real joints make v + I τ or b − I τ. In a chain with the imaginary joint, the row
+                    // of its other joint is perpendicular to I.
                     row.left[4 + number] = sign * (a * p + b * q);
-                    if Some(slot) != cut_slot {
-                        let drive = compiled.slots[slot]?.drive?;
-                        let [p, q] = joints[slot];
-                        row.right[drive] = a * p + b * q;
+                    if Some(joint) != imaginary_joint {
+                        let number = compiled.coordinates[joint]?.actuated?;
+                        let [p, q] = joints[joint];
+                        row.right[number] = a * p + b * q;
                     }
                     rows.push(row);
                 }
             }
         }
-        // Lengths in sizes: then no row or column is small by its units alone.
+        // Lengths are divided by the size, so that no row or column is small because of its units.
         let mut scale = task.lower.kind.sum_units(size).to_vec();
         scale.extend(task.upper.kind.sum_units(size));
         scale.extend(vec![size; legs.len()]);
         let columns = scale.len();
         let mut left = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i].left[j] * scale[j]);
-        let mut right = DMatrix::from_fn(rows.len(), drives, |i, j| rows[i].right[j]);
+        let mut right = DMatrix::from_fn(rows.len(), actuated_count, |i, j| rows[i].right[j]);
         for i in 0..rows.len() {
             let largest = left.row(i).amax();
             if largest > 0.0 {
@@ -93,10 +97,12 @@ impl Flat {
             return None;
         }
         let solution = triangle.solve_upper_triangular(&qr.q().tr_mul(&right))?;
-        Some(Self { matrix: DMatrix::from_fn(4, drives, |i, j| solution[(i, j)] * scale[i]) })
+        Some(Self {
+            matrix: DMatrix::from_fn(4, actuated_count, |i, j| solution[(i, j)] * scale[i]),
+        })
     }
 
-    /// `v` and `b` for displacements of the actuated joints from home.
+    /// The displacements `v` and `b` for the actuated joints' displacements from home.
     pub fn solve(&self, task: &Task, actuated: &[f64]) -> [Displacement; 2] {
         let x = &self.matrix * DVector::from_column_slice(actuated);
         [task.lower.kind.of_sum([x[0], x[1]]), task.upper.kind.of_sum([x[2], x[3]])]

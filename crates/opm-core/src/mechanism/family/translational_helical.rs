@@ -146,8 +146,8 @@ impl TranslationalLeg {
         // of the last joint.
         let pitch = self.pitch.unwrap_or(0.0);
         let [imaginary, phi] = CylindricalChain::new([
-            CoaxialJoint { turn: 0.0, advance: -1.0 },
-            CoaxialJoint { turn: 1.0, advance: pitch },
+            CoaxialJoint { rotation: 0.0, advance: -1.0 },
+            CoaxialJoint { rotation: 1.0, advance: pitch },
         ])?
         .inverse(&CylindricalDisplacement { angle: home.phi, advance: 0.0 });
         // A revolute joint has home's φ too, including full revolutions, unless its limits choose
