@@ -13,6 +13,33 @@
 //! Each is a small problem with all of its solutions, so that their combinations are all assemblies. Where
 //! both sections add up, everything is one linear system (`manipulator/plan/flat.rs`). A mechanism without such an
 //! order is solved by [`Manipulator::forward_near`] from a pose.
+//!
+//! ```
+//! use opm_core::Manipulator;
+//!
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
+//! let (mode, mut buffer) = (manipulator.home_mode(), manipulator.solution());
+//! let pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+//! let solution = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
+//! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| solution.joints()[i]).collect();
+//!
+//! // Every assembly with these actuated joints. The pose that they were computed from is one.
+//! let assemblies = manipulator.forward(&actuated)?;
+//! let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+//! assert!(assemblies.list.iter().any(|assembly| close(&assembly.pose, &pose)));
+//! assert!(assemblies.unmet.is_empty());
+//!
+//! // Inverse kinematics at an assembly give its joints back.
+//! for assembly in &assemblies.list {
+//!     let again = manipulator.inverse(&assembly.pose, assembly.mode, &mut buffer)?;
+//!     assert!(close(again.expect("an assembled pose").joints(), &assembly.joints));
+//! }
+//!
+//! // Newton's method finds the one assembly near a pose, here near home.
+//! let near = manipulator.forward_near(&actuated, &manipulator.pose([])?, mode)?;
+//! assert!(close(&near.pose, &pose));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod accept;
 mod along;

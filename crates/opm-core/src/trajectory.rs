@@ -25,6 +25,45 @@
 //! A gauge that falls and rises several times between two samples may be missed. A sampling rate of
 //! several times the motion's highest frequency leaves nothing out. Times are accurate to
 //! [`RESOLUTION`] of the step between samples, the times of lowest values to about 1e-8 of it.
+//!
+//! # Example
+//!
+//! ```
+//! use opm_core::motion::{Harmonics, Path, PlatformMotion, Sinusoid};
+//! use opm_core::trajectory::Gauge;
+//! use opm_core::{Manipulator, Trajectory};
+//!
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
+//! // x swings by this amplitude once in two seconds; every other coordinate stays at home.
+//! let swing = |amplitude: f64| {
+//!     let coordinates = manipulator.task_coordinates();
+//!     let mut path: Vec<_> = coordinates.iter().map(|c| Harmonics::constant(c.home)).collect();
+//!     path[0].sinusoids.push(Sinusoid { amplitude, frequency: 0.5, phase: 0.0 });
+//!     let (name, path) = ("swing".to_owned(), Path::Harmonics(path));
+//!     PlatformMotion { name, start: 0.0, duration: 2.0, rate: None, mode: None, path }
+//! };
+//!
+//! // Five millimetres, 20 samples a second: 41 samples, with one at either end.
+//! let motion = swing(0.005);
+//! let mut trajectory = Trajectory::new(&manipulator, &motion, manipulator.home_mode(), 20.0)?;
+//! let mut samples = 0;
+//! while trajectory.advance()? {
+//!     assert!(trajectory.sample().reached && trajectory.changes().is_empty());
+//!     samples += 1;
+//! }
+//! assert_eq!(samples, 41);
+//!
+//! // Ten metres: the legs, which are far shorter, go out of reach.
+//! let motion = swing(10.0);
+//! let mut trajectory = Trajectory::new(&manipulator, &motion, manipulator.home_mode(), 20.0)?;
+//! let mut out_of_reach = false;
+//! while trajectory.advance()? {
+//!     let mut open = trajectory.open();
+//!     out_of_reach |= open.any(|violation| matches!(violation.gauge, Gauge::Reach { .. }));
+//! }
+//! assert!(out_of_reach);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod gauge;
 mod report;
@@ -56,6 +95,14 @@ const MOST_SAMPLES: f64 = 9e15;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
+    /// The motion is not in the task coordinates of this manipulator.
+    #[error("the motion has {given} task coordinates, expected {expected}, as the manipulator has")]
+    Coordinates {
+        /// The number of coordinates of the motion.
+        given: usize,
+        /// The number of task coordinates of the manipulator.
+        expected: usize,
+    },
     /// The sampling rate is not a positive number, or gives too many samples.
     #[error(
         "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
@@ -209,16 +256,18 @@ impl<'a> Trajectory<'a> {
     /// number of steps away.
     ///
     /// # Errors
-    /// A rate that is not a positive number, or too high.
-    ///
-    /// # Panics
-    /// The motion is for another number of task coordinates.
+    /// If the motion gives another number of task coordinates than the manipulator has, or if the rate
+    /// is not a positive number or gives too many samples.
     pub fn new(
         manipulator: &'a Manipulator,
         motion: &'a PlatformMotion,
         mode: Mode,
         rate: f64,
     ) -> Result<Self, TrajectoryError> {
+        let (given, expected) = (motion.coordinate_count(), manipulator.task_coordinates().len());
+        if given != expected {
+            return Err(TrajectoryError::Coordinates { given, expected });
+        }
         let steps = motion.duration * rate;
         if !(rate > 0.0 && rate.is_finite() && steps <= MOST_SAMPLES) {
             return Err(TrajectoryError::Rate { rate, duration: motion.duration });

@@ -1,5 +1,6 @@
-//! Rotations about and translations along one axis, the frame's third direction. They commute, and count
-//! whole turns: a screw on the axis tells one turn from the next. A twist is `(ω, v, 0)`.
+//! The cylindrical subgroup: rotations about and translations along one axis, the frame's third direction.
+//! They commute. Angles count full revolutions, because a screw on the axis advances with each of them. A
+//! twist is `(ω, v, 0)`.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
@@ -7,15 +8,15 @@ use super::{JointDisplacement, SubspaceKind};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Rotation3, Vector3};
 
-/// The subgroup.
+/// The cylindrical subgroup.
 pub(crate) struct Cylindrical;
 
-/// A displacement about and along one axis.
+/// A rotation about an axis and a translation along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylindricalDisplacement {
-    /// Radians, whole turns counted.
+    /// The angle of rotation in radians; full revolutions count.
     pub angle: f64,
-    /// Metres.
+    /// The translation along the axis, metres.
     pub advance: f64,
 }
 
@@ -131,7 +132,7 @@ impl Subgroup for Cylindrical {
         }
     }
 
-    /// The same: displacements on one axis commute.
+    /// The same as `after`, because displacements on one axis commute.
     #[inline(always)]
     fn before(
         motion: &CylindricalMotion,

@@ -1,4 +1,4 @@
-//! `SO(3)`: rotations about a centre, as matrices. A twist is the angular velocity.
+//! The spherical subgroup, `SO(3)`: rotations about a centre, as matrices. A twist is the angular velocity.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
@@ -6,36 +6,39 @@ use super::{JointDisplacement, SubspaceKind};
 use crate::numeric::angle::atan2;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
-/// The subgroup.
+/// The spherical subgroup.
 pub(crate) struct Spherical;
 
-/// A one-parameter motion about the centre that another subspace may share.
+/// A one-parameter spherical motion that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SphericalMotion {
     /// Rotation about the frame's third direction.
     Turn,
 }
 
-/// The rotation about an axis by the angle that a unit vector points at.
-pub(crate) fn rotation_about(axis: &Vector3<f64>, turn: Complex<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (turn.re, turn.im);
+/// The rotation about a unit axis by an angle, which is given as the unit complex number `e(angle)`
+/// (Rodrigues' formula).
+pub(crate) fn rotation_about(axis: &Vector3<f64>, angle: Complex<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (angle.re, angle.im);
     Matrix3::from_diagonal_element(cos)
         + axis.cross_matrix() * sin
         + axis * axis.transpose() * (1.0 - cos)
 }
 
-/// `exp(axis q) v`, with `q` as a unit vector.
+/// The vector `v` rotated about a unit axis by an angle, which is given as the unit complex number
+/// `e(angle)`.
 #[inline]
-pub(crate) fn rotated(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
-    v * q.re + axis.cross(v) * q.im + axis * (axis.dot(v) * (1.0 - q.re))
+pub(crate) fn rotated(axis: &Vector3<f64>, angle: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    v * angle.re + axis.cross(v) * angle.im + axis * (axis.dot(v) * (1.0 - angle.re))
 }
 
-/// The rotation vector of `r`, at most half a turn, by its quaternion: of the four multiples of it that
-/// the entries of `r` give, the longest one.
+/// The rotation vector of `r`, whose angle is at most π. The entries of `r` give four multiples of its
+/// quaternion, of which the longest is used.
 #[inline(always)]
 pub(crate) fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
     let [xx, yy, zz] = [r[(0, 0)], r[(1, 1)], r[(2, 2)]];
-    // Four times the products of two components, w being the scalar one, and their squares.
+    // Four times the products of two components of the quaternion (w, x, y, z), and four times their
+    // squares.
     let (wx, wy, wz) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
     let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
     let (ww, xx, yy, zz) =
@@ -141,7 +144,7 @@ impl Subgroup for Spherical {
     fn after(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
         match motion {
             SphericalMotion::Turn => {
-                // Columns one and two of R turn; the third, the axis of I, stays.
+                // The first two columns of R rotate; the third, the axis of I, stays.
                 let e = tau.unit_direction();
                 let (x, y, z) = (r.column(0), r.column(1), r.column(2));
                 Matrix3::from_columns(&[x * e.re + y * e.im, y * e.re - x * e.im, z.into_owned()])

@@ -1,18 +1,18 @@
-//! Translations in a plane, the frame's first two directions, as complex numbers. A twist is
-//! `(vx, vy, 0)`.
+//! The translational plane: translations along the frame's first two directions, as complex numbers in
+//! metres. A twist is `(vx, vy, 0)`.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{JointDisplacement, SubspaceKind, quarter};
 use nalgebra::{Complex, Rotation3, Vector3};
 
-/// The subgroup.
+/// The subgroup of the translations in a plane.
 pub(crate) struct TranslationalPlane;
 
-/// A one-parameter motion in the plane that another subspace may share.
+/// A one-parameter translation in the plane that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TranslationalMotion {
-    /// Translation in this direction, a unit vector.
+    /// Translation along a direction of the plane, which is a unit complex number.
     Slide(Complex<f64>),
 }
 
@@ -109,7 +109,7 @@ impl Subgroup for TranslationalPlane {
         }
     }
 
-    /// The same: translations commute.
+    /// The same as `after`, because translations commute.
     #[inline(always)]
     fn before(
         motion: &TranslationalMotion,

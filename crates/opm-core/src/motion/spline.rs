@@ -13,10 +13,25 @@
 
 use super::Instant;
 
-/// Fewest knots of a natural cubic spline.
+/// The smallest number of knots of a natural cubic spline.
 pub const FEWEST: usize = 3;
 
 /// Natural cubic splines on common knots, one for each coordinate.
+///
+/// ```
+/// use opm_core::motion::{Instant, Spline};
+///
+/// // Values on a straight line: the natural cubic spline through them is that line.
+/// let times = vec![0.0, 0.5, 2.0];
+/// let values = times.iter().map(|t| 1.0 + 3.0 * t).collect();
+/// let spline = Spline::new(times, vec![values])?;
+/// let mut instant = Instant::new(1);
+/// spline.at(1.2, &mut instant);
+/// assert!((instant.pose[0] - 4.6).abs() < 1e-14);
+/// assert!((instant.velocity[0] - 3.0).abs() < 1e-14);
+/// assert!(instant.acceleration[0].abs() < 1e-13);
+/// # Ok::<(), opm_core::motion::SplineError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     times: Vec<f64>,
@@ -35,25 +50,26 @@ struct Column {
 #[non_exhaustive]
 pub enum SplineError {
     /// There are too few knots.
-    #[error("{0} times, expected at least {FEWEST}")]
+    #[error("{0} times given, expected at least {FEWEST}")]
     TooFew(usize),
     /// The times do not increase.
     #[error("the times do not increase")]
     NotIncreasing,
     /// A column does not have one value for each time.
-    #[error("not as many values as times")]
+    #[error("a column does not have one value for each time")]
     Length,
     /// The times are so close together that derivatives overflow.
-    #[error("times are too close together")]
+    #[error("the times are so close together that the derivatives overflow")]
     TooClose,
 }
 
 impl Spline {
-    /// The splines through the values of each column at these times, seconds, which increase.
+    /// The splines through the values of each column at increasing times, in seconds. Every column has
+    /// one value for each time.
     ///
     /// # Errors
-    /// Fewer than three times, times that do not increase or are too close together, or a column of
-    /// another length.
+    /// If there are fewer than three times, if the times do not increase or are too close together, or
+    /// if a column does not have as many values as there are times.
     pub fn new(times: Vec<f64>, columns: Vec<Vec<f64>>) -> Result<Self, SplineError> {
         if times.len() < FEWEST {
             return Err(SplineError::TooFew(times.len()));
@@ -78,12 +94,15 @@ impl Spline {
         &self.times
     }
 
-    /// Values and derivatives at time `t`, which is brought back between the ends.
-    ///
-    /// # Panics
-    /// `out` is for another number of columns.
+    /// The number of columns: one for each coordinate.
+    pub fn column_count(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Writes the values and their derivatives at time `t`, in seconds, into `out`. A time beyond the
+    /// ends counts as the nearer end. `out` is resized if it was made for another number of columns.
     pub fn at(&self, t: f64, out: &mut Instant) {
-        assert_eq!(self.columns.len(), out.pose.len(), "columns of the spline");
+        out.resize(self.columns.len());
         let last = self.times.len() - 1;
         let t = t.clamp(self.times[0], self.times[last]);
         let i = self.times.partition_point(|&knot| knot <= t).clamp(1, last) - 1;

@@ -24,6 +24,22 @@ type Square = SMatrix<f64, MOST, MOST>;
 /// The velocity of the platform's reference point and the rates of sliders are divided by the
 /// characteristic length. So both numbers have no unit. They do not depend on the coordinates that the
 /// pose is written in, on where the mechanism stands, nor on how large it is.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mut buffer, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
+/// // Home, where the Euler angles are singular: the conditioning does not depend on them.
+/// let pose = manipulator.pose([])?;
+/// let at = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+/// manipulator.differentiate(at.expect("home is in reach"), &mut jacobians)?;
+/// let length = manipulator.characteristic_length();
+/// let conditioning = manipulator.conditioning(&jacobians, length);
+/// assert!(conditioning.condition >= 1.0 && conditioning.condition.is_finite());
+/// assert!(conditioning.manipulability > 0.0 && conditioning.manipulability.is_finite());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditioning {
     /// Largest over smallest singular value, at least one: how unevenly joint rates move the

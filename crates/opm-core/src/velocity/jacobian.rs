@@ -20,6 +20,30 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 ///   component along it is left out. In a plane that is the velocity of the reference point.
 ///
 /// Rates are those of the coordinates as they are reported: rad/s and m/s.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mode, mut buffer) = (manipulator.home_mode(), manipulator.solution());
+/// let mut pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+/// let at = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
+/// let mut jacobians = manipulator.jacobians();
+/// assert!(manipulator.differentiate(at, &mut jacobians)?);
+/// let rates = jacobians.joints_by_pose(); // a row for each joint, a column for each coordinate
+///
+/// // The first column is the derivative of all joints by x: compare a central difference.
+/// let (x, step) = (pose[0], 1e-5);
+/// let mut joints_at = |x: f64| {
+///     pose[0] = x;
+///     let solution = manipulator.inverse(&pose, mode, &mut buffer).unwrap();
+///     solution.expect("a pose in reach").joints().to_vec()
+/// };
+/// for (i, (after, before)) in joints_at(x + step).iter().zip(joints_at(x - step)).enumerate() {
+///     assert!(((after - before) / (2.0 * step) - rates[(i, 0)]).abs() < 1e-6);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Jacobians {
     /// `J_s` (Eqs. 8-9): rates along the cuts from the upper section's twist. A row for every leg that

@@ -46,7 +46,30 @@ impl Default for Measures {
     }
 }
 
-/// The measures of singularity at one pose; made by [`Manipulator::singularities`].
+/// The measures of singularity at one pose. The buffer is made by [`Manipulator::singularities`] and
+/// filled by [`Manipulator::measure_singularities`].
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mut buffer, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
+/// let mut measured = manipulator.singularities();
+/// for xi in [0.0, 15_f64.to_radians()] {
+///     let pose = manipulator.pose([("xi", xi)])?;
+///     let at = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+///     manipulator.differentiate(at.expect("a pose in reach"), &mut jacobians)?;
+///     manipulator.measure_singularities(&jacobians, &mut measured);
+///     // The Euler angles zeta, xi, psi are singular at xi = 0, where their determinant sin xi
+///     // vanishes. The mechanism is not.
+///     assert!((measured.coordinates.abs() - xi.sin()).abs() < 1e-12);
+///     assert!(measured.whole.serial.abs() > 1e-3);
+///     // The serial measure of the whole is the product of the two sections' measures.
+///     let product = measured.upper.serial * measured.lower.serial;
+///     assert!((measured.whole.serial - product).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Singularities {
     /// Of the upper section.
