@@ -1,8 +1,9 @@
-//! Twists of `v` and `b` from the rates of the task coordinates.
+//! The twists of `v` and `b` from the rates of the task coordinates.
 //!
-//! Both are products of exponentials of their coordinates about home, in the order of the table in
-//! [`crate::task`]: `(x, y, theta)` two translations and a rotation, `(zeta, xi, psi)` rotations
-//! about z, y and z, `(mu, nu)` about x and y. Their derivatives are those of [`Screws`].
+//! Both displacements are products of exponentials of their coordinates, relative to home, in the order of
+//! the table in [`crate::task`]: `(x, y, theta)` are two translations and a rotation, `(zeta, xi, psi)` are
+//! rotations about z, y and z, and `(mu, nu)` are rotations about x and y. [`Screws`] gives their
+//! derivatives.
 
 use super::screws::Screws;
 use crate::group::{
@@ -12,7 +13,7 @@ use crate::numeric::angle::unit;
 use crate::task::Task;
 
 impl Task {
-    /// The screws of `v`'s coordinates at a pose, as they have moved.
+    /// The screws of the coordinates of `v` at a pose, in the frame of the lower section.
     pub(crate) fn lower_screws(&self, pose: &[f64]) -> Screws {
         let q = |i: usize| pose[i] - self.coordinates[i].home;
         let zero = LocalTwist::zeros();
@@ -34,7 +35,8 @@ impl Task {
         Screws { kind: self.lower.kind, moved }
     }
 
-    /// The screws of `b`'s coordinates at a pose, whole, as they have moved.
+    /// The screws of the coordinates of `b` at a pose (the task coordinates of both sections), in the frame
+    /// of the upper section.
     pub(crate) fn upper_screws(&self, pose: &[f64]) -> Screws {
         let at = |i: usize| pose[self.lower_count + i];
         let q = |i: usize| at(i) - self.coordinates[self.lower_count + i].home;
@@ -62,7 +64,8 @@ impl Task {
     }
 }
 
-/// Along the plane's directions, then about the point that was moved there.
+/// The screws of two translations along the directions of the plane, followed by a rotation about the point
+/// that they have moved to.
 fn planar(x: f64, y: f64) -> [LocalTwist; 3] {
     [LocalTwist::y(), LocalTwist::z(), LocalTwist::new(1.0, y, -x)]
 }
