@@ -38,7 +38,7 @@ pub struct Harmonics {
 pub enum Path {
     /// Every coordinate is a sum of sinusoids.
     Harmonics(Vec<Harmonics>),
-    /// Every coordinate is a cubic spline; all of them have the same knots.
+    /// Every coordinate is a natural cubic spline; all of them have the same knots.
     Spline(Spline),
 }
 
@@ -72,13 +72,13 @@ pub enum Path {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlatformMotion {
-    /// The motion's name. For a table of poses it is given by the caller.
+    /// The motion's name. For a table of poses the caller gives it.
     pub name: String,
     /// Start time, seconds.
     pub start: f64,
     /// Duration, seconds; positive.
     pub duration: f64,
-    /// Samples per second, if the motion's file gives them.
+    /// The sampling rate in hertz, if the motion's file gives one.
     pub rate: Option<f64>,
     /// The working mode, if the motion's file gives one.
     pub mode: Option<Mode>,
@@ -172,7 +172,7 @@ impl Harmonics {
 mod tests {
     use super::*;
 
-    /// Values of a pendulum: a quarter of a period after the middle it is at its end, at rest.
+    /// A pendulum is at its end, at rest, a quarter of a period after the middle.
     #[test]
     fn a_sinusoid_is_where_a_pendulum_is() {
         let swing = Sinusoid { amplitude: 0.5, frequency: 2.0, phase: TAU / 4.0 };

@@ -1,13 +1,12 @@
-//! PlatformMotion files: TOML text is read into a [`PlatformMotion`], or every problem is reported with its
-//! location.
+//! Motion files: TOML text is read into a [`PlatformMotion`], or every problem is reported with its location.
 //!
 //! ```toml
 //! format = 1
 //! name = "figure-of-eight"
 //! units = { length = "mm", angle = "deg" }   # as in mechanism files
 //! duration = 10                              # seconds
-//! rate = 100                                 # samples a second
-//! mode = "++ ++ ++ +"                        # optional; default: home's
+//! rate = 100                                 # samples per second
+//! mode = "++ ++ ++ +"                        # optional; the default is the mode of home
 //!
 //! [coordinates]                              # absolute task coordinates; the others stay at home
 //! x = { amplitude = 30, frequency = 0.2 }

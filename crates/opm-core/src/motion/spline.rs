@@ -1,15 +1,15 @@
 //! Natural cubic splines through a table of values, several columns on common knots.
 //!
 //! The value and its first two derivatives are continuous, and the second derivative is zero at both
-//! ends. The second derivatives `m` at the knots, which are `h[i]` apart, obey
+//! ends. The second derivatives `m[i]` at the knots, which are `h[i]` apart, satisfy
 //!
 //! ```text
 //! h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1]),   d[i] = (y[i+1] - y[i]) / h[i]
 //! ```
 //!
-//! a tridiagonal system whose diagonal dominates, so that elimination needs no pivots (J. Stoer, R.
+//! This is a tridiagonal system with a dominant diagonal, so that elimination needs no pivots (J. Stoer, R.
 //! Bulirsch, *Introduction to Numerical Analysis*, section 2.4). The values and slopes at the knots are
-//! kept: between two knots there is only one cubic that has them.
+//! stored. They determine the cubic between two knots.
 
 use super::Instant;
 
@@ -34,6 +34,7 @@ pub const FEWEST: usize = 3;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
+    /// The knots, seconds, ascending.
     times: Vec<f64>,
     columns: Vec<Column>,
 }
@@ -45,7 +46,7 @@ struct Column {
     slopes: Vec<f64>,
 }
 
-/// Why no spline goes through a table.
+/// Why there is no spline through given values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
@@ -111,7 +112,8 @@ impl Spline {
         for (number, Column { values, slopes }) in self.columns.iter().enumerate() {
             let (value, slope) = (values[i], slopes[i]);
             let mean = (values[i + 1] - value) / width;
-            // value + slope s + half s² + sixth s³ has the value and slope of the next knot there.
+            // The cubic value + slope s + half s² + sixth s³ has the value and the slope of the next knot at
+            // s = width.
             let half = (3.0 * mean - 2.0 * slope - slopes[i + 1]) / width;
             let sixth = (slope + slopes[i + 1] - 2.0 * mean) / (width * width);
             out.pose[number] = value + s * (slope + s * (half + s * sixth));
@@ -150,7 +152,7 @@ fn slopes(times: &[f64], values: &[f64], second: &[f64]) -> Vec<f64> {
             mean - width * (2.0 * second[i] + second[i + 1]) / 6.0
         })
         .collect();
-    // The cubic's derivative at the far end of the last piece.
+    // The last slope is the derivative of the last cubic at its end.
     let i = times.len() - 2;
     let width = times[i + 1] - times[i];
     let sixth = (second[i + 1] - second[i]) / (6.0 * width);
@@ -171,7 +173,7 @@ mod tests {
     /// The natural spline through four points at 0, 1, 2, 3 with values 0, 1, 0, 1, by hand: the
     /// second derivatives at the inner knots obey `4 m₁ + m₂ = -12`, `m₁ + 4 m₂ = 12`.
     #[test]
-    fn a_spline_that_was_solved_by_hand() {
+    fn a_spline_agrees_with_its_solution_by_hand() {
         let spline = Spline::new(vec![0.0, 1.0, 2.0, 3.0], vec![vec![0.0, 1.0, 0.0, 1.0]]).unwrap();
         for (t, second) in [(0.0, 0.0), (1.0, -4.0), (2.0, 4.0), (3.0, 0.0), (1.5, 0.0)] {
             assert!((at(&spline, t)[2] - second).abs() < 1e-13, "{t}");
@@ -184,7 +186,7 @@ mod tests {
         assert_eq!(at(&spline, 9.0), at(&spline, 3.0));
     }
 
-    /// Uneven knots: it passes through the values, and two derivatives are continuous.
+    /// With uneven knots, a spline passes through the values, and two derivatives are continuous.
     #[test]
     fn a_spline_is_smooth_at_its_knots() {
         let times: Vec<f64> = (0..20).map(|i| f64::from(i) + 0.4 * f64::from(i * i % 3)).collect();
@@ -238,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_spline_is_refused() {
+    fn values_without_a_spline_are_refused() {
         let new = |times: &[f64], values: &[f64]| Spline::new(times.into(), vec![values.into()]);
         assert_eq!(new(&[0.0, 1.0], &[0.0, 1.0]), Err(SplineError::TooFew(2)));
         assert_eq!(new(&[0.0, 1.0, 1.0], &[0.0; 3]), Err(SplineError::NotIncreasing));
