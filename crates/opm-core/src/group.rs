@@ -36,7 +36,7 @@ mod translational_plane;
 pub use cylindrical::{CylindricalDisplacement, CylindricalMotion};
 pub use displacement::Displacement;
 pub use frame::Subspace;
-pub use intersection::IntersectionMotion;
+pub use intersection::{IntersectionMotion, MotionType};
 pub use joint_displacement::JointDisplacement;
 pub use kind::SubspaceKind;
 pub use path::{Path, PlanarPath};

@@ -57,7 +57,7 @@ pub use crate::group::{Displacement, Subspace, SubspaceKind};
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::group::screw::Screw;
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
-use crate::group::{CylindricalDisplacement, IntersectionMotion, Path, PlanarPath};
+use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path, PlanarPath};
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
 use crate::numeric::angle::sin_cos;
@@ -307,7 +307,8 @@ impl Task {
             None
         };
         let motion = |frame: &Subspace| {
-            IntersectionMotion::new(frame.kind, &frame.direction(&axis), rotation)
+            let motion = if rotation { MotionType::Rotation } else { MotionType::Translation };
+            IntersectionMotion::new(frame.kind, &frame.direction(&axis), motion)
         };
         let lower_intersection = motion(&lower);
         let upper_intersection = motion(&upper);

@@ -198,12 +198,12 @@ impl Search<'_> {
     fn distance(
         &self,
         coordinate: usize,
-        amount: JointDisplacement,
+        displacement: JointDisplacement,
         value: f64,
-        turn: Complex<f64>,
+        direction: Complex<f64>,
     ) -> f64 {
-        match amount {
-            JointDisplacement::Direction(_) => length(amount.unit_direction() - turn),
+        match displacement {
+            JointDisplacement::Direction(_) => length(displacement.unit_direction() - direction),
             JointDisplacement::Value(given) => {
                 match self.manipulator.coordinates()[coordinate].quantity {
                     Quantity::Angle => (given - value).abs(),

@@ -97,7 +97,7 @@ pub fn along(
                 let constant = f.z * w.z - cosine;
                 rotations(z, constant, 1.0, || {
                     let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-                    // The angle between the two ranges over an interval as the axis turns.
+                    // The angle between the two ranges over an interval as the axis rotates.
                     let [a, b] = [arc(f.z), arc(w.z)];
                     let (least, most) = ((a - b).abs(), (a + b).min(std::f64::consts::TAU - a - b));
                     ReachDeficit::angle((least - arc(*cosine)).max(arc(*cosine) - most))

@@ -342,10 +342,10 @@ mod tests {
 
         /// Eight roots that are at least a hundredth apart are all found, each once.
         #[test]
-        fn roots_that_are_apart_are_found_once(start in 0.0..TAU, gaps in proptest::array::uniform8(0.01..1.0_f64)) {
-            let whole: f64 = gaps.iter().sum();
+        fn roots_that_are_apart_are_found_once(start in 0.0..TAU, distances in proptest::array::uniform8(0.01..1.0_f64)) {
+            let whole: f64 = distances.iter().sum();
             let mut at = start;
-            let roots = gaps.map(|gap| { at += gap.max(0.01 * whole) * TAU / (1.1 * whole); at });
+            let roots = distances.map(|distance| { at += distance.max(0.01 * whole) * TAU / (1.1 * whole); at });
             let f = with_roots(&roots);
             let found = angles(&f.roots(f.size()));
             prop_assert_eq!(found.len(), 8);
@@ -360,7 +360,7 @@ mod tests {
         #[test]
         fn double_roots_are_found(at in -4.0..4.0_f64, others in proptest::array::uniform6(0.3..1.0_f64), lift in -1.0..1.0_f64) {
             let mut next = at;
-            let others = others.map(|gap| { next += 0.8 * gap; next });
+            let others = others.map(|distance| { next += 0.8 * distance; next });
             let mut roots = vec![at, at];
             roots.extend(others);
             let f = with_roots(&roots);

@@ -4,7 +4,7 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -97,8 +97,11 @@ impl Subgroup for Cylindrical {
         g.angle.abs().max(g.advance.abs())
     }
 
-    fn motion(_: &Vector3<f64>, rotation: bool) -> CylindricalMotion {
-        if rotation { CylindricalMotion::Turn } else { CylindricalMotion::Advance }
+    fn motion(_: &Vector3<f64>, motion: MotionType) -> CylindricalMotion {
+        match motion {
+            MotionType::Rotation => CylindricalMotion::Turn,
+            MotionType::Translation => CylindricalMotion::Advance,
+        }
     }
 
     #[inline]

@@ -8,6 +8,15 @@ use super::{
 };
 use nalgebra::Vector3;
 
+/// Whether a one-parameter motion is a rotation or a translation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionType {
+    /// A rotation about an axis.
+    Rotation,
+    /// A translation along a direction.
+    Translation,
+}
+
 /// The intersection motion `I` of two subspaces, in the frame of one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntersectionMotion {
@@ -46,20 +55,18 @@ macro_rules! of_motion {
 }
 
 impl IntersectionMotion {
-    /// The intersection motion in a subspace of a kind, by its direction in the subspace's frame: a rotation
-    /// about that direction through the frame's origin, or a translation along it.
+    /// The intersection motion in a subspace of a kind. `direction` is a unit vector in the subspace's frame:
+    /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation.
     ///
     /// # Panics
     /// If the subspace does not contain such a motion.
-    pub fn new(kind: SubspaceKind, direction: &Vector3<f64>, rotation: bool) -> Self {
+    pub fn new(kind: SubspaceKind, direction: &Vector3<f64>, motion: MotionType) -> Self {
         match kind {
-            SubspaceKind::Planar => Self::Planar(Planar::motion(direction, rotation)),
-            SubspaceKind::Spherical => Self::Spherical(Spherical::motion(direction, rotation)),
-            SubspaceKind::Cylindrical => {
-                Self::Cylindrical(Cylindrical::motion(direction, rotation))
-            }
+            SubspaceKind::Planar => Self::Planar(Planar::motion(direction, motion)),
+            SubspaceKind::Spherical => Self::Spherical(Spherical::motion(direction, motion)),
+            SubspaceKind::Cylindrical => Self::Cylindrical(Cylindrical::motion(direction, motion)),
             SubspaceKind::TranslationalPlane => {
-                Self::Translational(TranslationalPlane::motion(direction, rotation))
+                Self::Translational(TranslationalPlane::motion(direction, motion))
             }
         }
     }

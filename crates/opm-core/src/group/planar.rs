@@ -3,7 +3,7 @@
 
 use super::path::{Path, PlanarPath};
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::{sinc, unit};
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -179,11 +179,10 @@ impl Subgroup for Planar {
         g.translation.norm()
     }
 
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> PlanarMotion {
-        if rotation {
-            PlanarMotion::Turn
-        } else {
-            PlanarMotion::Slide(Complex::new(direction.x, direction.y))
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> PlanarMotion {
+        match motion {
+            MotionType::Rotation => PlanarMotion::Turn,
+            MotionType::Translation => PlanarMotion::Slide(Complex::new(direction.x, direction.y)),
         }
     }
 

@@ -161,15 +161,15 @@ mod tests {
 
     proptest! {
         #[test]
-        fn exponential_is_the_series(s in screw(), amount in -2.0..2.0) {
-            let x = hat(&s) * amount;
+        fn exponential_is_the_series(s in screw(), coordinate in -2.0..2.0) {
+            let x = hat(&s) * coordinate;
             let (mut term, mut sum) = (Matrix4::identity(), Matrix4::identity());
             // ‖x‖ < 8: the terms have fallen below rounding well before the sixtieth.
             for k in 1..60 {
                 term = term * x / f64::from(k);
                 sum += term;
             }
-            prop_assert!((s.exp(amount).to_homogeneous() - sum).amax() < 1e-11);
+            prop_assert!((s.exp(coordinate).to_homogeneous() - sum).amax() < 1e-11);
         }
 
         #[test]

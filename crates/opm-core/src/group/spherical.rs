@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::atan2;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
@@ -122,9 +122,11 @@ impl Subgroup for Spherical {
         0.0
     }
 
-    fn motion(_: &Vector3<f64>, rotation: bool) -> SphericalMotion {
-        assert!(rotation, "a spherical subspace holds no translation");
-        SphericalMotion::Turn
+    fn motion(_: &Vector3<f64>, motion: MotionType) -> SphericalMotion {
+        match motion {
+            MotionType::Rotation => SphericalMotion::Turn,
+            MotionType::Translation => panic!("a spherical subspace contains no translation"),
+        }
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! The operations that every subgroup implements.
 
 use super::path::Path;
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use nalgebra::{Rotation3, Vector3};
 
 /// A twist in the frame of its subspace: as many components as the subspace has dimensions, padded with
@@ -74,7 +74,7 @@ pub(crate) trait Subgroup {
     ///
     /// # Panics
     /// If the subgroup does not contain such a motion.
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> Self::Intersection;
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> Self::Intersection;
 
     /// The unit twist of an intersection motion.
     fn unit_twist(motion: &Self::Intersection) -> LocalTwist;

@@ -3,7 +3,7 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind, quarter};
+use super::{JointDisplacement, MotionType, SubspaceKind, quarter};
 use nalgebra::{Complex, Rotation3, Vector3};
 
 /// The subgroup of the translations in a plane.
@@ -77,9 +77,13 @@ impl Subgroup for TranslationalPlane {
         t.norm()
     }
 
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> TranslationalMotion {
-        assert!(!rotation, "a translational plane holds no rotation");
-        TranslationalMotion::Slide(Complex::new(direction.x, direction.y))
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> TranslationalMotion {
+        match motion {
+            MotionType::Rotation => panic!("a translational plane contains no rotation"),
+            MotionType::Translation => {
+                TranslationalMotion::Slide(Complex::new(direction.x, direction.y))
+            }
+        }
     }
 
     #[inline]

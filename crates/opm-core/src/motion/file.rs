@@ -53,7 +53,7 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Platform
         None
     };
     let duration = positive("duration", "a number of seconds");
-    let rate = positive("rate", "a number of samples a second");
+    let rate = positive("rate", "a number of samples per second");
     let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
     let coordinates = root
         .require("coordinates", "a table [coordinates] of the coordinates that move")

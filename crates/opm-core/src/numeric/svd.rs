@@ -225,9 +225,9 @@ mod tests {
         }
     }
 
-    /// What nalgebra 0.35.0 answers, given vectors too: 4.54 where it is sqrt(15).
+    /// With singular vectors, nalgebra 0.35.0 gives a singular value of 4.54 here instead of sqrt(15).
     #[test]
-    fn equal_columns_are_no_difficulty() {
+    fn equal_columns_are_decomposed() {
         for (m, n) in [(3, 5), (5, 3), (6, 21), (24, 26)] {
             let svd = Svd::new(DMatrix::from_element(m, n, 1.0));
             assert!((svd.values[0] - ((m * n) as f64).sqrt()).abs() < 1e-12);
@@ -236,7 +236,8 @@ mod tests {
         }
     }
 
-    /// Small whole numbers, many zeros, columns that are equal or opposite, by both ways.
+    /// Matrices of small integers with many zeros and with equal or opposite columns, with and without
+    /// singular vectors.
     #[test]
     fn structured_matrices_are_decomposed() {
         let mut seed = 7_u64;
@@ -255,8 +256,8 @@ mod tests {
             assert!((svd.right.tr_mul(&svd.right) - DMatrix::identity(n, n)).amax() < ROUNDING);
             assert!((&svd.image * svd.right.transpose() - &a).amax() < ROUNDING, "{a}");
             let gram = svd.image.tr_mul(&svd.image);
-            let off = |i: usize, j: usize| if i == j { svd.values[i].powi(2) } else { 0.0 };
-            assert!((gram - DMatrix::from_fn(n, n, off)).amax() < ROUNDING, "{a}");
+            let expected = |i: usize, j: usize| if i == j { svd.values[i].powi(2) } else { 0.0 };
+            assert!((gram - DMatrix::from_fn(n, n, expected)).amax() < ROUNDING, "{a}");
             let mut alone = singular_values(a.clone());
             alone.sort_by(|x, y| y.total_cmp(x));
             alone.resize(n, 0.0);

@@ -6,9 +6,9 @@ use crate::numeric::Quantity;
 /// One end of a joint's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bound {
-    /// The lowest value allowed.
+    /// The lower limit.
     Lowest,
-    /// The highest value allowed.
+    /// The upper limit.
     Highest,
 }
 
@@ -26,7 +26,7 @@ pub enum Gauge {
     Limit {
         /// The number of the joint coordinate.
         coordinate: usize,
-        /// Which of the two limits.
+        /// The limit: the lower or the upper one.
         bound: Bound,
     },
     /// A parallel singularity measure. It may have either sign, but it must not be zero.
