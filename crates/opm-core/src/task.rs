@@ -337,7 +337,7 @@ impl Task {
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {
-            Displacement::Planar(start) => Path::Planar(PlanarPath::Slide { start, rate }),
+            Displacement::Planar(start) => Path::Planar(PlanarPath::Translation { start, rate }),
             Displacement::Spherical(start) => Path::Spherical { start, axis: Vector3::x() },
             Displacement::Cylindrical(start) => {
                 let rotation = self.lower_intersection.is_rotation();

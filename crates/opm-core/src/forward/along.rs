@@ -31,7 +31,7 @@ pub fn along(
         Condition::Circle { point, centre, radius } => {
             let v = v.planar();
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     // |P − c + r w e(τ)| = a, P − c = d
                     let (d, w) = (v.translation - centre, v.rotation * point);
                     let arm = length(*point);
@@ -41,7 +41,7 @@ pub fn along(
                         ReachDeficit::length(far.max((arm - radius).abs() - d.norm()))
                     })
                 }
-                PlanarMotion::Slide(d) => {
+                PlanarMotion::Translation(d) => {
                     // |z + d τ| = a, z = g w − c
                     let (z, d) = (v.apply(*point) - centre, v.rotation * d);
                     let (foot, aside) = (dot(d, z), d.re * z.im - d.im * z.re);
@@ -58,12 +58,12 @@ pub fn along(
         Condition::Line { point, normal, offset } => {
             let v = v.planar();
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     let constant = dot(*normal, v.translation) - offset;
                     let w = normal.conj() * v.rotation * point;
                     rotations(w, constant, size, || ReachDeficit::length(constant.abs() - w.norm()))
                 }
-                PlanarMotion::Slide(d) => {
+                PlanarMotion::Translation(d) => {
                     let slope = dot(*normal, v.rotation * d);
                     translation(slope, dot(*normal, v.apply(*point)) - offset, size)
                 }
@@ -73,24 +73,24 @@ pub fn along(
             let v = v.planar();
             let z = v.rotation.conj() * (point - v.translation);
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     // normal · e(−τ) z = Re(conj(normal) conj(e) z) = Re(normal conj(z) e)
                     let w = normal * z.conj();
                     rotations(w, -offset, size, || ReachDeficit::length(offset.abs() - w.norm()))
                 }
-                PlanarMotion::Slide(d) => {
+                PlanarMotion::Translation(d) => {
                     translation(-dot(*normal, *d), dot(*normal, z) - offset, size)
                 }
             }
         }
         Condition::Heading { rotation } => match motion.planar() {
-            PlanarMotion::Turn => {
+            PlanarMotion::Rotation => {
                 one(JointDisplacement::Direction(v.planar().rotation.conj() * rotation))
             }
-            PlanarMotion::Slide(_) => Solutions::Any,
+            PlanarMotion::Translation(_) => Solutions::Any,
         },
         Condition::Cone { fixed, carried, cosine } => match motion.spherical() {
-            SphericalMotion::Turn => {
+            SphericalMotion::Rotation => {
                 let (f, w) = (v.spherical().tr_mul(fixed), carried);
                 // f · Rz(τ) w = (f.x w.x + f.y w.y) cos τ + (f.y w.x − f.x w.y) sin τ + f.z w.z
                 let z = Complex::new(f.x * w.x + f.y * w.y, f.x * w.y - f.y * w.x);

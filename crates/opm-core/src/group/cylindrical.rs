@@ -24,9 +24,9 @@ pub struct CylindricalDisplacement {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CylindricalMotion {
     /// Rotation about the axis.
-    Turn,
+    Rotation,
     /// Translation along the axis.
-    Advance,
+    Translation,
 }
 
 impl Subgroup for Cylindrical {
@@ -99,23 +99,23 @@ impl Subgroup for Cylindrical {
 
     fn motion(_: &Vector3<f64>, motion: MotionType) -> CylindricalMotion {
         match motion {
-            MotionType::Rotation => CylindricalMotion::Turn,
-            MotionType::Translation => CylindricalMotion::Advance,
+            MotionType::Rotation => CylindricalMotion::Rotation,
+            MotionType::Translation => CylindricalMotion::Translation,
         }
     }
 
     #[inline]
     fn unit_twist(motion: &CylindricalMotion) -> LocalTwist {
         match motion {
-            CylindricalMotion::Turn => LocalTwist::x(),
-            CylindricalMotion::Advance => LocalTwist::y(),
+            CylindricalMotion::Rotation => LocalTwist::x(),
+            CylindricalMotion::Translation => LocalTwist::y(),
         }
     }
 
     fn complement(motion: &CylindricalMotion) -> Vec<LocalTwist> {
         match motion {
-            CylindricalMotion::Turn => vec![LocalTwist::y()],
-            CylindricalMotion::Advance => vec![LocalTwist::x()],
+            CylindricalMotion::Rotation => vec![LocalTwist::y()],
+            CylindricalMotion::Translation => vec![LocalTwist::x()],
         }
     }
 
@@ -126,10 +126,10 @@ impl Subgroup for Cylindrical {
         tau: JointDisplacement,
     ) -> CylindricalDisplacement {
         match motion {
-            CylindricalMotion::Turn => {
+            CylindricalMotion::Rotation => {
                 CylindricalDisplacement { angle: v.angle + tau.value(), advance: v.advance }
             }
-            CylindricalMotion::Advance => {
+            CylindricalMotion::Translation => {
                 CylindricalDisplacement { angle: v.angle, advance: v.advance + tau.value() }
             }
         }

@@ -39,14 +39,14 @@ pub enum Path {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarPath {
     /// `t` translates the plane.
-    Slide {
+    Translation {
         /// The displacement at `t = 0`.
         start: PlanarDisplacement,
         /// The translation for a unit of `t`.
         rate: Complex<f64>,
     },
     /// `t` rotates the plane about the frame's origin.
-    Turn {
+    Rotation {
         /// The displacement at `t = 0`.
         start: PlanarDisplacement,
     },
@@ -58,10 +58,10 @@ impl Path {
     pub fn size(&self, range: f64) -> f64 {
         let far = |start: f64, rate: f64| start + rate * range;
         match self {
-            Self::Planar(PlanarPath::Slide { start, rate }) => {
+            Self::Planar(PlanarPath::Translation { start, rate }) => {
                 far(Planar::size(start), rate.norm())
             }
-            Self::Planar(PlanarPath::Turn { start }) => Planar::size(start),
+            Self::Planar(PlanarPath::Rotation { start }) => Planar::size(start),
             Self::Spherical { start, .. } => Spherical::size(start),
             Self::Cylindrical { start, rate } => far(start.angle.abs(), rate.angle.abs())
                 .max(far(start.advance.abs(), rate.advance.abs())),

@@ -1,5 +1,6 @@
-//! The planar subgroup, `SE(2)`: displacements of a plane, as complex numbers. A displacement takes the point `z` to `r z + t`,
-//! with `|r| = 1`; a twist is `(ω, vx, vy)`, with the velocity of the point at the origin.
+//! The planar subgroup, `SE(2)`: displacements of a plane, as complex numbers. A displacement takes the point
+//! `z` to `r z + t`, with `|r| = 1`. A twist is `(ω, vx, vy)`, where `(vx, vy)` is the velocity of the point
+//! at the origin.
 
 use super::path::{Path, PlanarPath};
 use super::subgroup::{LocalTwist, Subgroup};
@@ -23,9 +24,9 @@ pub struct PlanarDisplacement {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarMotion {
     /// Rotation about the frame's origin.
-    Turn,
+    Rotation,
     /// Translation along a direction of the plane, which is a unit complex number.
-    Slide(Complex<f64>),
+    Translation(Complex<f64>),
 }
 
 impl PlanarDisplacement {
@@ -181,23 +182,25 @@ impl Subgroup for Planar {
 
     fn motion(direction: &Vector3<f64>, motion: MotionType) -> PlanarMotion {
         match motion {
-            MotionType::Rotation => PlanarMotion::Turn,
-            MotionType::Translation => PlanarMotion::Slide(Complex::new(direction.x, direction.y)),
+            MotionType::Rotation => PlanarMotion::Rotation,
+            MotionType::Translation => {
+                PlanarMotion::Translation(Complex::new(direction.x, direction.y))
+            }
         }
     }
 
     #[inline]
     fn unit_twist(motion: &PlanarMotion) -> LocalTwist {
         match motion {
-            PlanarMotion::Turn => LocalTwist::x(),
-            PlanarMotion::Slide(along) => angular_and_linear(0.0, *along),
+            PlanarMotion::Rotation => LocalTwist::x(),
+            PlanarMotion::Translation(along) => angular_and_linear(0.0, *along),
         }
     }
 
     fn complement(motion: &PlanarMotion) -> Vec<LocalTwist> {
         match motion {
-            PlanarMotion::Turn => vec![LocalTwist::y(), LocalTwist::z()],
-            PlanarMotion::Slide(along) => {
+            PlanarMotion::Rotation => vec![LocalTwist::y(), LocalTwist::z()],
+            PlanarMotion::Translation(along) => {
                 vec![LocalTwist::x(), angular_and_linear(0.0, quarter(*along))]
             }
         }
@@ -210,11 +213,11 @@ impl Subgroup for Planar {
         tau: JointDisplacement,
     ) -> PlanarDisplacement {
         match motion {
-            PlanarMotion::Turn => PlanarDisplacement {
+            PlanarMotion::Rotation => PlanarDisplacement {
                 rotation: v.rotation * tau.unit_direction(),
                 translation: v.translation,
             },
-            PlanarMotion::Slide(along) => PlanarDisplacement {
+            PlanarMotion::Translation(along) => PlanarDisplacement {
                 rotation: v.rotation,
                 translation: v.translation + v.rotation * along * tau.value(),
             },
@@ -228,11 +231,11 @@ impl Subgroup for Planar {
         tau: JointDisplacement,
     ) -> PlanarDisplacement {
         match motion {
-            PlanarMotion::Turn => {
+            PlanarMotion::Rotation => {
                 let e = tau.unit_direction();
                 PlanarDisplacement { rotation: e * b.rotation, translation: e * b.translation }
             }
-            PlanarMotion::Slide(along) => PlanarDisplacement {
+            PlanarMotion::Translation(along) => PlanarDisplacement {
                 rotation: b.rotation,
                 translation: b.translation + along * tau.value(),
             },
@@ -241,8 +244,8 @@ impl Subgroup for Planar {
 
     fn path(motion: &PlanarMotion, b: &PlanarDisplacement) -> Path {
         Path::Planar(match motion {
-            PlanarMotion::Turn => PlanarPath::Turn { start: *b },
-            PlanarMotion::Slide(along) => PlanarPath::Slide { start: *b, rate: *along },
+            PlanarMotion::Rotation => PlanarPath::Rotation { start: *b },
+            PlanarMotion::Translation(along) => PlanarPath::Translation { start: *b, rate: *along },
         })
     }
 }

@@ -13,7 +13,7 @@ pub(crate) struct Spherical;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SphericalMotion {
     /// Rotation about the frame's third direction.
-    Turn,
+    Rotation,
 }
 
 /// The rotation about a unit axis by an angle, which is given as the unit complex number `e(angle)`
@@ -124,7 +124,7 @@ impl Subgroup for Spherical {
 
     fn motion(_: &Vector3<f64>, motion: MotionType) -> SphericalMotion {
         match motion {
-            MotionType::Rotation => SphericalMotion::Turn,
+            MotionType::Rotation => SphericalMotion::Rotation,
             MotionType::Translation => panic!("a spherical subspace contains no translation"),
         }
     }
@@ -132,20 +132,20 @@ impl Subgroup for Spherical {
     #[inline]
     fn unit_twist(motion: &SphericalMotion) -> LocalTwist {
         match motion {
-            SphericalMotion::Turn => LocalTwist::z(),
+            SphericalMotion::Rotation => LocalTwist::z(),
         }
     }
 
     fn complement(motion: &SphericalMotion) -> Vec<LocalTwist> {
         match motion {
-            SphericalMotion::Turn => vec![LocalTwist::x(), LocalTwist::y()],
+            SphericalMotion::Rotation => vec![LocalTwist::x(), LocalTwist::y()],
         }
     }
 
     #[inline(always)]
     fn after(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
         match motion {
-            SphericalMotion::Turn => {
+            SphericalMotion::Rotation => {
                 // The first two columns of R rotate; the third, the axis of I, stays.
                 let e = tau.unit_direction();
                 let (x, y, z) = (r.column(0), r.column(1), r.column(2));
@@ -157,7 +157,7 @@ impl Subgroup for Spherical {
     #[inline(always)]
     fn before(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
         match motion {
-            SphericalMotion::Turn => {
+            SphericalMotion::Rotation => {
                 let e = tau.unit_direction();
                 let (x, y, z) = (r.row(0), r.row(1), r.row(2));
                 Matrix3::from_rows(&[x * e.re - y * e.im, x * e.im + y * e.re, z.into_owned()])
@@ -167,7 +167,7 @@ impl Subgroup for Spherical {
 
     fn path(motion: &SphericalMotion, b: &Matrix3<f64>) -> Path {
         match motion {
-            SphericalMotion::Turn => Path::Spherical { start: *b, axis: Vector3::z() },
+            SphericalMotion::Rotation => Path::Spherical { start: *b, axis: Vector3::z() },
         }
     }
 }

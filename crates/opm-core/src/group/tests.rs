@@ -283,10 +283,10 @@ proptest! {
     #[test]
     fn paths_are_steps_along_a_motion((g, motion) in with_motion(), t in -3.0..3.0_f64) {
         let at: Displacement = match motion.path(&g) {
-            Path::Planar(PlanarPath::Slide { start, rate }) => {
+            Path::Planar(PlanarPath::Translation { start, rate }) => {
                 PlanarDisplacement { translation: start.translation + rate * t, ..start }.into()
             }
-            Path::Planar(PlanarPath::Turn { start }) => {
+            Path::Planar(PlanarPath::Rotation { start }) => {
                 PlanarDisplacement::about(Complex::new(0.0, 0.0), Complex::from_polar(1.0, t))
                     .after(&start)
                     .into()

@@ -13,7 +13,7 @@ pub(crate) struct TranslationalPlane;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TranslationalMotion {
     /// Translation along a direction of the plane, which is a unit complex number.
-    Slide(Complex<f64>),
+    Translation(Complex<f64>),
 }
 
 impl Subgroup for TranslationalPlane {
@@ -81,7 +81,7 @@ impl Subgroup for TranslationalPlane {
         match motion {
             MotionType::Rotation => panic!("a translational plane contains no rotation"),
             MotionType::Translation => {
-                TranslationalMotion::Slide(Complex::new(direction.x, direction.y))
+                TranslationalMotion::Translation(Complex::new(direction.x, direction.y))
             }
         }
     }
@@ -89,13 +89,13 @@ impl Subgroup for TranslationalPlane {
     #[inline]
     fn unit_twist(motion: &TranslationalMotion) -> LocalTwist {
         match motion {
-            TranslationalMotion::Slide(along) => LocalTwist::new(along.re, along.im, 0.0),
+            TranslationalMotion::Translation(along) => LocalTwist::new(along.re, along.im, 0.0),
         }
     }
 
     fn complement(motion: &TranslationalMotion) -> Vec<LocalTwist> {
         match motion {
-            TranslationalMotion::Slide(along) => {
+            TranslationalMotion::Translation(along) => {
                 let across = quarter(*along);
                 vec![LocalTwist::new(across.re, across.im, 0.0)]
             }
@@ -109,7 +109,7 @@ impl Subgroup for TranslationalPlane {
         tau: JointDisplacement,
     ) -> Complex<f64> {
         match motion {
-            TranslationalMotion::Slide(along) => v + along * tau.value(),
+            TranslationalMotion::Translation(along) => v + along * tau.value(),
         }
     }
 
@@ -125,7 +125,9 @@ impl Subgroup for TranslationalPlane {
 
     fn path(motion: &TranslationalMotion, b: &Complex<f64>) -> Path {
         match motion {
-            TranslationalMotion::Slide(along) => Path::Translational { start: *b, rate: *along },
+            TranslationalMotion::Translation(along) => {
+                Path::Translational { start: *b, rate: *along }
+            }
         }
     }
 }

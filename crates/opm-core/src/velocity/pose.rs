@@ -18,18 +18,18 @@ impl Task {
         let q = |i: usize| pose[i] - self.coordinates[i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.lower_intersection {
-            IntersectionMotion::Planar(PlanarMotion::Turn) => {
+            IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 [LocalTwist::y(), LocalTwist::z(), zero]
             }
-            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => planar(q(0), q(1)),
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => planar(q(0), q(1)),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 let e = unit(q(0));
                 [LocalTwist::x(), LocalTwist::new(0.0, e.re, e.im), zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 [LocalTwist::y(), zero, zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance)
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation)
             | IntersectionMotion::Translational(_) => [LocalTwist::x(), LocalTwist::y(), zero],
         };
         Screws { kind: self.lower.kind, moved }
@@ -42,20 +42,20 @@ impl Task {
         let q = |i: usize| at(i) - self.coordinates[self.lower_count + i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.upper_intersection {
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 let (zeta, xi) = (unit(at(0)), unit(at(1)));
                 let third = LocalTwist::new(zeta.re * xi.im, zeta.im * xi.im, xi.re);
                 [LocalTwist::z(), LocalTwist::new(-zeta.im, zeta.re, 0.0), third]
             }
-            IntersectionMotion::Planar(PlanarMotion::Turn) => planar(q(0), q(1)),
-            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
+            IntersectionMotion::Planar(PlanarMotion::Rotation) => planar(q(0), q(1)),
+            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
                 let [_, second, third] = planar(0.0, q(0));
                 [second, third, zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 [LocalTwist::x(), LocalTwist::y(), zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 [LocalTwist::x(), zero, zero]
             }
             IntersectionMotion::Translational(_) => [LocalTwist::y(), zero, zero],
