@@ -203,7 +203,8 @@ impl Sample {
     }
 }
 
-/// A motion as a manipulator follows it, sample by sample.
+/// A motion as a manipulator follows it, sample by sample. See the example in the docs of
+/// [`trajectory`](crate::trajectory).
 ///
 /// Call [`advance`](Self::advance) until it returns `false`; after each call, read
 /// [`sample`](Self::sample) and [`changes`](Self::changes).

@@ -37,7 +37,8 @@ impl Manipulator {
         pose: &[f64],
         mode: Mode,
         displacements: &[f64],
-        (solution, target): (&mut Solution, &Isometry3<f64>),
+        solution: &mut Solution,
+        target: &Isometry3<f64>,
     ) -> Assembly {
         // The given values, with the full revolutions that inverse kinematics give.
         for (&displacement, &coordinate) in displacements.iter().zip(self.actuated()) {
@@ -216,7 +217,7 @@ impl Search<'_> {
     /// Adds the assembly in the buffer to the list, unless it does not close or is listed already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        let mut assembly = m.assembly(pose, mode, self.displacements, (&mut self.solution, target));
+        let mut assembly = m.assembly(pose, mode, self.displacements, &mut self.solution, target);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.

@@ -141,7 +141,7 @@ impl Manipulator {
         self.inverse(&pose, mode, &mut newton.solution)?;
         let target = self.task().displacement(&pose);
         let mut solution = newton.solution.clone();
-        let assembly = self.assembly(&pose, mode, &displacements, (&mut solution, &target));
+        let assembly = self.assembly(&pose, mode, &displacements, &mut solution, &target);
         if assembly.residual > RESIDUAL {
             return Err(newton.ended(Stop::Stalled, STEPS, assembly.residual).into());
         }

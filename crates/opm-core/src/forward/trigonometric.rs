@@ -140,7 +140,7 @@ impl Trigonometric {
                 *c *= half;
             }
             let polynomial = rotated.in_half_tangent();
-            open.push((rotated.bernstein(), -1.0, 2.0));
+            open.push(Interval { bernstein: rotated.bernstein(), low: -1.0, width: 2.0 });
             isolate(&mut open, &polynomial, noise, &mut |t, simple| {
                 let square = t * t;
                 let e = Complex::new(1.0 - square, 2.0 * t) * half / (1.0 + square);
@@ -225,8 +225,15 @@ const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
     table
 }
 
-/// The Bernstein coefficients on an interval, the interval's low end and its width.
-type Interval = ([f64; COEFFICIENTS], f64, f64);
+/// A polynomial on an interval.
+struct Interval {
+    /// The Bernstein coefficients on the interval.
+    bernstein: [f64; COEFFICIENTS],
+    /// The low end of the interval.
+    low: f64,
+    /// The width of the interval.
+    width: f64,
+}
 
 /// Finds the roots of a polynomial on the `open` intervals, in ascending order. `found` is called with each
 /// root, and with whether it is certainly simple.
@@ -236,7 +243,7 @@ fn isolate(
     noise: f64,
     found: &mut impl FnMut(f64, bool),
 ) {
-    while let Some((b, low, width)) = open.pop() {
+    while let Some(Interval { bernstein: b, low, width }) = open.pop() {
         let (least, most) =
             b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
         if least > noise || most < -noise {
@@ -261,8 +268,9 @@ fn isolate(
             continue;
         }
         let (left, right) = halves(&b);
-        open.push((right, low + 0.5 * width, 0.5 * width));
-        open.push((left, low, 0.5 * width));
+        let width = 0.5 * width;
+        open.push(Interval { bernstein: right, low: low + width, width });
+        open.push(Interval { bernstein: left, low, width });
     }
 }
 

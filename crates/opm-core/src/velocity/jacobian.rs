@@ -96,11 +96,21 @@ struct Basis {
     lower: [LocalTwist; 3],
     /// The numbers of upper and of lower ones; the rest are zeros.
     counts: [usize; 2],
-    /// Each as a twist in base directions, upper ones first: the angular velocity, the velocity of a point,
-    /// and that point in base coordinates.
-    twists: Vec<([Vector3<f64>; 2], Vector3<f64>)>,
+    /// The same twists in base coordinates, upper ones first.
+    in_base: Vec<BaseTwist>,
     /// The home position of the platform's reference point, in the upper section's frame.
     platform: Vector3<f64>,
+}
+
+/// A twist in base directions.
+#[derive(Clone, Debug)]
+struct BaseTwist {
+    /// The angular velocity.
+    angular: Vector3<f64>,
+    /// The velocity of the point at `origin`.
+    linear: Vector3<f64>,
+    /// A point, in base coordinates, metres.
+    origin: Vector3<f64>,
 }
 
 impl Basis {
@@ -109,11 +119,12 @@ impl Basis {
         let rotation = task.cut_point.is_some();
         let upper = if rotation { kept } else { task.upper_intersection.complement() };
         let lower = if rotation { task.lower_intersection.complement() } else { rest };
-        let in_base = |subspace: &Subspace, twist: &LocalTwist| {
-            (subspace.embedded(twist), subspace.origin.coords)
+        let embedded = |subspace: &Subspace, twist: &LocalTwist| {
+            let [angular, linear] = subspace.embedded(twist);
+            BaseTwist { angular, linear, origin: subspace.origin.coords }
         };
-        let twists = (upper.iter().map(|twist| in_base(&task.upper, twist)))
-            .chain(lower.iter().map(|twist| in_base(&task.lower, twist)))
+        let in_base = (upper.iter().map(|twist| embedded(&task.upper, twist)))
+            .chain(lower.iter().map(|twist| embedded(&task.lower, twist)))
             .collect();
         let padded = |twists: &[LocalTwist]| {
             std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(LocalTwist::zeros))
@@ -122,7 +133,7 @@ impl Basis {
             counts: [upper.len(), lower.len()],
             upper: padded(&upper),
             lower: padded(&lower),
-            twists,
+            in_base,
             platform: task.upper.point(platform),
         }
     }
@@ -356,7 +367,7 @@ impl Manipulator {
         // In a frame that moves with v, the reference point is displaced by b.
         let upper = &self.task().upper;
         let point = upper.restored(&at.place.b.act(&out.basis.platform)).coords;
-        for (i, ([angular, linear], origin)) in out.basis.twists.iter().enumerate() {
+        for (i, BaseTwist { angular, linear, origin }) in out.basis.in_base.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
             let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];
             column[..3].copy_from_slice(angular.as_slice());

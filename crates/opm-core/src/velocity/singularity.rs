@@ -11,7 +11,7 @@
 //!
 //! *Parallel singularity*: the section can move while all its inputs are locked. The screws reciprocal to
 //! the passive joints of a leg give the constraints of its locked inputs. They turn the closure into
-//! `J_x ẋ = J_q q̇`, which has one row for each input, and needs no inverse (Eqs. 7 and 23). The measure is
+//! `J_x ẋ = J_q q̇`, which has one row for each input, no poles and no inverse (Eqs. 7 and 23). The measure is
 //! `det J_x`. In the same manipulator it is the determinant of the three `v × w`, and the product of the
 //! three `V · n(θ)`.
 //!
