@@ -59,6 +59,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
                             }
                         }))
                     }
+                    error => Failure::Work(format!("{}: {error}", loaded.label)),
                 })?;
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
         }

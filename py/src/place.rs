@@ -183,7 +183,7 @@ fn isometry(matrix: &[f64]) -> Result<Isometry3<f64>, String> {
     }
     let position = Vector3::from_fn(|i, _| matrix[4 * i + 3]);
     if let Some((row, value)) = position.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-        return Err(format!("row {row}, column 3 is {value:?}, expected a number"));
+        return Err(format!("row {row}, column 3 is {value:?}, expected a finite number"));
     }
     let rotation = rotation::nearest(&Matrix3::from_fn(|i, j| matrix[4 * i + j]))
         .map_err(|error| error.to_string())?;

@@ -82,12 +82,12 @@ def test_what_is_no_rotation_is_told():
     away = np.eye(4)
     away[1, 3] = np.inf
     told = [
-        (np.diag([1.0, 1, -1, 1]), "it is a reflection: its determinant is -1.000000, expected 1"),
-        (np.diag([1.0, 1, 1.001, 1]), "it is no rotation: R Rᵀ is off the identity by 2.001e-3, expected at most 1e-5"),
+        (np.diag([1.0, 1, -1, 1]), "a reflection, not a rotation: the determinant is -1.000000, expected 1"),
+        (np.diag([1.0, 1, 1.001, 1]), "not a rotation: R Rᵀ differs from the identity by 2.001e-3, expected at most 1e-5"),
         (np.zeros((4, 4)), "its last row is [0.0, 0.0, 0.0, 0.0], expected 0, 0, 0, 1"),
-        (np.diag([0.0, 0, 0, 1]), "it is no rotation: R Rᵀ is off the identity by 1.000e0"),
-        (np.diag([1.0, np.nan, 1, 1]), "row 1, column 1 is NaN, expected a number"),
-        (away, "row 1, column 3 is inf, expected a number"),
+        (np.diag([0.0, 0, 0, 1]), "not a rotation: R Rᵀ differs from the identity by 1.000e0"),
+        (np.diag([1.0, np.nan, 1, 1]), "row 1, column 1 is NaN, expected a finite number"),
+        (away, "row 1, column 3 is inf, expected a finite number"),
     ]
     for matrix, message in told:
         with pytest.raises(opm.OpmError) as raised:

@@ -189,8 +189,8 @@ fn a_wrong_motion_is_told_with_its_places() {
     );
     for (text, parts) in [
         ("", &["the file is empty", "zeta, xi, psi"][..]),
-        ("t,x\n", &["0 times, expected at least 3"]),
-        ("t,x\n0,0\n1,0\n", &["poses.csv:3:1: 2 times, expected at least 3"]),
+        ("t,x\n", &["0 times given, expected at least 3"]),
+        ("t,x\n0,0\n1,0\n", &["poses.csv:3:1: 2 times given, expected at least 3"]),
         ("x,y\n", &["poses.csv:1:1: no column t"]),
         ("t,x,x\n", &["poses.csv:1:5: two columns are called x"]),
         ("t,yaw\n", &["poses.csv:1:3: no coordinate \"yaw\""]),

@@ -1,18 +1,47 @@
 //! Forward kinematics: every pose of the platform that given actuated joints allow.
 //!
-//! The decomposition gives the order. With `L · U = v · b` and a leg's displacement τ along the
-//! intersection motion `I`,
+//! The decomposition gives the order in which unknowns are found. With `L · U = v · b` and a leg's
+//! displacement τ along the intersection motion `I`:
 //!
-//! 1. some legs fix `v` up to `I`: one whose lower joints are all actuated, two that keep the axis of `I`
-//!    on a track each, or legs whose imaginary joints move as one (`manipulator/plan.rs`);
-//! 2. with `v` known, an actuated joint in a leg's lower section is one equation in the leg's τ
-//!    (`forward/along.rs`): a link that swings onto a circle or a line, an axis that turns onto a cone;
-//! 3. with τ known, each leg is one condition on `b` (`chain/condition.rs`), and as many as the upper
-//!    section has freedoms fix it (`forward/three.rs`: at most eight solutions in a sphere, six in a plane).
+//! 1. Some legs fix `v` up to `I`: one whose lower joints are all actuated, two that keep the axis of `I`
+//!    on a track each, or legs whose imaginary joints are coupled (`manipulator/plan.rs`).
+//! 2. With `v` known, an actuated joint in a leg's lower section is one equation in the leg's τ
+//!    (`forward/along.rs`): a link swings onto a circle or a line, or an axis rotates onto a cone.
+//! 3. With τ known, each leg is one condition on `b` (`chain/condition.rs`). As many conditions as the
+//!    upper section has degrees of freedom fix `b` (`forward/three.rs`: at most eight solutions in a
+//!    spherical subspace, six in a planar one).
 //!
-//! Each is a small problem with all of its solutions, so that their combinations are all assemblies. Where
-//! both sections add up, everything is one linear system (`manipulator/plan/flat.rs`). A mechanism without such an
-//! order is solved by [`Manipulator::forward_near`] from a pose.
+//! All solutions of each of these small problems are found, so that their combinations are all
+//! assemblies. Where displacements commute in both sections, the whole problem is one linear system
+//! (`manipulator/plan/flat.rs`). A mechanism without such an order is solved by
+//! [`Manipulator::forward_near`], from a pose near the solution.
+//!
+//! ```
+//! use opm_core::Manipulator;
+//!
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
+//! let (mode, mut buffer) = (manipulator.home_mode(), manipulator.solution());
+//! let pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+//! let solution = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
+//! let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| solution.joints()[i]).collect();
+//!
+//! // Every assembly with these actuated joints. The pose that they were computed from is one.
+//! let assemblies = manipulator.forward(&actuated)?;
+//! let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+//! assert!(assemblies.list.iter().any(|assembly| close(&assembly.pose, &pose)));
+//! assert!(assemblies.unmet.is_empty());
+//!
+//! // Inverse kinematics at an assembly give its joints back.
+//! for assembly in &assemblies.list {
+//!     let again = manipulator.inverse(&assembly.pose, assembly.mode, &mut buffer)?;
+//!     assert!(close(again.expect("an assembled pose").joints(), &assembly.joints));
+//! }
+//!
+//! // Newton's method finds the one assembly near a pose, here near home.
+//! let near = manipulator.forward_near(&actuated, &manipulator.pose([])?, mode)?;
+//! assert!(close(&near.pose, &pose));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod accept;
 mod along;
@@ -27,72 +56,77 @@ pub use near::{NearError, NotFound, Stop};
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
 use search::Search;
 
-/// The largest residual of an assembly, in radians and sizes. What is off by more does not close.
+/// The largest residual of an assembly, in radians and shares of the mechanism's size. A candidate with a
+/// larger residual does not close, and is rejected.
 pub const RESIDUAL: f64 = 1e-12;
 
-/// One way in which the mechanism can be assembled for given actuated joints.
+/// One assembly of the mechanism for given actuated joints. See the example in the docs of
+/// [`forward`](crate::forward).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
-    /// Task coordinates, in the order of [`Manipulator::task_coordinates`]; angles within half a turn of
-    /// home.
+    /// The task coordinates, in the order of [`Manipulator::task_coordinates`], metres and radians. Angles
+    /// are within π of home.
     pub pose: Vec<f64>,
-    /// The working mode that it is in: [`Manipulator::inverse`] at this pose in this mode gives back the
-    /// actuated joints.
+    /// The working mode of the assembly: [`Manipulator::inverse`] at this pose and in this mode gives the
+    /// actuated joints back.
     pub mode: Mode,
-    /// Every joint coordinate, in the order of [`Manipulator::coordinates`]; radians and metres, angles
-    /// at the turns that [`Manipulator::inverse`] gives.
+    /// The values of all joint coordinates, in the order of [`Manipulator::coordinates`], radians and
+    /// metres. Angles have the full revolutions that [`Manipulator::inverse`] gives them.
     pub joints: Vec<f64>,
-    /// Every imaginary joint, in the order of [`Manipulator::imaginary`]; radians and metres.
+    /// The values of all imaginary joints, in the order of [`Manipulator::imaginary`], radians and metres.
     pub imaginary: Vec<f64>,
-    /// All joint coordinates are within their limits.
+    /// Whether all joint coordinates are within their limits.
     pub within_limits: bool,
-    /// How far the legs fail to close: the largest distance of a leg's end, by the product of exponentials
-    /// of the joints as they stand in the mechanism, from the platform. Radians of the rotation plus the
-    /// way of the reference point over the mechanism's size.
+    /// How far the legs fail to close: the largest distance between the platform and the end of a leg, which
+    /// is computed as a product of exponentials of all joints. It is the angle between the two, in radians,
+    /// plus the distance of their reference points over the mechanism's size.
     pub residual: f64,
 }
 
-/// What given actuated joints allow.
+/// The assemblies for given actuated joints, or why there are none. See the example in the docs of
+/// [`forward`](crate::forward).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assemblies {
-    /// All of them.
+    /// All assemblies.
     pub list: Vec<Assembly>,
-    /// Where there is none: what does not meet.
+    /// Why the mechanism cannot be assembled; empty if there is an assembly.
     pub unmet: Vec<Unmet>,
-    /// Sections that the actuated joints leave loose: the mechanism is on a singularity through which it
-    /// moves with them held. The poses of that motion are not listed.
+    /// The sections that can move while the actuated joints are held, because they are at a singularity.
+    /// The poses of that motion are not listed.
     pub loose: Vec<Section>,
 }
 
-/// What does not meet.
+/// Why the mechanism cannot be assembled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unmet {
-    /// A leg does not reach what the others have fixed, nowhere: by how much at the least.
+    /// A leg cannot reach what the others have fixed. The value has its smallest deficit.
     Leg(Unreachable),
-    /// Two legs that fix the lower section do not meet.
+    /// The two legs with these numbers, which together fix the lower section, do not meet.
     Legs([usize; 2]),
-    /// The legs close one by one, but not all at once with one platform.
+    /// Each leg of the section closes alone, but no pose of the platform closes all of them.
     Section(Section),
-    /// There are more actuated joints than freedoms, and they contradict each other: where that is least, one
-    /// is off by so much, radians or shares of the size (infinite where a leg does not even reach).
+    /// There are more actuated joints than degrees of freedom, and they contradict each other. The number is
+    /// the smallest error of a joint, in radians or shares of the mechanism's size; it is infinite if a leg
+    /// is out of reach.
     Contradiction(f64),
 }
 
-/// Joint values that cannot be computed with.
+/// Why forward kinematics cannot be computed for given joint values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ForwardError {
-    /// Another number of values than there are actuated joints.
-    #[error("{given} actuated joints, expected {expected}")]
+    /// The number of values is not the number of actuated joint coordinates.
+    #[error("{given} values of actuated joints, expected {expected}")]
     Length {
-        /// How many were given.
+        /// The number of values.
         given: usize,
-        /// How many there are.
+        /// The number of actuated joint coordinates.
         expected: usize,
     },
-    /// Not a number, infinite, or too large.
+    /// A value is not a number, infinite, or too large.
     #[error("{name} is {value:?}, expected a number of at most {LARGEST:?}")]
     NotFinite {
-        /// The joint.
+        /// The name of the joint coordinate.
         name: String,
         /// Its value.
         value: f64,
@@ -101,38 +135,41 @@ pub enum ForwardError {
     #[error("no closed form of the forward kinematics: {0}")]
     NoClosedForm(#[from] NoClosedForm),
 }
+
 impl Manipulator {
     /// Whether [`Manipulator::forward`] has a closed form, and if not, why.
     ///
     /// # Errors
-    /// What is in the way.
+    /// The reason why there is no closed form.
     pub fn forward_closed_form(&self) -> Result<(), NoClosedForm> {
         self.plan.as_ref().map(|_| ()).map_err(|error| *error)
     }
 
-    /// Every assembly that the actuated joints allow, in closed form; `actuated` in the order of
-    /// [`Manipulator::actuated`], radians and metres. None is an answer: `unmet` says what is in the way.
+    /// Every assembly that the actuated joints allow, in closed form. `actuated` has the values in the order
+    /// of [`Manipulator::actuated`], radians and metres. If there is no assembly, [`Assemblies::unmet`] says
+    /// why; that is not an error.
     ///
-    /// Angles count modulo a turn, unless a screw makes their turns matter. Inverse kinematics do not tell
-    /// the turns of a revolute in a plane that hands them on to a screw: each is an assembly of its own, an
-    /// advance of the screw away. The one given is at the turns that `actuated` has from home, passive
-    /// joints within half a turn.
+    /// Angles count modulo 2π, unless a screw makes full revolutions matter. Inverse kinematics do not
+    /// determine the full revolutions of a revolute joint in a plane that passes its rotation on to a screw:
+    /// each of them is another assembly, one advance of the screw away. The assembly given here has the full
+    /// revolutions that `actuated` has from home, and passive joints within π.
     ///
-    /// Joint values on the verge of what they allow, to within rounding, are allowed. On a parallel
-    /// singularity two assemblies merge; they are given as one, or as two within the root of rounding.
+    /// Joint values on the boundary of reach, to within rounding, are allowed. At a parallel singularity two
+    /// assemblies merge. They are listed as one, or as two that differ by about the square root of rounding.
     ///
     /// # Errors
-    /// Values that cannot be computed with, or a mechanism without a closed form.
+    /// If there are too few or too many values, if one is not a finite number, or if the mechanism has no
+    /// closed form.
     pub fn forward(&self, actuated: &[f64]) -> Result<Assemblies, ForwardError> {
-        let amounts = self.held_amounts(actuated)?;
+        let displacements = self.actuated_displacements(actuated)?;
         let plan = self.plan.as_ref().map_err(|error| *error)?;
-        let mut search = Search::new(self, plan, &amounts);
+        let mut search = Search::new(self, plan, &displacements);
         search.run();
         Ok(search.finish())
     }
 
-    /// Displacements of the actuated joints from home.
-    fn held_amounts(&self, actuated: &[f64]) -> Result<Vec<f64>, ForwardError> {
+    /// The displacements of the actuated joints from home, radians and metres.
+    fn actuated_displacements(&self, actuated: &[f64]) -> Result<Vec<f64>, ForwardError> {
         let expected = self.actuated().len();
         if actuated.len() != expected {
             return Err(ForwardError::Length { given: actuated.len(), expected });

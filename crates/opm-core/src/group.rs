@@ -16,8 +16,8 @@
 //!
 //! [`SubspaceKind`], [`Displacement`], [`IntersectionMotion`] and [`Path`] are the closed sets of all
 //! subgroups, matched exhaustively. A new subgroup is a new file and a variant of these four; the compiler
-//! names every place that has to know it. Objects of two different subgroups are never combined: what tries to
-//! do so is a fault of the program, and panics in one place (`mismatch`).
+//! names every place that has to know it. Objects of two different subgroups are never combined. Code that
+//! tries to do so is wrong, and panics in one place (`mismatch`).
 
 mod cylindrical;
 mod displacement;
@@ -36,7 +36,7 @@ mod translational_plane;
 pub use cylindrical::{CylindricalDisplacement, CylindricalMotion};
 pub use displacement::Displacement;
 pub use frame::Subspace;
-pub use intersection::IntersectionMotion;
+pub use intersection::{IntersectionMotion, MotionType};
 pub use joint_displacement::JointDisplacement;
 pub use kind::SubspaceKind;
 pub use path::{Path, PlanarPath};
@@ -50,13 +50,13 @@ pub(crate) use planar::{Planar, angular_and_linear, linear, quarter};
 pub(crate) use spherical::{Spherical, rotated, rotation_about, rotation_vector};
 pub(crate) use translational_plane::TranslationalPlane;
 
-/// Stops the program where objects of two subgroups are combined: [`Displacement`]s,
-/// [`IntersectionMotion`]s and what is made for them carry their subgroup, and every caller pairs those
-/// of one section.
+/// Panics, since objects of two different subgroups are combined. [`Displacement`]s,
+/// [`IntersectionMotion`]s and [`Path`]s carry their subgroup, and every caller pairs those of one
+/// section.
 #[cold]
 #[inline(never)]
 pub(crate) fn mismatch(expected: SubspaceKind, found: SubspaceKind) -> ! {
-    panic!("something of a {found} subspace stands where a {expected} one is needed")
+    panic!("expected an object of a {expected} subspace, found one of a {found} subspace")
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a
 //! table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
-//! derivatives. It is evaluated only at the times that are asked for.
+//! derivatives, which can be evaluated at any time: nothing is sampled in advance.
 
 pub mod examples;
 #[cfg(feature = "files")]
@@ -39,20 +39,47 @@ pub struct Harmonics {
 pub enum Path {
     /// Every coordinate is a sum of sinusoids.
     Harmonics(Vec<Harmonics>),
-    /// Every coordinate is a cubic spline; all of them have the same knots.
+    /// Every coordinate is a natural cubic spline; all of them have the same knots.
     Spline(Spline),
 }
 
 /// A motion of the platform, in the task coordinates of one manipulator.
+///
+/// ```
+/// use opm_core::Manipulator;
+/// use opm_core::motion::{Harmonics, Instant, Path, PlatformMotion, Sinusoid};
+///
+/// // x = 10 mm · sin(2π · 0.5 Hz · t); every other coordinate stays at home.
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let coordinates = manipulator.task_coordinates();
+/// let mut path: Vec<_> = coordinates.iter().map(|c| Harmonics::constant(c.home)).collect();
+/// path[0].sinusoids.push(Sinusoid { amplitude: 0.01, frequency: 0.5, phase: 0.0 });
+/// let motion = PlatformMotion {
+///     name: "swing".to_owned(),
+///     start: 0.0,
+///     duration: 2.0,
+///     rate: None,
+///     mode: None,
+///     path: Path::Harmonics(path),
+/// };
+///
+/// // A quarter of the period: x is at its end, where its speed is zero.
+/// let mut instant = Instant::new(coordinates.len());
+/// motion.at(0.5, &mut instant);
+/// assert!((instant.pose[0] - coordinates[0].home - 0.01).abs() < 1e-15);
+/// assert!(instant.velocity[0].abs() < 1e-15);
+/// assert!((instant.acceleration[0] + 0.01 * std::f64::consts::PI.powi(2)).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlatformMotion {
-    /// The motion's name. For a table of poses it is given by the caller.
+    /// The motion's name. For a table of poses the caller gives it.
     pub name: String,
     /// Start time, seconds.
     pub start: f64,
     /// Duration, seconds; positive.
     pub duration: f64,
-    /// Samples per second, if the motion's file gives them.
+    /// The sampling rate in hertz, if the motion's file gives one.
     pub rate: Option<f64>,
     /// The working mode, if the motion's file gives one.
     pub mode: Option<Mode>,
@@ -79,18 +106,24 @@ impl Instant {
         let zeros = || vec![0.0; coordinates];
         Self { pose: zeros(), velocity: zeros(), acceleration: zeros() }
     }
+
+    /// Makes this a buffer for `coordinates` task coordinates, if it is not one yet.
+    fn resize(&mut self, coordinates: usize) {
+        let Self { pose, velocity, acceleration } = self;
+        for vector in [pose, velocity, acceleration] {
+            vector.resize(coordinates, 0.0);
+        }
+    }
 }
 
 impl PlatformMotion {
     /// Writes the pose and its derivatives at time `t`, in seconds, into `out`. Times beyond the
-    /// ends of a spline give the values at its end.
-    ///
-    /// # Panics
-    /// If `out` is for a different number of coordinates.
+    /// ends of a spline give the values at its end. Nothing is allocated if `out` was made for this
+    /// number of coordinates; otherwise it is resized.
     pub fn at(&self, t: f64, out: &mut Instant) {
         match &self.path {
             Path::Harmonics(coordinates) => {
-                assert_eq!(coordinates.len(), out.pose.len(), "coordinates of the motion");
+                out.resize(coordinates.len());
                 for (i, harmonics) in coordinates.iter().enumerate() {
                     let [value, first, second] = harmonics.at(t);
                     out.pose[i] = value;
@@ -99,6 +132,14 @@ impl PlatformMotion {
                 }
             }
             Path::Spline(spline) => spline.at(t, out),
+        }
+    }
+
+    /// The number of task coordinates that the motion gives.
+    pub fn coordinate_count(&self) -> usize {
+        match &self.path {
+            Path::Harmonics(coordinates) => coordinates.len(),
+            Path::Spline(spline) => spline.column_count(),
         }
     }
 
@@ -132,7 +173,7 @@ impl Harmonics {
 mod tests {
     use super::*;
 
-    /// Values of a pendulum: a quarter of a period after the middle it is at its end, at rest.
+    /// A pendulum is at its end, at rest, a quarter of a period after the middle.
     #[test]
     fn a_sinusoid_is_where_a_pendulum_is() {
         let swing = Sinusoid { amplitude: 0.5, frequency: 2.0, phase: TAU / 4.0 };

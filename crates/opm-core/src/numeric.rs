@@ -1,5 +1,5 @@
-//! Numbers: angles and vectors that point at them, singular values of small matrices, quantities and
-//! their units, and how numbers are written in messages. It knows nothing of mechanisms.
+//! Numbers: trigonometry, rotation matrices, singular values of small matrices, quantities with their
+//! units, and the format of numbers in messages. This module knows nothing of mechanisms.
 
 pub(crate) mod angle;
 pub mod number;

@@ -58,7 +58,7 @@ pub use crate::group::{Displacement, Subspace, SubspaceKind};
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::group::screw::Screw;
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
-use crate::group::{CylindricalDisplacement, IntersectionMotion, Path, PlanarPath};
+use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path, PlanarPath};
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
 use crate::numeric::angle::sin_cos;
@@ -317,7 +317,8 @@ impl Task {
             None
         };
         let motion = |frame: &Subspace| {
-            IntersectionMotion::new(frame.kind, &frame.direction(&axis), rotation)
+            let motion = if rotation { MotionType::Rotation } else { MotionType::Translation };
+            IntersectionMotion::new(frame.kind, &frame.direction(&axis), motion)
         };
         let lower_intersection = motion(&lower);
         let upper_intersection = motion(&upper);
@@ -349,7 +350,7 @@ impl Task {
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {
-            Displacement::Planar(start) => Path::Planar(PlanarPath::Slide { start, rate }),
+            Displacement::Planar(start) => Path::Planar(PlanarPath::Translation { start, rate }),
             Displacement::Spherical(start) => Path::Spherical { start, axis: Vector3::x() },
             Displacement::Cylindrical(start) => {
                 let rotation = self.lower_intersection.is_rotation();

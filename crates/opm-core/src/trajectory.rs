@@ -1,30 +1,70 @@
-//! A motion of the platform, followed by the joints: sampled at a rate, and watched in between.
+//! The joints along a motion of the platform: sampled at a rate, with events found between the samples.
 //!
-//! Along a motion no joint jumps by a whole turn: every angle is the one nearest to its last value
-//! ([`Manipulator::inverse_near`]), and the working mode stays the same. What the mechanism cannot
-//! follow is a [`Violation`]: a leg that does not reach, a joint past a limit (actuated or passive), a
-//! singularity that is passed through. [`ViolationReport`] puts it into words.
+//! Along a motion no joint jumps by a full revolution: every angle is the one nearest to its last value
+//! ([`Manipulator::inverse_near`]), and the working mode stays the same. A part of the motion that the
+//! mechanism cannot follow is a [`Violation`]: a leg is out of reach, a joint (actuated or passive) is
+//! beyond a limit, or the motion passes through a singularity. [`ViolationReport`] describes it in words.
 //!
 //! # What is found between the samples
 //!
-//! Each of these is watched by a [`Gauge`], a continuous function of time:
+//! A [`Gauge`] is a continuous function of time. There is one for each of these:
 //!
-//! * how far a joint is from its limit;
-//! * how far a leg is from the end of its reach: its serial singularity measure, or, out of reach, the
-//!   gap;
+//! * the distance of a joint from a limit;
+//! * the distance of a leg from its boundary of reach: its serial singularity measure or, out of reach,
+//!   minus the deficit;
 //! * the signed parallel singularity measure of a section.
 //!
-//! A gauge and its slope are known at every sample. Then
+//! The value and the slope of every gauge are computed at each sample. Between two samples there are two
+//! cases:
 //!
-//! * where a gauge changes sign from one sample to the next, the time is found by bisection;
-//! * where it does not, but falls towards zero at the one sample and rises from it at the next, its
-//!   lowest value in between is found by a golden-section search. Where that is past zero, both
-//!   crossings are found by bisection. However short the dip is, these are all of its crossings if the
-//!   gauge falls and rises only once between the two samples.
+//! * The gauge changes sign. The time is found by bisection.
+//! * The gauge falls towards zero at the first sample and rises at the second. Its lowest value is found
+//!   by a golden-section search. If that is beyond zero, both crossings are found by bisection. These are
+//!   all crossings if the gauge falls and rises only once between the two samples, however short the dip
+//!   is.
 //!
-//! A gauge that falls and rises several times between two samples may be missed. A sampling rate of
-//! several times the motion's highest frequency leaves nothing out. Times are accurate to
-//! [`RESOLUTION`] of the step between samples, the times of lowest values to about 1e-8 of it.
+//! Events may be missed if a gauge falls and rises several times between two samples. A sampling rate of
+//! several times the motion's highest frequency is enough in practice. Times are accurate to [`RESOLUTION`]
+//! of the step between samples, and the times of lowest values to about 1e-8 of it.
+//!
+//! # Example
+//!
+//! ```
+//! use opm_core::motion::{Harmonics, Path, PlatformMotion, Sinusoid};
+//! use opm_core::trajectory::Gauge;
+//! use opm_core::{Manipulator, Trajectory};
+//!
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
+//! // x swings by this amplitude once in two seconds; every other coordinate stays at home.
+//! let swing = |amplitude: f64| {
+//!     let coordinates = manipulator.task_coordinates();
+//!     let mut path: Vec<_> = coordinates.iter().map(|c| Harmonics::constant(c.home)).collect();
+//!     path[0].sinusoids.push(Sinusoid { amplitude, frequency: 0.5, phase: 0.0 });
+//!     let (name, path) = ("swing".to_owned(), Path::Harmonics(path));
+//!     PlatformMotion { name, start: 0.0, duration: 2.0, rate: None, mode: None, path }
+//! };
+//!
+//! // Five millimetres, 20 samples a second: 41 samples, with one at either end.
+//! let motion = swing(0.005);
+//! let mut trajectory = Trajectory::new(&manipulator, &motion, manipulator.home_mode(), 20.0)?;
+//! let mut samples = 0;
+//! while trajectory.advance()? {
+//!     assert!(trajectory.sample().reached && trajectory.changes().is_empty());
+//!     samples += 1;
+//! }
+//! assert_eq!(samples, 41);
+//!
+//! // Ten metres: the legs, which are far shorter, go out of reach.
+//! let motion = swing(10.0);
+//! let mut trajectory = Trajectory::new(&manipulator, &motion, manipulator.home_mode(), 20.0)?;
+//! let mut out_of_reach = false;
+//! while trajectory.advance()? {
+//!     let mut open = trajectory.open();
+//!     out_of_reach |= open.any(|violation| matches!(violation.gauge, Gauge::Reach { .. }));
+//! }
+//! assert!(out_of_reach);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod gauge;
 mod report;
@@ -45,23 +85,31 @@ use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
 /// The accuracy of the times that are found, as a share of the step between two samples.
 pub const RESOLUTION: f64 = 1e-10;
 
-/// Gauges are differenced over this share of the step: the sign of a slope is all that is asked, and
-/// the rounding of a gauge, some 1e-16, is far below.
+/// Slopes of gauges are differences over this share of the step. Only the sign of a slope matters, and the
+/// rounding of a gauge, some 1e-16, is far below.
 const SLOPE_STEP: f64 = 1e-3;
 
-/// More samples than this cannot be told apart by a double.
+/// The largest number of samples. The numbers of more samples could not be represented exactly.
 const MOST_SAMPLES: f64 = 9e15;
 
 /// Why a motion cannot be sampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
+    /// The motion is not in the task coordinates of this manipulator.
+    #[error("the motion has {given} task coordinates, expected {expected}, as the manipulator has")]
+    Coordinates {
+        /// The number of coordinates of the motion.
+        given: usize,
+        /// The number of task coordinates of the manipulator.
+        expected: usize,
+    },
     /// The sampling rate is not a positive number, or gives too many samples.
     #[error(
-        "{rate:e} samples a second for {duration:e} s, expected a rate above zero, and at most {MOST_SAMPLES:e} samples"
+        "the sampling rate is {rate:e} Hz for {duration:e} s, expected a rate above zero and at most {MOST_SAMPLES:e} samples"
     )]
     Rate {
-        /// Samples a second.
+        /// The sampling rate, hertz.
         rate: f64,
         /// The duration of the motion, seconds.
         duration: f64,
@@ -155,7 +203,8 @@ impl Sample {
     }
 }
 
-/// A motion as a manipulator follows it, sample by sample.
+/// A motion as a manipulator follows it, sample by sample. See the example in the docs of
+/// [`trajectory`](crate::trajectory).
 ///
 /// Call [`advance`](Self::advance) until it returns `false`; after each call, read
 /// [`sample`](Self::sample) and [`changes`](Self::changes).
@@ -178,7 +227,7 @@ struct Solver<'a> {
     mode: Mode,
     rate: f64,
     gauges: Vec<Gauge>,
-    /// The leg of every joint coordinate.
+    /// For each joint coordinate, the number of its leg.
     legs: Vec<usize>,
     /// The characteristic length for the condition number, metres.
     length: f64,
@@ -186,44 +235,48 @@ struct Solver<'a> {
     measured: Singularities,
 }
 
-/// The side on which a slope is taken: a motion has nothing beyond its ends.
+/// The side on which a one-sided slope is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Look {
-    Ahead,
-    Back,
+enum SlopeSide {
+    /// After the sample.
+    After,
+    /// Before the sample, as at the end of the motion.
+    Before,
 }
 
-/// Where the angles of a solution start from.
+/// The values that the angles of a solution are nearest to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turns {
-    /// From home.
+enum NearestTo {
+    /// The values at home.
     Home,
-    /// From what the solution held before.
-    Held,
+    /// The last values, which the solution's buffer has.
+    Last,
 }
 
 impl<'a> Trajectory<'a> {
-    /// Prepares to follow `motion` in one working mode, at so many samples a second.
+    /// Prepares to follow `motion` in one working mode, with a sampling rate in hertz.
     ///
-    /// The first sample is at the motion's start, the last at its end, whether or not that is a whole
-    /// number of steps away.
+    /// The first sample is at the motion's start and the last at its end. The last step may be shorter than
+    /// the others.
     ///
     /// # Errors
-    /// A rate that is not a positive number, or too high.
-    ///
-    /// # Panics
-    /// The motion is for another number of task coordinates.
+    /// If the motion gives another number of task coordinates than the manipulator has, or if the rate
+    /// is not a positive number or gives too many samples.
     pub fn new(
         manipulator: &'a Manipulator,
         motion: &'a PlatformMotion,
         mode: Mode,
         rate: f64,
     ) -> Result<Self, TrajectoryError> {
+        let (given, expected) = (motion.coordinate_count(), manipulator.task_coordinates().len());
+        if given != expected {
+            return Err(TrajectoryError::Coordinates { given, expected });
+        }
         let steps = motion.duration * rate;
         if !(rate > 0.0 && rate.is_finite() && steps <= MOST_SAMPLES) {
             return Err(TrajectoryError::Rate { rate, duration: motion.duration });
         }
-        // A whole number of steps that rounding has left a little short is whole.
+        // Rounding may leave a whole number of steps slightly too small.
         let whole = (steps * (1.0 + 1e-12)).floor();
         let samples = whole as u64 + 1 + u64::from(steps - whole > 1e-6);
         let measured = manipulator.singularities();
@@ -257,7 +310,7 @@ impl<'a> Trajectory<'a> {
         self.samples
     }
 
-    /// The gauges that are watched.
+    /// The gauges that are computed along the motion.
     pub fn gauges(&self) -> &[Gauge] {
         &self.solver.gauges
     }
@@ -269,11 +322,11 @@ impl<'a> Trajectory<'a> {
         if number + 1 >= self.samples { motion.end() } else { time }
     }
 
-    /// Goes on to the next sample, which [`Trajectory::sample`] gives; returns `false` after the last one.
-    /// What happened since the sample before, and at this one, is in [`Trajectory::changes`].
+    /// Advances to the next sample, which [`Trajectory::sample`] gives, and returns `false` after the last
+    /// one. [`Trajectory::changes`] gives the events from the previous sample up to and including this one.
     ///
     /// # Errors
-    /// A pose or a velocity of the motion that cannot be computed with.
+    /// If a pose or a velocity of the motion cannot be computed with.
     pub fn advance(&mut self) -> Result<bool, TrajectoryError> {
         self.changes.clear();
         if self.next >= self.samples {
@@ -284,50 +337,56 @@ impl<'a> Trajectory<'a> {
         let last = self.next == self.samples;
         std::mem::swap(&mut self.previous, &mut self.current);
         self.current.solution.clone_from(&self.previous.solution);
-        let turns = if number == 0 { Turns::Home } else { Turns::Held };
-        self.solver.solve(time, turns, &mut self.current)?;
+        let nearest_to = if number == 0 { NearestTo::Home } else { NearestTo::Last };
+        self.solver.solve(time, nearest_to, &mut self.current)?;
         self.solver.rates(&mut self.current)?;
-        let look = if last { Look::Back } else { Look::Ahead };
-        self.solver.slope(&mut self.current, look, &mut self.probe)?;
+        let side = if last { SlopeSide::Before } else { SlopeSide::After };
+        self.solver.slope(&mut self.current, side, &mut self.probe)?;
         if number == 0 {
             self.begin();
-        } else if self.eventful() {
+        } else if self.may_have_events() {
             self.current = self.watch(self.previous.clone(), self.current.clone())?;
         }
         if last && number > 0 {
             self.end();
         }
         self.changes.sort_by(|a, b| a.time().total_cmp(&b.time()));
-        self.worsen();
+        self.extend_open();
         Ok(true)
     }
 
-    /// The sample that [`Trajectory::advance`] went to.
+    /// The sample that [`Trajectory::advance`] has advanced to.
     pub fn sample(&self) -> &Sample {
         &self.current
     }
 
-    /// Violations that began and ended since the sample before the last one, in the order of time.
+    /// The violations that began or ended after the previous sample and up to the present one, in the order
+    /// of time.
     pub fn changes(&self) -> &[Change] {
         &self.changes
     }
 
-    /// The violations that have not ended yet. After the last sample these last to the end of the motion.
+    /// The violations that have not ended yet. After the last sample, these last to the end of the motion.
     pub fn open(&self) -> impl Iterator<Item = &Violation> {
         self.open.iter().flatten()
     }
 }
 
 impl Solver<'_> {
-    /// The joints, how near to singular they are, and the gauges, at one time.
-    fn solve(&mut self, time: f64, turns: Turns, out: &mut Sample) -> Result<(), TrajectoryError> {
+    /// Computes the joints, the singularity measures and the gauges at one time.
+    fn solve(
+        &mut self,
+        time: f64,
+        nearest_to: NearestTo,
+        out: &mut Sample,
+    ) -> Result<(), TrajectoryError> {
         let manipulator = self.manipulator;
         out.time = time;
         self.motion.at(time, &mut out.instant);
         let (pose, solution) = (&out.instant.pose, &mut out.solution);
-        let reached = match turns {
-            Turns::Home => manipulator.inverse(pose, self.mode, solution),
-            Turns::Held => manipulator.inverse_near(pose, self.mode, solution),
+        let reached = match nearest_to {
+            NearestTo::Home => manipulator.inverse(pose, self.mode, solution),
+            NearestTo::Last => manipulator.inverse_near(pose, self.mode, solution),
         };
         let reached = reached.map_err(|source| TrajectoryError::Pose { time, source })?;
         out.reached = reached.is_some();
@@ -343,7 +402,7 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// Rates of the joints and the condition number at the solution that was found last.
+    /// Computes the rates of the joints and the condition number, at the solution that was found last.
     fn rates(&mut self, out: &mut Sample) -> Result<(), TrajectoryError> {
         (out.regular, out.condition) = (false, f64::INFINITY);
         if out.reached {
@@ -360,17 +419,18 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// The level of a gauge for a solution, the last one that was measured if it is in reach.
+    /// The level of a gauge for a solution. If the solution is in reach, its singularity measures must be the
+    /// last ones that were computed.
     fn level(&self, gauge: Gauge, solution: &Solution) -> Option<f64> {
-        let gap = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
+        let deficit = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
         let reached = solution.unreachable.is_empty();
         match gauge {
-            Gauge::Reach { leg } => Some(match gap(leg) {
-                Some(unreachable) => -self.depth(unreachable),
+            Gauge::Reach { leg } => Some(match deficit(leg) {
+                Some(unreachable) => -self.relative_deficit(unreachable),
                 None => self.manipulator.serial(solution, leg).0,
             }),
             Gauge::Limit { coordinate, bound } => {
-                if gap(self.legs[coordinate]).is_some() {
+                if deficit(self.legs[coordinate]).is_some() {
                     return None;
                 }
                 let Limits::Range { low, high, .. } = self.manipulator.limits()[coordinate] else {
@@ -396,8 +456,8 @@ impl Solver<'_> {
         }
     }
 
-    /// A gap without a unit: lengths are divided by the characteristic length.
-    fn depth(&self, unreachable: &Unreachable) -> f64 {
+    /// The reach deficit as a number without a unit: lengths are divided by the characteristic length.
+    fn relative_deficit(&self, unreachable: &Unreachable) -> f64 {
         let scale = match unreachable.deficit.quantity {
             Quantity::Angle => 1.0,
             Quantity::Length => self.length,
@@ -405,18 +465,18 @@ impl Solver<'_> {
         unreachable.deficit.excess / scale
     }
 
-    /// Finds the slopes of the gauges of a sample.
+    /// Computes the slopes of the gauges of a sample.
     fn slope(
         &mut self,
         sample: &mut Sample,
-        look: Look,
+        side: SlopeSide,
         probe: &mut Sample,
     ) -> Result<(), TrajectoryError> {
         let step = SLOPE_STEP / self.rate;
-        let time = if look == Look::Ahead { sample.time + step } else { sample.time - step };
+        let time = if side == SlopeSide::After { sample.time + step } else { sample.time - step };
         probe.solution.clone_from(&sample.solution);
-        self.solve(time, Turns::Held, probe)?;
-        // As far as doubles have gone.
+        self.solve(time, NearestTo::Last, probe)?;
+        // The step after rounding of the times.
         let step = probe.time - sample.time;
         for (number, slope) in sample.slopes.iter_mut().enumerate() {
             *slope = match (sample.levels[number], probe.levels[number]) {

@@ -3,29 +3,30 @@
 //! A leg's closure `exp(I τ) · U = b`, `L = v · exp(I τ)` (or, with its cut in the lower section,
 //! `L · exp(-I τ) = v`, `U = exp(-I τ) · b`) is differentiated one section at a time. A section's chain
 //! has as many joints as its subspace has dimensions, so that in the subspace's own frame its screws
-//! are a square matrix of at most 3 × 3: the rows of its inverse are the reciprocal screws, each
-//! of which sees one joint and none of the others (Eq. 6 of the paper multiplies by one of them,
-//! `v × w`). Nothing is solved by least squares.
+//! are a square matrix of at most 3 × 3. The rows of its inverse are the reciprocal screws. Each of them
+//! gives the rate of one joint, and is reciprocal to all the others (Eq. 6 of the paper multiplies by one
+//! of them, `v × w`). Nothing is solved by least squares.
 //!
-//! * Upper section: `V_b = ḃ b⁻¹ = I τ̇ + Σ s q̇` gives the imaginary rate (Eqs. 5-9);
-//! * lower section: `V_v + Ad(v) I τ̇ = Σ s q̇` the others (Eqs. 17-23).
+//! * The upper section, `V_b = ḃ b⁻¹ = I τ̇ + Σ s q̇`, gives the imaginary rate (Eqs. 5-9).
+//! * The lower section, `V_v + Ad(v) I τ̇ = Σ s q̇`, gives the other rates (Eqs. 17-23).
 //!
-//! Accelerations are the derivative of these, `Σ s q̈ = V̇ − Σ_{j<k} [sⱼ, sₖ] q̇ⱼ q̇ₖ`, with the Lie
-//! brackets of the screws as they have moved.
+//! Accelerations follow from the derivatives of these equations, `Σ s q̈ = V̇ − Σ_{j<k} [sⱼ, sₖ] q̇ⱼ q̇ₖ`,
+//! with the Lie brackets of the screws at the present configuration.
 //!
-//! A rate is the time derivative of the coordinate as it is reported: a spherical joint's are the
-//! derivatives of its rotation vector, an imaginary joint's has its sign.
+//! A rate is the time derivative of the coordinate as it is reported. The rates of a spherical joint are
+//! the derivatives of its rotation vector, and that of an imaginary joint has the joint's sign.
 //!
-//! With the paper's first manipulator, where `s₁ = u`, `s₂ = v` and `s₃ = w` of a leg's upper section, the
-//! first reciprocal screw is `(v × w) / u · (v × w)`, and
+//! In the paper's first manipulator the screws of a leg's upper section are `s₁ = u`, `s₂ = v` and `s₃ = w`.
+//! The first reciprocal screw is `(v × w) / u · (v × w)`, and
 //!
 //! * `J_s` ([`Jacobians::upper`]) is `J_q,s⁻¹ J_x,s`: `θ̇ = J_s ω` (Eqs. 6-9);
 //! * `J_p` ([`Jacobians::lower`]) is `J_q,p⁻¹ J_x,p`: `q̇ = J_p [θ̇; Ṗ]` (Eqs. 17-23), where the reciprocal
 //!   screw of a slider is the force along link a1, and the arm's two are its Jacobian's inverse;
 //! * together `q̇ = J_p [J_s ω; Ṗ]`.
 //!
-//! With the second one `J_s = [p]` (Eqs. 24-25) and `J_p` has the rows `[sin βᵢ, −sin αᵢ, cos αᵢ]`, the
-//! first column for the leg with the helical joint alone (Eq. 29, without the divisor that the print has).
+//! In the second manipulator `J_s = [p]` (Eqs. 24-25), and `J_p` has the rows `[sin βᵢ, −sin αᵢ, cos αᵢ]`. The
+//! first column is zero except for the leg with the helical joint (Eq. 29, without the divisor that is
+//! printed there).
 //!
 //! ```
 //! use opm_core::Manipulator;
@@ -39,12 +40,13 @@
 //! let regular = manipulator.velocity(at, &[0.01, 0.0, 1.0, 0.0, 0.0], &[0.0; 5], &mut motion)?;
 //! assert!(regular && (motion.imaginary_rates[0] - 1.0).abs() < 1e-12); // theta11 follows zeta
 //!
+//! // How far this pose is from singular: no measure is zero, and the condition number is finite.
 //! let (mut jacobians, mut measured) = (manipulator.jacobians(), manipulator.singularities());
 //! manipulator.differentiate(at, &mut jacobians)?;
 //! manipulator.measure_singularities(&jacobians, &mut measured);
-//! assert!(measured.whole.serial.abs() > 0.1 && measured.whole.parallel.unwrap().abs() > 0.1);
+//! assert!(measured.whole.serial != 0.0 && measured.whole.parallel != Some(0.0));
 //! let length = manipulator.characteristic_length();
-//! assert!(manipulator.conditioning(&jacobians, length).condition < 20.0);
+//! assert!(manipulator.conditioning(&jacobians, length).condition.is_finite());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -67,95 +69,127 @@ use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
 use nalgebra::Vector3;
 use section::Differential;
 
-/// A measure of singularity below this is zero, and there are no rates. At a singular pose, where two
-/// solutions meet, a chain takes the square root of a number that is zero but for rounding: some 1e-15,
-/// 1e-14 in an awkward frame. What comes to about the root of that is noise, and so are rates over it.
+/// A measure of singularity below this counts as zero, and there are no rates. At a singular pose, where two
+/// solutions coincide, a chain takes the square root of a number that is zero up to rounding, some 1e-15 or
+/// 1e-14. A measure of about the square root of that is noise, and so are rates that are divided by it.
 pub const SINGULAR: f64 = 1e-6;
 
-/// Rates that cannot be computed with, or a solution without joints.
+/// Why rates cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VelocityError {
-    /// Another number of rates than the manipulator has task coordinates.
-    #[error("{given} rates, expected {expected}, one a task coordinate")]
+    /// The number of rates or accelerations is not the number of task coordinates.
+    #[error("{given} rates, expected {expected}, one for each task coordinate")]
     Length {
-        /// How many were given.
+        /// The number of rates or accelerations that were given.
         given: usize,
-        /// How many there are.
+        /// The number of task coordinates.
         expected: usize,
     },
-    /// Not a number, infinite, or too large.
+    /// A rate or an acceleration is not a number, infinite, or too large.
     #[error(
         "the rate or acceleration of {name} is {value:?}, expected a number of at most {LARGEST:?}"
     )]
     NotFinite {
-        /// The task coordinate.
+        /// The name of the task coordinate.
         name: &'static str,
-        /// Its rate.
+        /// Its rate or acceleration.
         value: f64,
     },
-    /// The solution is not one: legs are out of reach.
-    #[error("the pose is out of reach, no joint has a rate there")]
+    /// The pose is out of reach of some legs, so that there are no joint values.
+    #[error("the pose is out of reach, so that joints have no rates")]
     OutOfReach,
-    /// The joints' rates or accelerations are too large to be numbers.
-    #[error("leg number {leg} would have to move infinitely fast")]
+    /// Rates or accelerations of a leg overflow.
+    #[error("the rates or accelerations of leg number {leg}, counted from 0, overflow")]
     Overflow {
-        /// The leg, counted from zero.
+        /// The number of the leg, counted from zero.
         leg: usize,
     },
 }
 
-/// A leg with joints that have no rates; [`Manipulator::rateless`] says which.
+/// A leg with joints that have no rates; [`Manipulator::rateless`] lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularLeg {
-    /// Number of the leg.
+    /// The number of the leg, counted from zero.
     pub leg: usize,
-    /// Where in it.
+    /// The section of the leg that is singular.
     pub section: Section,
-    /// Why.
+    /// Why its joints have no rates.
     pub cause: SingularCause,
 }
 
 /// Why joints have no rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SingularCause {
-    /// The screws of the section's joints are dependent: a serial singularity, where the platform
-    /// cannot go every way and the joints of the section would have to be infinitely fast to go the others.
+    /// The screws of the section's joints are dependent: a serial singularity. The platform cannot move in
+    /// every direction, and for the other directions the joints would have to be infinitely fast.
     Serial,
-    /// A spherical joint has made a whole turn, where its rotation vector has no derivative. The
+    /// A spherical joint has made a full revolution, where its rotation vector has no derivative. The
     /// mechanism is not singular there.
     RotationVector,
 }
 
-/// Rates and accelerations of every joint; made by [`Manipulator::joint_motion`].
+/// Rates and accelerations of every joint, for one motion of the platform. The buffer is made by
+/// [`Manipulator::joint_motion`] and filled by [`Manipulator::velocity`].
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mut buffer, mut motion) = (manipulator.solution(), manipulator.joint_motion());
+/// let pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+/// let at = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+/// let at = at.expect("a pose in reach");
+///
+/// // x at 10 mm/s, the other coordinates at rest, without acceleration.
+/// let rates = [0.01, 0.0, 0.0, 0.0, 0.0];
+/// assert!(manipulator.velocity(at, &rates, &[0.0; 5], &mut motion)?);
+///
+/// // Joint rates are the Jacobian times the rates of the coordinates.
+/// let mut jacobians = manipulator.jacobians();
+/// manipulator.differentiate(at, &mut jacobians)?;
+/// let expected = jacobians.joints_by_pose().column(0) * 0.01;
+/// for (rate, expected) in motion.joint_rates.iter().zip(&expected) {
+///     assert!((rate - expected).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMotion {
-    /// Rate of every joint coordinate, in the order of [`Manipulator::coordinates`]; rad/s and m/s.
+    /// The rate of every joint coordinate, in the order of [`Manipulator::coordinates`]; rad/s and m/s.
     pub joint_rates: Vec<f64>,
-    /// Acceleration of every joint coordinate, in the same order; rad/s² and m/s².
+    /// The acceleration of every joint coordinate, in the same order; rad/s² and m/s².
     pub joint_accelerations: Vec<f64>,
-    /// Rate of every imaginary joint, in the order of [`Manipulator::imaginary`].
+    /// The rate of every imaginary joint, in the order of [`Manipulator::imaginary`]; rad/s or m/s.
     pub imaginary_rates: Vec<f64>,
-    /// Acceleration of every imaginary joint, in the same order.
+    /// The acceleration of every imaginary joint, in the same order; rad/s² or m/s².
     pub imaginary_accelerations: Vec<f64>,
-    /// The legs with joints that have no rates: for these the numbers are zeros that mean nothing.
+    /// The legs with joints that have no rates. For these joints the numbers above are zeros without a
+    /// meaning.
     pub singular: Vec<SingularLeg>,
 }
 
-/// What the task coordinates do: the twists of `v` and of `b`, and their derivatives.
+/// The motion of the two sections for a motion of the task coordinates. Each has its twist, and the twist's
+/// derivative by time.
 #[derive(Clone, Copy)]
 struct SectionTwists {
+    /// The twist `v̇ v⁻¹` of the lower section.
     v: [LocalTwist; 2],
+    /// The twist `ḃ b⁻¹` of the upper section.
     b: [LocalTwist; 2],
 }
 
-/// What a leg does: rates and accelerations of its sections' chains and along the cut.
+/// The motion of a leg: rates, then accelerations.
 struct LegMotion {
+    /// The joints of the lower section's chain.
     lower: [LocalTwist; 2],
+    /// The joints of the upper section's chain.
     upper: [LocalTwist; 2],
+    /// The displacement τ along the intersection motion.
     tau: [f64; 2],
 }
 
-/// A leg's two sections at one configuration.
+/// The differentials of a leg's two sections at one configuration.
 #[derive(Clone, Copy, Debug)]
 struct LegDifferential {
     lower: Differential,
@@ -185,16 +219,16 @@ impl Manipulator {
         }
     }
 
-    /// Rates and accelerations of every joint at a solved pose, for first and second time derivatives
-    /// of the task coordinates: in rad/s, m/s and their like. `false` where a joint has none: `out.singular`
-    /// says in which legs; the others have theirs. Nothing is allocated.
+    /// Rates and accelerations of every joint at a solved pose, for given first and second time derivatives
+    /// of the task coordinates (rad/s and m/s, rad/s² and m/s²). Nothing is allocated.
     ///
-    /// `at` is what [`Manipulator::inverse`] and its kind made of a pose; a new
+    /// Returns `false` if some joints have no rates: `out.singular` lists the legs. All other joints have
+    /// their rates in any case. `at` comes from [`Manipulator::inverse`] or one of its relatives; a new
     /// [`Manipulator::solution`] is home.
     ///
     /// # Errors
-    /// Another number of rates than task coordinates, one that is not a finite number, or a
-    /// solution that is out of reach.
+    /// If there are not as many rates and accelerations as task coordinates, if one is not a finite number,
+    /// or if the solution is out of reach.
     pub fn velocity(
         &self,
         at: &Solution,
@@ -207,12 +241,12 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let drive = self.drive(&at.solved.pose, rates, accelerations);
+        let twists = self.section_twists(&at.solved.pose, rates, accelerations);
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);
             let motion = if self.note_singular(number, &leg, &mut out.singular) {
-                self.leg_motion(at, number, &leg, &drive)
+                self.leg_motion(at, number, &leg, &twists)
             } else {
                 LegMotion::NONE
             };
@@ -224,6 +258,7 @@ impl Manipulator {
         Ok(out.singular.is_empty())
     }
 
+    /// Checks that there is one finite rate for each task coordinate.
     fn check_rates(&self, rates: &[f64]) -> Result<(), VelocityError> {
         let coordinates = self.task_coordinates();
         if rates.len() != coordinates.len() {
@@ -238,23 +273,24 @@ impl Manipulator {
         Ok(())
     }
 
-    /// The twists of `v` and `b` for rates of the task coordinates.
-    fn drive(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> SectionTwists {
+    /// The twists of `v` and `b`, and their derivatives, for rates and accelerations of the task
+    /// coordinates.
+    fn section_twists(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> SectionTwists {
         let task = self.task();
         let count = task.lower_count;
-        let of = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
+        let twists = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
             let vector = |all| LocalTwist::from_fn(|i, _| *part(all, count).get(i).unwrap_or(&0.0));
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]
         };
         SectionTwists {
-            v: of(&task.lower_screws(pose), |all, count| &all[..count]),
-            b: of(&task.upper_screws(pose), |all, count| &all[count..]),
+            v: twists(&task.lower_screws(pose), |all, count| &all[..count]),
+            b: twists(&task.upper_screws(pose), |all, count| &all[count..]),
         }
     }
 
-    /// Notes where a leg has no rates; `false` where it has none at all, since the section that is
-    /// solved first has none.
+    /// Adds the sections of a leg in which joints have no rates to `singular`. Returns `false` if no joint of
+    /// the leg has a rate, because the section that is solved first is singular.
     #[inline]
     fn note_singular(
         &self,
@@ -262,37 +298,39 @@ impl Manipulator {
         differential: &LegDifferential,
         singular: &mut Vec<SingularLeg>,
     ) -> bool {
-        for (turn, section) in self.legs[leg].order().into_iter().enumerate() {
+        for (position, section) in self.legs[leg].order().into_iter().enumerate() {
             let Some(cause) = differential.section(section).singular() else { continue };
             singular.push(SingularLeg { leg, section, cause });
-            if turn == 0 && cause == SingularCause::Serial {
+            if position == 0 && cause == SingularCause::Serial {
                 return false;
             }
         }
         true
     }
 
-    /// Numbers of the joint coordinates that have no rates: those of the singular section and, where
-    /// that is solved first, of the other; of a spherical joint at a whole turn its own.
+    /// The numbers of the joint coordinates of a singular leg that have no rates: those of the singular
+    /// section and, if that is solved first, those of the other section too. For a spherical joint after a
+    /// full revolution these are its own coordinates.
     pub fn rateless(&self, singular: &SingularLeg) -> impl Iterator<Item = usize> + '_ {
         let leg = &self.legs[singular.leg];
-        let whole =
+        let whole_leg =
             singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
         sections
             .into_iter()
-            .filter(move |(_, other)| whole || *other == section)
+            .filter(move |(_, other)| whole_leg || *other == section)
             .flat_map(|(section, _)| section.coordinates.iter().flatten().map(|slot| slot.number))
     }
 
-    /// The number of the imaginary joint that has no rate either.
+    /// The number of the imaginary joint of a singular leg, if that has no rate either.
     pub fn rateless_imaginary(&self, singular: &SingularLeg) -> Option<usize> {
         let leg = &self.legs[singular.leg];
         let lost = singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         leg.imaginary.filter(|_| lost)
     }
 
+    /// The differentials of a leg's sections at a solution.
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
         let (leg, solved) = (&self.legs[number], &at.legs[number]);
@@ -307,13 +345,14 @@ impl Manipulator {
         }
     }
 
+    /// Rates and accelerations of a leg's joints, for the twists of the two sections.
     #[inline]
     fn leg_motion(
         &self,
         at: &Solution,
         number: usize,
         LegDifferential { lower, upper }: &LegDifferential,
-        drive: &SectionTwists,
+        twists: &SectionTwists,
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
@@ -323,32 +362,33 @@ impl Manipulator {
         };
         match leg.split_section {
             Section::Upper => {
-                let upper = solve(upper, drive.b);
+                let upper = solve(upper, twists.b);
                 let tau = upper.map(|u| u.x);
                 let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
-                let [twist, derivative] = drive.v;
-                let turned = task.lower.kind.bracket(&twist, &along);
+                let [twist, derivative] = twists.v;
+                let along_rate = task.lower.kind.bracket(&twist, &along);
                 let target =
-                    [twist + along * tau[0], derivative + along * tau[1] + turned * tau[0]];
+                    [twist + along * tau[0], derivative + along * tau[1] + along_rate * tau[0]];
                 LegMotion { lower: solve(lower, target), upper, tau }
             }
             Section::Lower => {
-                let lower = solve(lower, drive.v);
+                let lower = solve(lower, twists.v);
                 let last = leg.lower.chain.freedoms() - 1;
                 let cut = lower.map(|l| l[last]);
                 let kind = task.upper.kind;
                 let along = task.upper_intersection.unit_twist();
-                let amount: JointDisplacement = solved.tau.inverse();
+                let cut_displacement: JointDisplacement = solved.tau.inverse();
                 let [twist, derivative] =
-                    drive.b.map(|twist| task.upper_intersection.adjoint(amount, &twist));
-                let turned = kind.bracket(&along, &twist);
+                    twists.b.map(|twist| task.upper_intersection.adjoint(cut_displacement, &twist));
+                let twist_rate = kind.bracket(&along, &twist);
                 let target =
-                    [along * cut[0] + twist, along * cut[1] + derivative + turned * cut[0]];
+                    [along * cut[0] + twist, along * cut[1] + derivative + twist_rate * cut[0]];
                 LegMotion { lower, upper: solve(upper, target), tau: cut.map(|c| -c) }
             }
         }
     }
 
+    /// Writes the motion of a leg's joints into `out`.
     #[inline]
     fn write_motion(&self, number: usize, motion: &LegMotion, out: &mut JointMotion) {
         let leg = &self.legs[number];
@@ -370,11 +410,13 @@ impl Manipulator {
 }
 
 impl LegMotion {
+    /// No motion: zeros.
     const NONE: Self = {
         let zero = [LocalTwist::new(0.0, 0.0, 0.0); 2];
         Self { lower: zero, upper: zero, tau: [0.0; 2] }
     };
 
+    /// Whether no rate or acceleration has overflowed.
     fn is_finite(&self) -> bool {
         let sections = self.lower.iter().chain(&self.upper).flatten();
         sections.chain(&self.tau).all(|value| value.is_finite())

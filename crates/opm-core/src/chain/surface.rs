@@ -122,12 +122,12 @@ impl Surface {
     fn along(&self, path: &Path) -> Equation {
         match *self {
             Self::Circle { point, centre, square } => match *path.planar() {
-                PlanarPath::Slide { start, rate } => {
+                PlanarPath::Translation { start, rate } => {
                     let from = start.apply(point) - centre;
                     let c0 = from.norm_sqr() - square;
                     Equation::Polynomial([c0, 2.0 * dot(from, rate), rate.norm_sqr()])
                 }
-                PlanarPath::Turn { start } => {
+                PlanarPath::Rotation { start } => {
                     let from = start.apply(point);
                     let k = 2.0 * centre.conj() * from;
                     let c0 = from.norm_sqr() + centre.norm_sqr() - square;
@@ -135,32 +135,32 @@ impl Surface {
                 }
             },
             Self::Line { point, across, at } => match *path.planar() {
-                PlanarPath::Slide { start, rate } => {
+                PlanarPath::Translation { start, rate } => {
                     let c0 = dot(across, start.apply(point)) - at;
                     Equation::Polynomial([c0, dot(across, rate), 0.0])
                 }
-                PlanarPath::Turn { start } => {
+                PlanarPath::Rotation { start } => {
                     let k = across.conj() * start.apply(point);
                     Equation::Harmonic([-at, k.re, -k.im])
                 }
             },
             Self::Carried { point, across, at } => match *path.planar() {
-                PlanarPath::Slide { start, rate } => {
+                PlanarPath::Translation { start, rate } => {
                     let across = start.rotation * across;
                     let c0 = dot(across, point - start.translation) - at;
                     Equation::Polynomial([c0, -dot(across, rate), 0.0])
                 }
-                PlanarPath::Turn { start } => {
+                PlanarPath::Rotation { start } => {
                     let across = start.rotation * across;
                     let k = across.conj() * point;
                     Equation::Harmonic([-dot(across, start.translation) - at, k.re, k.im])
                 }
             },
             Self::Rotation { rotation } => match *path.planar() {
-                PlanarPath::Slide { start, .. } => {
+                PlanarPath::Translation { start, .. } => {
                     Equation::Polynomial([(rotation.conj() * start.rotation).im, 0.0, 0.0])
                 }
-                PlanarPath::Turn { start } => {
+                PlanarPath::Rotation { start } => {
                     let k = rotation.conj() * start.rotation;
                     Equation::Harmonic([0.0, k.im, k.re])
                 }

@@ -1,4 +1,4 @@
-//! Mechanisms for tests, built joint by joint from their geometry. Lengths are in metres.
+//! Mechanisms for tests, which are built joint by joint from their geometry. Lengths are in metres.
 
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointKind};
@@ -7,22 +7,27 @@ use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::{Isometry3, Point3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
+/// The unit vector along `(x, y, z)`.
 pub(crate) fn unit(x: f64, y: f64, z: f64) -> Unit<Vector3<f64>> {
     Unit::new_normalize(Vector3::new(x, y, z))
 }
 
+/// A revolute joint about a line.
 pub(crate) fn revolute(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Joint {
     Joint::new("", JointKind::Revolute, axis, point)
 }
 
+/// A prismatic joint along a direction.
 pub(crate) fn prismatic(axis: Unit<Vector3<f64>>) -> Joint {
     Joint::new("", JointKind::Prismatic, axis, Point3::origin())
 }
 
+/// A helical joint about a line, with a pitch in metres per radian.
 pub(crate) fn helical(axis: Unit<Vector3<f64>>, point: Point3<f64>, pitch: f64) -> Joint {
     Joint::new("", JointKind::Helical { pitch }, axis, point)
 }
 
+/// A spherical joint about a point.
 pub(crate) fn spherical(point: Point3<f64>) -> Joint {
     Joint::new("", JointKind::Spherical, Vector3::z_axis(), point)
 }
@@ -45,11 +50,12 @@ pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
     }
 }
 
+/// The horizontal unit vector at an angle from x.
 fn direction(angle: f64) -> Unit<Vector3<f64>> {
     unit(angle.cos(), angle.sin(), 0.0)
 }
 
-/// Manipulator 1 of the paper: 3-PRR(RR) + RRS, at x = y = 0 and without rotation.
+/// The geometry of manipulator 1 of the paper, 3-PRR(RR) + RRS, at x = y = 0 and without rotation.
 #[derive(Clone, Debug)]
 pub(crate) struct PlanoSpherical {
     pub alpha: [f64; 3],
@@ -91,7 +97,7 @@ impl PlanoSpherical {
         (k.abs() < 1.0).then(|| (w, w.y.atan2(w.x) + k.asin()))
     }
 
-    /// The mechanism; `None` if a leg cannot be assembled.
+    /// The mechanism with this geometry; `None` if a leg cannot be assembled.
     pub fn try_mechanism(&self) -> Option<Mechanism> {
         let mut legs = vec![];
         for i in 0..3 {
@@ -126,18 +132,19 @@ impl PlanoSpherical {
         Some(mechanism("plano-spherical", legs))
     }
 
+    /// The mechanism with this geometry, which must assemble.
     pub fn mechanism(&self) -> Mechanism {
         self.try_mechanism().expect("assembles at home")
     }
 }
 
-/// Manipulator 2 of the paper: 2-PPR + PPH with the printed parameters, its axis at 255 degrees.
+/// Manipulator 2 of the paper, 2-PPR + PPH, with the printed parameters. Its axis is at 255 degrees.
 pub(crate) fn translational_helical() -> Mechanism {
     let axis = direction(255.0_f64.to_radians());
     let legs = [(210.0_f64, true), (330.0, false), (90.0, false)];
-    let leg = |(alpha, turns): (f64, bool)| {
+    let leg = |(alpha, is_helical): (f64, bool)| {
         let alpha = alpha.to_radians();
-        let upper = if turns {
+        let upper = if is_helical {
             helical(axis, Point3::origin(), 0.02)
         } else {
             revolute(axis, Point3::origin())
@@ -170,6 +177,7 @@ pub(crate) fn bennett() -> Mechanism {
 pub(crate) struct Numbers(u64);
 
 impl Numbers {
+    /// The sequence of numbers that starts from a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -183,10 +191,12 @@ impl Numbers {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
+    /// A vector with components in (-1, 1).
     pub fn vector(&mut self) -> Vector3<f64> {
         Vector3::from_fn(|_, _| self.next())
     }
 
+    /// A unit vector, uniformly distributed on the sphere.
     pub fn direction(&mut self) -> Unit<Vector3<f64>> {
         loop {
             let v = self.vector();
@@ -196,17 +206,19 @@ impl Numbers {
         }
     }
 
-    /// A rotation by any angle, and a translation of at most `reach`.
-    pub fn displacement(&mut self, reach: f64) -> Isometry3<f64> {
+    /// A rotation by up to 3 radians, and a translation with components of at most `size`.
+    pub fn displacement(&mut self, size: f64) -> Isometry3<f64> {
         let rotation = UnitQuaternion::from_axis_angle(&self.direction(), 3.0 * self.next());
-        Isometry3::from_parts((self.vector() * reach).into(), rotation)
+        Isometry3::from_parts((self.vector() * size).into(), rotation)
     }
 }
 
 /// The common geometry of the revolute joints of one section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum CommonGeometry {
+    /// All axes meet in this point.
     Spherical(Point3<f64>),
+    /// All axes have this direction.
     Planar(Unit<Vector3<f64>>),
 }
 
@@ -240,21 +252,22 @@ pub(crate) fn two_sections(
     mechanism("two sections", legs)
 }
 
-/// Three (3,2) legs and a (2,3) leg of two spherical subspaces.
+/// A mechanism of two spherical subspaces, with three (3,2) legs and a (2,3) leg.
 pub(crate) fn two_spherical(numbers: &mut Numbers) -> Mechanism {
     let centres = [Point3::new(0.1, 0.0, 0.05), Point3::new(-0.1, 0.2, 0.3)];
     let pattern = [[3, 2], [3, 2], [3, 2], [2, 3]];
     two_sections(centres.map(CommonGeometry::Spherical), &pattern, 5, numbers)
 }
 
-/// Three (3,2) legs and a (2,3) leg of two planar subspaces.
+/// A mechanism of two planar subspaces, with three (3,2) legs and a (2,3) leg.
 pub(crate) fn two_planar(numbers: &mut Numbers) -> Mechanism {
     let normals = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)];
     let pattern = [[3, 2], [3, 2], [3, 2], [2, 3]];
     two_sections(normals.map(CommonGeometry::Planar), &pattern, 5, numbers)
 }
 
-/// Three RRR|R legs with their last axes on one line in the plane, and a leg R R P | H on it.
+/// A mechanism of a planar and a cylindrical subspace: three RRR|R legs whose last axes are on one line in
+/// the plane, and an RRP|H leg whose screw is on that line.
 pub(crate) fn planar_cylindrical() -> Mechanism {
     let axis = Vector3::x_axis();
     let z = |x, y| revolute(Vector3::z_axis(), Point3::new(x, y, 0.0));
@@ -282,13 +295,14 @@ pub(crate) fn planar_cylindrical() -> Mechanism {
     )
 }
 
-/// A Gough platform, 6-UPS, irregular enough not to be singular.
+/// A Gough platform, 6-UPS, which is irregular enough not to be singular.
 pub(crate) fn gough(numbers: &mut Numbers) -> Mechanism {
     let leg = |i: usize| {
-        let turn = |x: f64| direction(x.to_radians()).into_inner();
+        let at_degrees = |x: f64| direction(x.to_radians()).into_inner();
         let (pair, side) = ((i / 2) as f64 * 120.0, if i.is_multiple_of(2) { -1.0 } else { 1.0 });
-        let foot = turn(pair + 15.0 * side) * 0.5 + numbers.vector() * 0.02;
-        let top = turn(pair + 45.0 * side) * 0.25 + Vector3::z() * 0.6 + numbers.vector() * 0.02;
+        let foot = at_degrees(pair + 15.0 * side) * 0.5 + numbers.vector() * 0.02;
+        let top =
+            at_degrees(pair + 45.0 * side) * 0.25 + Vector3::z() * 0.6 + numbers.vector() * 0.02;
         let strut = top - foot;
         let first = Unit::new_normalize(strut.cross(&numbers.vector()));
         let second = Unit::new_normalize(strut.cross(&first));
@@ -302,19 +316,20 @@ pub(crate) fn gough(numbers: &mut Numbers) -> Mechanism {
     mechanism("gough", (0..6).map(leg).collect())
 }
 
-/// The mechanism displaced as a rigid body.
+/// A mechanism displaced as a rigid body.
 pub(crate) fn displaced(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
     edited(mechanism, |joint| {
-        let turn = |axis: Unit<Vector3<f64>>| Unit::new_normalize(g.rotation * axis.into_inner());
-        joint.axis = turn(joint.axis);
+        let rotated =
+            |axis: Unit<Vector3<f64>>| Unit::new_normalize(g.rotation * axis.into_inner());
+        joint.axis = rotated(joint.axis);
         joint.point = g * joint.point;
         if let JointKind::Universal { second } = &mut joint.kind {
-            *second = turn(*second);
+            *second = rotated(*second);
         }
     })
 }
 
-/// The mechanism with all lengths multiplied by a factor.
+/// A mechanism with all lengths multiplied by a factor.
 pub(crate) fn scaled(mechanism: &Mechanism, factor: f64) -> Mechanism {
     edited(mechanism, |joint| {
         joint.point *= factor;
@@ -324,7 +339,7 @@ pub(crate) fn scaled(mechanism: &Mechanism, factor: f64) -> Mechanism {
     })
 }
 
-/// All numbers rounded to six significant digits.
+/// A mechanism with all numbers rounded to six significant digits.
 pub(crate) fn rounded(mechanism: &Mechanism) -> Mechanism {
     let digits = |x: f64| format!("{x:.5e}").parse::<f64>().expect("a number");
     let direction = |axis: Unit<Vector3<f64>>| Unit::new_normalize(axis.map(digits));
@@ -339,13 +354,14 @@ pub(crate) fn rounded(mechanism: &Mechanism) -> Mechanism {
     })
 }
 
+/// A copy of a mechanism, with an edit applied to every joint.
 fn edited(mechanism: &Mechanism, mut edit: impl FnMut(&mut Joint)) -> Mechanism {
     let mut edited = mechanism.clone();
     edited.legs.iter_mut().flat_map(|leg| &mut leg.joints).for_each(&mut edit);
     edited
 }
 
-/// Sine of the angle between a joint's screw and another screw, for checks of directions.
+/// The sine of the angle between two screws, as six-vectors: zero if they are on one line.
 pub(crate) fn same_line(a: &Screw, b: &Screw) -> f64 {
     let (a, b) = (a.to_vector().normalize(), b.to_vector().normalize());
     (a - b * a.dot(&b)).norm()

@@ -162,16 +162,16 @@ pub fn after<const N: usize>(
     tau: Enclosed<N>,
 ) -> Target<N> {
     match motion {
-        IntersectionMotion::Planar(PlanarMotion::Turn) => {
+        IntersectionMotion::Planar(PlanarMotion::Rotation) => {
             let v = v.planar();
             Target::Planar(PlanarTarget { rotation: v.rotation * tau.unit_vector(), ..*v })
         }
-        IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+        IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
             let v = v.planar();
             let step = (v.rotation * along).scaled(tau.number());
             Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
         }
-        IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+        IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
             let e = tau.unit_vector();
             Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
                 let first = Affine::products([[x, e.re], [y, e.im]]);
@@ -181,11 +181,13 @@ pub fn after<const N: usize>(
         IntersectionMotion::Cylindrical(motion) => {
             let [angle, advance] = v.cylindrical();
             match motion {
-                CylindricalMotion::Turn => Target::Cylindrical(angle + tau.number(), advance),
-                CylindricalMotion::Advance => Target::Cylindrical(angle, advance + tau.number()),
+                CylindricalMotion::Rotation => Target::Cylindrical(angle + tau.number(), advance),
+                CylindricalMotion::Translation => {
+                    Target::Cylindrical(angle, advance + tau.number())
+                }
             }
         }
-        IntersectionMotion::Translational(TranslationalMotion::Slide(along)) => {
+        IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
             let step = Plane::constant(along).scaled(tau.number());
             Target::Translational(*v.translational() + step)
         }
@@ -199,19 +201,19 @@ pub fn before<const N: usize>(
     tau: Enclosed<N>,
 ) -> Target<N> {
     match motion {
-        IntersectionMotion::Planar(PlanarMotion::Turn) => {
+        IntersectionMotion::Planar(PlanarMotion::Rotation) => {
             let (b, e) = (b.planar(), tau.unit_vector());
             Target::Planar(PlanarTarget {
                 rotation: e * b.rotation,
                 translation: e * b.translation,
             })
         }
-        IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+        IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
             let b = b.planar();
             let step = Plane::constant(along).scaled(tau.number());
             Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
         }
-        IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+        IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
             let (e, [x, y, z]) = (tau.unit_vector(), b.spherical().0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
@@ -271,18 +273,18 @@ pub mod task {
         match task.lower_intersection {
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
-                    PlanarMotion::Turn => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Slide(_) => pose[2].unit_vector(home(2)),
+                    PlanarMotion::Rotation => Plane::constant(Complex::new(1.0, 0.0)),
+                    PlanarMotion::Translation(_) => pose[2].unit_vector(home(2)),
                 },
                 translation: Plane { re: q(0), im: q(1) },
             }),
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 Target::Spherical(tilt(pose[0].unit_vector(home(0)), pose[1].unit_vector(home(1))))
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 Target::Cylindrical(q(0), q(1))
             }
             IntersectionMotion::Translational(_) => {
@@ -300,7 +302,7 @@ pub mod task {
         };
         let none = Affine::constant(0.0);
         match task.upper_intersection {
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 let absolute = euler(
                     pose[0].unit_vector(0.0),
                     pose[1].unit_vector(0.0),
@@ -311,16 +313,16 @@ pub mod task {
                     None => absolute,
                 })
             }
-            IntersectionMotion::Planar(PlanarMotion::Turn) => {
+            IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 planar(pose[2].unit_vector(home(2)), q(0), q(1))
             }
-            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
+            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
                 planar(pose[1].unit_vector(home(1)), none, q(0))
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(q(0), q(1))
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 Target::Cylindrical(q(0), none)
             }
             IntersectionMotion::Translational(_) => {

@@ -1,4 +1,4 @@
-//! What the search finds, put to the test: inverse kinematics give the actuated joints back, and the legs
+//! Candidates of the search are checked: inverse kinematics give the actuated joints back, and all legs
 //! close.
 
 use super::search::Search;
@@ -14,40 +14,42 @@ use crate::numeric::Quantity;
 use nalgebra::{Complex, Isometry3};
 use std::f64::consts::TAU;
 
-/// A leg's solution at an assembled pose has the actuated joints' values to within this, radians or sizes:
-/// inverse kinematics near a serial singularity give the root of the rounding.
+/// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
+/// shares of the size. Near a serial singularity, inverse kinematics are only accurate to about the square
+/// root of rounding.
 const MATCH: f64 = 1e-6;
 
-/// Two solutions of a leg that both match are two only if a joint of them differs by more than this; nearer
-/// to each other they are one on its way through a singularity.
+/// Two solutions of a leg that both match are distinct if a joint differs by more than this, in radians or
+/// shares of the size. Otherwise they are one solution near a singularity.
 const APART: f64 = 1e-4;
 
-/// A leg closes so well that what inverse kinematics say of its passive joints needs no mending.
+/// Below this residual, the passive joints that inverse kinematics give are not improved any further.
 const SETTLED: f64 = 1e-13;
 
-/// Assemblies of one mode are one if no joint of them differs by more, radians or metres.
+/// Two assemblies in one mode are the same if no joint differs by more than this, in radians or metres.
 const SAME: f64 = 1e-9;
 
 impl Manipulator {
-    /// The assembly at a pose with the actuated joints `amounts` from home: the joints of a solution
-    /// there, mended where the actuated ones are not exactly what they should be.
+    /// The assembly at a pose, where the actuated joints have these displacements from home. The other joints
+    /// are those of a solution there, improved where that does not close to rounding.
     pub(super) fn assembly(
         &self,
         pose: &[f64],
         mode: Mode,
-        amounts: &[f64],
-        (solution, target): (&mut Solution, &Isometry3<f64>),
+        displacements: &[f64],
+        solution: &mut Solution,
+        target: &Isometry3<f64>,
     ) -> Assembly {
-        // The values that were given, at the turn at which inverse kinematics give them.
-        for (&amount, &coordinate) in amounts.iter().zip(self.actuated()) {
+        // The given values, with the full revolutions that inverse kinematics give.
+        for (&displacement, &coordinate) in displacements.iter().zip(self.actuated()) {
             let c = &self.coordinates()[coordinate];
-            let given = c.home + amount;
+            let given = c.home + displacement;
             let joint = &mut solution.joints[coordinate];
-            let turns = match c.quantity {
+            let revolutions = match c.quantity {
                 Quantity::Angle => ((*joint - given) / TAU).round(),
                 Quantity::Length => 0.0,
             };
-            *joint = given + TAU * turns;
+            *joint = given + TAU * revolutions;
         }
         let mut residual = self.closure.residual(&solution.joints, target);
         if residual > SETTLED {
@@ -65,30 +67,30 @@ impl Manipulator {
 }
 
 impl Search<'_> {
-    /// Every assembly at `v · b`: in most mechanisms one, but a leg may close in several ways with the
-    /// same actuated joints.
+    /// Accepts every assembly at `v · b`. Most mechanisms have one, but a leg may have several branches with
+    /// the same actuated joints.
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
         let pose = m.task().pose(v, b);
         let Ok((v, b)) = m.displacements(&pose) else { return };
         let target = m.task().isometry(&v, &b);
-        let mut ways: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
+        let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
-            let (ways_of_leg, off) = self.ways(leg, [&v, &b]);
-            if ways_of_leg.is_empty() {
-                self.dismiss(off);
+            let (matching, error) = self.matching_solutions(leg, [&v, &b]);
+            if matching.is_empty() {
+                self.reject(error);
                 return;
             }
-            ways.push(ways_of_leg);
+            solutions.push(matching);
         }
-        let count: usize = ways.iter().map(Vec::len).product();
+        let count: usize = solutions.iter().map(Vec::len).product();
         for number in 0..count {
             let mut rest = number;
             let mut mode = Mode::default();
             self.solution.within_limits = true;
-            for (leg, ways) in ways.iter().enumerate() {
-                let (own, solution) = &ways[rest % ways.len()];
-                rest /= ways.len();
+            for (leg, solutions) in solutions.iter().enumerate() {
+                let (own, solution) = &solutions[rest % solutions.len()];
+                rest /= solutions.len();
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
@@ -96,22 +98,27 @@ impl Search<'_> {
         }
     }
 
-    fn dismiss(&mut self, off: f64) {
-        self.least = Some(self.least.map_or(off, |least| least.min(off)));
+    /// Notes by how much the joints of a rejected candidate are off.
+    fn reject(&mut self, error: f64) {
+        self.least = Some(self.least.map_or(error, |least| least.min(error)));
     }
 
-    /// A leg's solutions at a pose that have the actuated joints where they are; and by how much the one is
-    /// off that comes nearest to that.
-    fn ways(&self, leg: usize, pose: [&Displacement; 2]) -> (Vec<(Mode, LegSolution)>, f64) {
+    /// The solutions of a leg at a pose that have the given values of its actuated joints, and the smallest
+    /// error of any of its solutions, in radians or shares of the size.
+    fn matching_solutions(
+        &self,
+        leg: usize,
+        pose: [&Displacement; 2],
+    ) -> (Vec<(Mode, LegSolution)>, f64) {
         let m = self.manipulator;
         let mut least = f64::INFINITY;
         let compiled = &m.legs[leg];
         let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
-        // Most ways already have the lower joints elsewhere: they are dismissed before the rest is solved.
-        let quick =
+        // Most solutions already have other lower joints. They are rejected before the rest is solved.
+        let lower_first =
             compiled.split_section == Section::Upper && !self.plan.legs[leg].lower.is_empty();
         let [v, b] = pose;
-        let cuts = Branch::BOTH.map(|branch| match quick {
+        let cuts = Branch::BOTH.map(|branch| match lower_first {
             true => {
                 compiled.upper.chain.first(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0))
             }
@@ -119,22 +126,23 @@ impl Search<'_> {
         });
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
-            if quick {
+            if lower_first {
                 let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else {
                     continue;
                 };
                 let lower = compiled.solve_lower(m.task(), v, tau, branches.lower);
-                let off = lower.map_or(f64::INFINITY, |l| self.section_off(&compiled.lower, &l));
-                if off.is_nan() || off > MATCH {
-                    least = least.min(off);
+                let error =
+                    lower.map_or(f64::INFINITY, |l| self.section_error(&compiled.lower, &l));
+                if error.is_nan() || error > MATCH {
+                    least = least.min(error);
                     continue;
                 }
             }
             let Ok(solution) = compiled.solve(m.task(), pose, branches, 0.0) else { continue };
-            let off = self.off(leg, &solution);
-            least = least.min(off);
-            if off <= MATCH {
-                found.push((mode, solution, off));
+            let error = self.leg_error(leg, &solution);
+            least = least.min(error);
+            if error <= MATCH {
+                found.push((mode, solution, error));
             }
         }
         found.sort_by(|a, b| a.2.total_cmp(&b.2));
@@ -148,24 +156,30 @@ impl Search<'_> {
         (kept, least)
     }
 
-    /// By how much a leg's solution has its actuated joints elsewhere.
-    fn off(&self, leg: usize, solution: &LegSolution) -> f64 {
+    /// The largest error of an actuated joint in a leg's solution, in radians or shares of the size.
+    fn leg_error(&self, leg: usize, solution: &LegSolution) -> f64 {
         let leg = &self.manipulator.legs[leg];
-        let lower = self.section_off(&leg.lower, &solution.lower);
-        lower.max(self.section_off(&leg.upper, &solution.upper))
+        let lower = self.section_error(&leg.lower, &solution.lower);
+        lower.max(self.section_error(&leg.upper, &solution.upper))
     }
 
-    fn section_off(&self, section: &CompiledSection, amounts: &[JointDisplacement; 3]) -> f64 {
-        let mut off = 0.0_f64;
-        for (slot, &amount) in section.coordinates.iter().zip(amounts) {
+    /// The largest error of an actuated joint in one section, in radians or shares of the size.
+    fn section_error(
+        &self,
+        section: &CompiledSection,
+        displacements: &[JointDisplacement; 3],
+    ) -> f64 {
+        let mut error = 0.0_f64;
+        for (slot, &displacement) in section.coordinates.iter().zip(displacements) {
             if let Some(ChainCoordinate { number: coordinate, actuated: Some(drive) }) = *slot {
-                let (value, turn) = (self.amounts[drive], self.turns[drive]);
-                off = off.max(self.apart(coordinate, amount, value, turn));
+                let (value, direction) = (self.displacements[drive], self.directions[drive]);
+                error = error.max(self.distance(coordinate, displacement, value, direction));
             }
         }
-        off
+        error
     }
 
+    /// Whether two solutions of a leg are the same, up to rounding near a singularity.
     fn same(&self, leg: usize, one: &LegSolution, other: &LegSolution) -> bool {
         let m = self.manipulator;
         let compiled = &m.legs[leg];
@@ -176,21 +190,22 @@ impl Search<'_> {
         sections.iter().all(|(section, one, other)| {
             section.coordinates.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
                 let Some(slot) = slot else { return true };
-                self.apart(slot.number, *one, other.value(), other.unit_direction()) < APART
+                self.distance(slot.number, *one, other.value(), other.unit_direction()) < APART
             })
         })
     }
 
-    /// Distance of an amount from a value, and from its turn: radians or sizes.
-    fn apart(
+    /// The distance of a joint's displacement from a value, or from the direction of that angle: in radians
+    /// or shares of the size.
+    fn distance(
         &self,
         coordinate: usize,
-        amount: JointDisplacement,
+        displacement: JointDisplacement,
         value: f64,
-        turn: Complex<f64>,
+        direction: Complex<f64>,
     ) -> f64 {
-        match amount {
-            JointDisplacement::Direction(_) => length(amount.unit_direction() - turn),
+        match displacement {
+            JointDisplacement::Direction(_) => length(displacement.unit_direction() - direction),
             JointDisplacement::Value(given) => {
                 match self.manipulator.coordinates()[coordinate].quantity {
                     Quantity::Angle => (given - value).abs(),
@@ -200,13 +215,14 @@ impl Search<'_> {
         }
     }
 
-    /// Adds the assembly in the buffer, unless it does not close or is there already.
+    /// Adds the assembly in the buffer to the list, unless it does not close or is listed already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        let mut assembly = m.assembly(pose, mode, self.amounts, (&mut self.solution, target));
+        let mut assembly = m.assembly(pose, mode, self.displacements, &mut self.solution, target);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
-            // What the sections have lost on the way, near singularities of theirs, the whole may give back.
-            let actuated = m.actuated().iter().zip(self.amounts);
+            // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
+            // the sections have lost.
+            let actuated = m.actuated().iter().zip(self.displacements);
             let given: Vec<f64> = actuated.map(|(&c, a)| m.coordinates()[c].home + a).collect();
             if let Ok(better) = m.forward_near(&given, pose, mode) {
                 let moved = better.joints.iter().zip(&assembly.joints);
@@ -217,7 +233,7 @@ impl Search<'_> {
             }
         }
         if assembly.residual.is_nan() || assembly.residual > RESIDUAL {
-            self.dismiss(assembly.residual);
+            self.reject(assembly.residual);
             return;
         }
         let known = |other: &Assembly| {
@@ -229,6 +245,7 @@ impl Search<'_> {
         }
     }
 
+    /// The assemblies that were accepted; if there are none, the reasons.
     pub(super) fn finish(mut self) -> Assemblies {
         for (leg, deficit) in self.deficits.iter().enumerate() {
             if let Some(deficit) = *deficit {
@@ -243,7 +260,7 @@ impl Search<'_> {
         if !self.out.list.is_empty() {
             self.out.unmet.clear();
         }
-        // A loose section closes in some way, which is not listed.
+        // A section that can move closes at some poses, which are not listed.
         let Assemblies { loose, unmet, .. } = &mut self.out;
         unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
         self.out

@@ -1,5 +1,5 @@
-//! Where a displacement that moves along the intersection motion meets a condition: a link that swings
-//! about a point until its end is on a circle or a line, an axis that turns until it lies on a cone.
+//! Where a displacement that moves along the intersection motion satisfies a condition: a link swings about
+//! a point until its end is on a circle or a line, or an axis rotates until it lies on a cone.
 
 use crate::chain::ReachDeficit;
 use crate::chain::condition::{Condition, VERGE, dot, length};
@@ -8,45 +8,46 @@ use crate::group::{
 };
 use nalgebra::Complex;
 
-/// Where `v · exp(I τ)` meets a condition.
+/// The values of τ for which `v · exp(I τ)` satisfies a condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Meeting {
-    /// At one τ or two.
+pub enum Solutions {
+    /// One value of τ, or two.
     At([Option<JointDisplacement>; 2]),
-    /// Nowhere: by how much it misses.
-    Never(ReachDeficit),
-    /// The condition holds for every τ, or it does not depend on τ.
-    Anywhere,
+    /// No τ satisfies the condition, which is missed by this deficit at least.
+    None(ReachDeficit),
+    /// The condition does not depend on τ.
+    Any,
 }
 
-/// Where `v · exp(I τ)` meets `condition`; lengths are compared with `size`.
+/// The values of τ for which `v · exp(I τ)` satisfies `condition`. Lengths are compared with `size`, that of
+/// the mechanism in metres.
 pub fn along(
     condition: &Condition,
     v: &Displacement,
     motion: &IntersectionMotion,
     size: f64,
-) -> Meeting {
+) -> Solutions {
     match condition {
         Condition::Circle { point, centre, radius } => {
             let v = v.planar();
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     // |P − c + r w e(τ)| = a, P − c = d
                     let (d, w) = (v.translation - centre, v.rotation * point);
                     let arm = length(*point);
                     let constant = d.norm_sqr() + arm * arm - radius * radius;
-                    turning(2.0 * d.conj() * w, constant, size * size, || {
+                    rotations(2.0 * d.conj() * w, constant, size * size, || {
                         let far = d.norm() - (arm + radius);
                         ReachDeficit::length(far.max((arm - radius).abs() - d.norm()))
                     })
                 }
-                PlanarMotion::Slide(d) => {
+                PlanarMotion::Translation(d) => {
                     // |z + d τ| = a, z = g w − c
                     let (z, d) = (v.apply(*point) - centre, v.rotation * d);
                     let (foot, aside) = (dot(d, z), d.re * z.im - d.im * z.re);
                     let square = radius * radius - aside * aside;
                     if square < -2.0 * VERGE * size * size {
-                        return Meeting::Never(ReachDeficit::length(aside.abs() - radius));
+                        return Solutions::None(ReachDeficit::length(aside.abs() - radius));
                     }
                     let root = square.max(0.0).sqrt();
                     let at = |root: f64| JointDisplacement::Value(root - foot);
@@ -57,14 +58,14 @@ pub fn along(
         Condition::Line { point, normal, offset } => {
             let v = v.planar();
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     let constant = dot(*normal, v.translation) - offset;
                     let w = normal.conj() * v.rotation * point;
-                    turning(w, constant, size, || ReachDeficit::length(constant.abs() - w.norm()))
+                    rotations(w, constant, size, || ReachDeficit::length(constant.abs() - w.norm()))
                 }
-                PlanarMotion::Slide(d) => {
+                PlanarMotion::Translation(d) => {
                     let slope = dot(*normal, v.rotation * d);
-                    sliding(slope, dot(*normal, v.apply(*point)) - offset, size)
+                    translation(slope, dot(*normal, v.apply(*point)) - offset, size)
                 }
             }
         }
@@ -72,31 +73,31 @@ pub fn along(
             let v = v.planar();
             let z = v.rotation.conj() * (point - v.translation);
             match motion.planar() {
-                PlanarMotion::Turn => {
+                PlanarMotion::Rotation => {
                     // normal · e(−τ) z = Re(conj(normal) conj(e) z) = Re(normal conj(z) e)
                     let w = normal * z.conj();
-                    turning(w, -offset, size, || ReachDeficit::length(offset.abs() - w.norm()))
+                    rotations(w, -offset, size, || ReachDeficit::length(offset.abs() - w.norm()))
                 }
-                PlanarMotion::Slide(d) => {
-                    sliding(-dot(*normal, *d), dot(*normal, z) - offset, size)
+                PlanarMotion::Translation(d) => {
+                    translation(-dot(*normal, *d), dot(*normal, z) - offset, size)
                 }
             }
         }
         Condition::Heading { rotation } => match motion.planar() {
-            PlanarMotion::Turn => {
+            PlanarMotion::Rotation => {
                 one(JointDisplacement::Direction(v.planar().rotation.conj() * rotation))
             }
-            PlanarMotion::Slide(_) => Meeting::Anywhere,
+            PlanarMotion::Translation(_) => Solutions::Any,
         },
         Condition::Cone { fixed, carried, cosine } => match motion.spherical() {
-            SphericalMotion::Turn => {
+            SphericalMotion::Rotation => {
                 let (f, w) = (v.spherical().tr_mul(fixed), carried);
                 // f · Rz(τ) w = (f.x w.x + f.y w.y) cos τ + (f.y w.x − f.x w.y) sin τ + f.z w.z
                 let z = Complex::new(f.x * w.x + f.y * w.y, f.x * w.y - f.y * w.x);
                 let constant = f.z * w.z - cosine;
-                turning(z, constant, 1.0, || {
+                rotations(z, constant, 1.0, || {
                     let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-                    // The angle between the two ranges over an interval as the axis turns.
+                    // The angle between the two ranges over an interval as the axis rotates.
                     let [a, b] = [arc(f.z), arc(w.z)];
                     let (least, most) = ((a - b).abs(), (a + b).min(std::f64::consts::TAU - a - b));
                     ReachDeficit::angle((least - arc(*cosine)).max(arc(*cosine) - most))
@@ -106,51 +107,54 @@ pub fn along(
         Condition::Flat { normal, value } => {
             let ([a, b], [p, q]) = (v.sum(), motion.sum());
             let scale = normal[0].hypot(normal[1]) * size.max(1.0);
-            sliding(normal[0] * p + normal[1] * q, normal[0] * a + normal[1] * b - value, scale)
+            translation(normal[0] * p + normal[1] * q, normal[0] * a + normal[1] * b - value, scale)
         }
     }
 }
 
-fn one(amount: JointDisplacement) -> Meeting {
-    Meeting::At([Some(amount), None])
+/// One solution.
+fn one(tau: JointDisplacement) -> Solutions {
+    Solutions::At([Some(tau), None])
 }
 
-fn two(first: JointDisplacement, second: JointDisplacement, same: bool) -> Meeting {
-    Meeting::At([Some(first), (!same).then_some(second)])
+/// Two solutions, or one if they coincide.
+fn two(first: JointDisplacement, second: JointDisplacement, coincide: bool) -> Solutions {
+    Solutions::At([Some(first), (!coincide).then_some(second)])
 }
 
-/// The turns `e`, `|e| = 1`, with `Re(z e) + constant = 0`, in units of which `scale` is a large one.
-fn turning(
+/// The rotations `e`, `|e| = 1`, with `Re(z e) + constant = 0`. `scale` is the size of the terms that `z` and
+/// `constant` are computed from. `deficit` is evaluated if there is no solution.
+fn rotations(
     z: Complex<f64>,
     constant: f64,
     scale: f64,
-    gap: impl FnOnce() -> ReachDeficit,
-) -> Meeting {
+    deficit: impl FnOnce() -> ReachDeficit,
+) -> Solutions {
     let square = z.norm_sqr();
     if square <= VERGE * VERGE * scale * scale {
-        // The arm has no length, or swings about the circle's centre.
+        // The arm has no length, or it swings about the circle's centre.
         return if constant.abs() <= VERGE * scale {
-            Meeting::Anywhere
+            Solutions::Any
         } else {
-            Meeting::Never(gap())
+            Solutions::None(deficit())
         };
     }
     let root = square - constant * constant;
     if root < -2.0 * VERGE * square.max(scale * square.sqrt()) {
-        return Meeting::Never(gap());
+        return Solutions::None(deficit());
     }
     let root = Complex::new(0.0, root.max(0.0).sqrt());
     let at = |sign: f64| JointDisplacement::Direction(z.conj() * (root * sign - constant) / square);
     two(at(1.0), at(-1.0), root.im == 0.0)
 }
 
-/// The τ with `slope τ + constant = 0`.
-fn sliding(slope: f64, constant: f64, scale: f64) -> Meeting {
+/// The translation τ with `slope τ + constant = 0`. `scale` is the size of the terms of `constant`.
+fn translation(slope: f64, constant: f64, scale: f64) -> Solutions {
     if slope.abs() > VERGE {
         one(JointDisplacement::Value(-constant / slope))
     } else if constant.abs() <= VERGE * scale {
-        Meeting::Anywhere
+        Solutions::Any
     } else {
-        Meeting::Never(ReachDeficit::length(constant.abs()))
+        Solutions::None(ReachDeficit::length(constant.abs()))
     }
 }

@@ -1,6 +1,6 @@
-//! Forward kinematics near a pose, for any mechanism: Newton's steps on the platform's two displacements
-//! with the Jacobian of the actuated joints. They are taken as twists, not in the coordinates of the pose,
-//! so that Euler angles on their pole (home, of many mechanisms) do not stop them.
+//! Forward kinematics near a pose, for any mechanism: Newton's method on the platform's two displacements,
+//! with the Jacobian of the actuated joints. Steps are twists, not changes of the task coordinates, so that
+//! a singularity of the Euler angles does not stop them. Home is such a pose in many mechanisms.
 
 use super::{Assembly, ForwardError, RESIDUAL};
 use crate::group::LocalTwist;
@@ -13,64 +13,66 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Steps at most. From a start that Newton's method is made for it takes about six.
+/// The largest number of steps. Newton's method takes about six from a good start.
 const STEPS: u32 = 60;
 
-/// The longest step, radians or sizes: linear terms say little further away.
+/// The longest step, in radians or shares of the size. The linear terms are not useful further away.
 const LONGEST: f64 = 0.5;
 
-/// Halvings of a step that leads out of reach or away from the solution.
+/// How often a step is halved that leads out of reach or away from the solution.
 const HALVINGS: u32 = 20;
 
-/// Off by less, in radians and sizes, the joints are where they should be, and steps go on only while they
-/// improve on it.
+/// The joints have their values to within this, in radians and shares of the size. From there on, steps are
+/// taken only as long as they reduce the error.
 const ARRIVED: f64 = 1e-11;
 
-/// A singular value of the Jacobian this small beside the largest, lengths over the size, is none.
+/// A singular value of the Jacobian below this share of the largest counts as zero. Lengths are over the
+/// size.
 const SINGULAR: f64 = 1e-9;
 
-/// Why there is no assembly near a pose.
+/// Why no assembly was found near a pose.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NearError {
-    /// Joint values that cannot be computed with.
+    /// The joint values cannot be computed with.
     #[error(transparent)]
     Joints(#[from] ForwardError),
-    /// A start that cannot be computed with.
+    /// The pose to start from cannot be computed with.
     #[error(transparent)]
     Start(#[from] PoseError),
-    /// The steps ended elsewhere.
+    /// Newton's method did not reach an assembly.
     #[error(transparent)]
     NotFound(#[from] NotFound),
 }
 
-/// Where Newton's steps ended without an assembly.
+/// Where Newton's method ended without an assembly.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "no assembly found from this start: {why} after {steps} steps, where the actuated joints are off by \
-     {off:.3e} (radians and shares of the mechanism's size)"
+    "no assembly found from this start: {why} at step {steps}, where an actuated joint differs from its \
+     value by {off:.3e} (in radians, or shares of the mechanism's size)"
 )]
 pub struct NotFound {
-    /// What stopped them.
+    /// What stopped the steps.
     pub why: Stop,
-    /// Steps that were taken.
+    /// The number of steps that were taken.
     pub steps: u32,
-    /// How far the actuated joints are from their values, radians and shares of the mechanism's size;
-    /// infinite where the start is out of reach.
+    /// The largest distance of an actuated joint from its value, in radians or shares of the mechanism's
+    /// size; infinite if the start is out of reach.
     pub off: f64,
-    /// The last pose.
+    /// The last pose: task coordinates, metres and radians.
     pub pose: Vec<f64>,
 }
 
 /// What stopped the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// A leg does not reach any further that way, in this working mode.
+    /// A leg is out of reach in the direction of the step, in this working mode.
     OutOfReach(Unreachable),
-    /// The Jacobian is singular: a leg has no rates, or the platform moves with the actuators held.
+    /// The Jacobian is singular: at a serial singularity of a leg, or at a parallel singularity.
     Singular,
-    /// No step brings the joints nearer to their values.
+    /// No step reduces the distance of the joints from their values.
     Stalled,
-    /// They were still on their way.
+    /// The largest number of steps was taken without convergence.
     Steps,
 }
 
@@ -85,32 +87,35 @@ impl fmt::Display for Stop {
                     "leg number {leg} is out of reach in its {section} section by {excess:.3e} {unit}"
                 )
             }
-            Self::Singular => f.write_str("a singular pose"),
-            Self::Stalled => f.write_str("no further approach"),
+            Self::Singular => f.write_str("the pose is singular"),
+            Self::Stalled => f.write_str("no step reduces the error"),
             Self::Steps => f.write_str("no convergence"),
         }
     }
 }
 
 impl Manipulator {
-    /// The assembly that Newton's method finds from a pose, in one working mode: the pose at which the
-    /// actuated joints have these values (in the order of [`Manipulator::actuated`], radians and metres,
-    /// angles modulo a turn where turns do not count). Quadratic near the solution; steps that lead out
-    /// of reach or away are shortened.
+    /// The assembly that Newton's method finds from a start pose, in one working mode. At the assembly, the
+    /// actuated joints have the given values, in the order of [`Manipulator::actuated`], radians and metres.
+    /// Angles count modulo 2π, unless full revolutions matter.
+    ///
+    /// Convergence is quadratic near the solution. Steps that lead out of reach or away from the solution
+    /// are shortened.
     ///
     /// # Errors
-    /// Values or a start that cannot be computed with; or where and why the steps ended.
+    /// If the joint values or the start cannot be computed with, or if the steps end without an assembly;
+    /// [`NotFound`] says where and why.
     pub fn forward_near(
         &self,
         actuated: &[f64],
         start: &[f64],
         mode: Mode,
     ) -> Result<Assembly, NearError> {
-        let amounts = self.held_amounts(actuated)?;
+        let displacements = self.actuated_displacements(actuated)?;
         let mut newton = Newton {
             manipulator: self,
             wanted: actuated,
-            wrapped: self.wrapped(),
+            modulo: self.modulo_revolutions(),
             mode,
             pose: start.to_vec(),
             solution: self.solution(),
@@ -120,85 +125,91 @@ impl Manipulator {
             let why = Stop::OutOfReach(newton.solution.unreachable[0]);
             return Err(newton.ended(why, 0, f64::INFINITY).into());
         }
-        let mut off = newton.off();
+        let mut error = newton.error();
         for steps in 0..STEPS {
-            match newton.step(&mut jacobians, &mut off) {
+            match newton.step(&mut jacobians, &mut error) {
                 Ok(()) => {}
-                Err(_) if off.amax() <= ARRIVED => break,
-                Err(why) => return Err(newton.ended(why, steps, off.amax()).into()),
+                Err(_) if error.amax() <= ARRIVED => break,
+                Err(why) => return Err(newton.ended(why, steps, error.amax()).into()),
             }
         }
-        if off.amax() > ARRIVED {
-            return Err(newton.ended(Stop::Steps, STEPS, off.amax()).into());
+        if error.amax() > ARRIVED {
+            return Err(newton.ended(Stop::Steps, STEPS, error.amax()).into());
         }
         let (v, b) = self.displacements(&newton.pose)?;
         let pose = self.task().pose(&v, &b);
         self.inverse(&pose, mode, &mut newton.solution)?;
         let target = self.task().displacement(&pose);
         let mut solution = newton.solution.clone();
-        let assembly = self.assembly(&pose, mode, &amounts, (&mut solution, &target));
+        let assembly = self.assembly(&pose, mode, &displacements, &mut solution, &target);
         if assembly.residual > RESIDUAL {
             return Err(newton.ended(Stop::Stalled, STEPS, assembly.residual).into());
         }
         Ok(assembly)
     }
 
-    /// Of every actuated coordinate, whether it is an angle modulo a turn.
-    fn wrapped(&self) -> Vec<bool> {
-        let turns = |kind: JointKind| match kind {
+    /// For every actuated coordinate, whether it is an angle modulo 2π.
+    fn modulo_revolutions(&self) -> Vec<bool> {
+        let rotates = |kind: JointKind| match kind {
             JointKind::Revolute | JointKind::Universal { .. } | JointKind::Cylindrical => true,
             JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Spherical => false,
         };
         let joints = self.mechanism().joints().filter(|joint| joint.actuated);
         joints
             .flat_map(|joint| {
-                let turns = turns(joint.kind);
-                joint.coordinates.iter().map(move |c| turns && c.quantity == Quantity::Angle)
+                let rotates = rotates(joint.kind);
+                joint.coordinates.iter().map(move |c| rotates && c.quantity == Quantity::Angle)
             })
             .collect()
     }
 }
 
+/// The state of Newton's method.
 struct Newton<'a> {
     manipulator: &'a Manipulator,
+    /// The values that the actuated joints should have, radians and metres.
     wanted: &'a [f64],
-    wrapped: Vec<bool>,
+    /// For every actuated coordinate, whether it is an angle modulo 2π.
+    modulo: Vec<bool>,
     mode: Mode,
+    /// The present pose, task coordinates.
     pose: Vec<f64>,
+    /// The solution at the present pose.
     solution: Solution,
 }
 
 impl Newton<'_> {
+    /// The report of a run without an assembly.
     fn ended(self, why: Stop, steps: u32, off: f64) -> NotFound {
         NotFound { why, steps, off, pose: self.pose }
     }
 
-    /// From where the actuated joints are to where they should be, radians and sizes.
-    fn off(&self) -> DVector<f64> {
+    /// The actuated joints' wanted values minus their present ones, in radians and shares of the size.
+    fn error(&self) -> DVector<f64> {
         let m = self.manipulator;
-        let joints = m.actuated().iter().zip(self.wanted).zip(&self.wrapped);
+        let joints = m.actuated().iter().zip(self.wanted).zip(&self.modulo);
         DVector::from_iterator(
             self.wanted.len(),
-            joints.map(|((&coordinate, wanted), wrapped)| {
-                let off = wanted - self.solution.joints[coordinate];
+            joints.map(|((&coordinate, wanted), modulo)| {
+                let error = wanted - self.solution.joints[coordinate];
                 match m.coordinates()[coordinate].quantity {
-                    Quantity::Angle if *wrapped => off - TAU * (off / TAU).round(),
-                    Quantity::Angle => off,
-                    Quantity::Length => off / m.closure.size,
+                    Quantity::Angle if *modulo => error - TAU * (error / TAU).round(),
+                    Quantity::Angle => error,
+                    Quantity::Length => error / m.closure.size,
                 }
             }),
         )
     }
 
-    /// One step, as far as it brings the joints nearer.
-    fn step(&mut self, jacobians: &mut Jacobians, off: &mut DVector<f64>) -> Result<(), Stop> {
+    /// Takes one step, shortened until it reduces the error.
+    fn step(&mut self, jacobians: &mut Jacobians, error: &mut DVector<f64>) -> Result<(), Stop> {
         let m = self.manipulator;
         let size = m.closure.size;
         if !m.differentiate(&self.solution, jacobians).unwrap_or(false) {
             return Err(Stop::Singular);
         }
         let directions = jacobians.directions();
-        // Lengths over the size, in rows and columns.
+        // In rows and columns, lengths are divided by the size.
         let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
         let columns: Vec<f64> = (directions.iter())
             .map(
@@ -220,7 +231,7 @@ impl Newton<'_> {
         }
         let mut step = DVector::zeros(columns.len());
         for (k, value) in svd.values.iter().enumerate() {
-            step += svd.right.column(k) * (svd.image.column(k).dot(off) / (value * value));
+            step += svd.right.column(k) * (svd.image.column(k).dot(error) / (value * value));
         }
         let share = (LONGEST / step.amax()).min(1.0);
         let Ok((v, b)) = m.displacements(&self.pose) else { return Err(Stop::Stalled) };
@@ -228,21 +239,21 @@ impl Newton<'_> {
         let mut stop = Stop::Stalled;
         for halving in 0..HALVINGS {
             let scale = share * 0.5_f64.powi(halving as i32);
-            let [mut up, mut low] = [LocalTwist::zeros(); 2];
+            let [mut upper_twist, mut lower_twist] = [LocalTwist::zeros(); 2];
             for ((component, column), [u, l]) in step.iter().zip(&columns).zip(&directions) {
-                up += u * (component * column * scale);
-                low += l * (component * column * scale);
+                upper_twist += u * (component * column * scale);
+                lower_twist += l * (component * column * scale);
             }
-            // ḃ b⁻¹ and v⁻¹ v̇
-            let moved_b = upper.first_order(&up).after(&b);
-            let moved_v = v.after(&lower.first_order(&low));
+            // The twists are ḃ b⁻¹ and v⁻¹ v̇.
+            let moved_b = upper.first_order(&upper_twist).after(&b);
+            let moved_v = v.after(&lower.first_order(&lower_twist));
             let pose = m.task().pose(&moved_v, &moved_b);
             match m.inverse(&pose, self.mode, &mut tried) {
                 Ok(Some(_)) => {
                     std::mem::swap(&mut self.solution, &mut tried);
-                    let after = self.off();
-                    if after.norm() < off.norm() {
-                        *off = after;
+                    let after = self.error();
+                    if after.norm() < error.norm() {
+                        *error = after;
                         self.pose = pose;
                         return Ok(());
                     }
@@ -252,7 +263,7 @@ impl Newton<'_> {
                 Ok(None) => stop = Stop::OutOfReach(tried.unreachable[0]),
                 Err(_) => stop = Stop::Stalled,
             }
-            if off.amax() <= ARRIVED {
+            if error.amax() <= ARRIVED {
                 break;
             }
         }
@@ -265,7 +276,7 @@ mod tests {
     use super::*;
     use crate::mechanism::{examples, file};
 
-    /// What is left after each step is the square of what was, times a constant of the mechanism's.
+    /// Each step leaves the square of the error before it, times a constant of the mechanism.
     #[test]
     fn convergence_is_quadratic() {
         let mut squared = 0;
@@ -282,16 +293,16 @@ mod tests {
                 let mut newton = Newton {
                     manipulator: &m,
                     wanted: &wanted,
-                    wrapped: m.wrapped(),
+                    modulo: m.modulo_revolutions(),
                     mode: m.home_mode(),
                     pose: home.clone(),
                     solution,
                 };
-                let (mut jacobians, mut off) = (m.jacobians(), newton.off());
-                let mut before = off.amax();
+                let (mut jacobians, mut error) = (m.jacobians(), newton.error());
+                let mut before = error.amax();
                 while before > 1e-12 {
-                    newton.step(&mut jacobians, &mut off).unwrap();
-                    let after = off.amax();
+                    newton.step(&mut jacobians, &mut error).unwrap();
+                    let after = error.amax();
                     assert!(
                         after < 20.0 * before * before + 1e-14,
                         "{name}: {before:e}, {after:e}"

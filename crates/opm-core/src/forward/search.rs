@@ -1,6 +1,6 @@
-//! The search for assemblies: every combination of what the sections allow, one section after the other.
+//! The search for assemblies: it tries every combination of the solutions of the two sections.
 
-use super::along::{Meeting, along};
+use super::along::{self, along};
 use super::three::{self, Solutions};
 use super::{Assemblies, Unmet};
 use crate::chain::condition::{Condition, VERGE, flat_joints};
@@ -15,40 +15,44 @@ use crate::numeric::angle::whole_turns;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// The possible values of a leg's τ.
+/// The possible values of a leg's displacement τ along the intersection motion.
 enum Taus {
-    These([Option<JointDisplacement>; 2]),
-    /// Nothing holds it, or nothing needs it.
+    /// One value, or two.
+    At([Option<JointDisplacement>; 2]),
+    /// No actuated joint fixes τ, or nothing depends on it.
     Free,
-    Never(ReachDeficit),
+    /// The leg is out of reach, by this deficit at least.
+    None(ReachDeficit),
 }
 
 /// One run of the forward kinematics.
 pub(super) struct Search<'a> {
     pub manipulator: &'a Manipulator,
     pub plan: &'a Plan,
-    /// Displacements of the actuated joints from home.
-    pub amounts: &'a [f64],
-    /// The same as turns.
-    pub turns: Vec<Complex<f64>>,
-    /// A buffer.
+    /// The displacements of the actuated joints from home, radians and metres.
+    pub displacements: &'a [f64],
+    /// The same displacements as unit complex numbers `e(angle)`.
+    pub directions: Vec<Complex<f64>>,
+    /// A buffer for inverse kinematics.
     pub solution: Solution,
+    /// The assemblies found so far.
     pub out: Assemblies,
-    /// Of the poses that were not accepted, the least by which a joint or a leg is off.
+    /// The smallest error of a joint or a leg among the rejected candidates, in radians or shares of the
+    /// size.
     pub least: Option<f64>,
-    /// A combination of lower sections that the upper one does not close.
+    /// Whether the conditions on the upper section had no solution for some solution of the lower one.
     pub upper_failed: bool,
-    /// Of each leg, by how little it failed.
+    /// For each leg, the smallest deficit by which it was out of reach.
     pub deficits: Vec<Option<ReachDeficit>>,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, amounts: &'a [f64]) -> Self {
+    pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
         Self {
             manipulator,
             plan,
-            amounts,
-            turns: amounts.iter().map(|&amount| unit(amount)).collect(),
+            displacements,
+            directions: displacements.iter().map(|&value| unit(value)).collect(),
             solution: manipulator.solution(),
             out: Assemblies::default(),
             least: None,
@@ -57,18 +61,18 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Finds what there is, and puts it to the test.
+    /// Finds all candidates, and accepts those that close.
     pub fn run(&mut self) {
         let (m, plan) = (self.manipulator, self.plan);
-        let none = vec![None; m.legs.len()];
+        let unknown = vec![None; m.legs.len()];
         match &plan.anchor {
             Anchor::Flat(flat) => {
-                let [v, b] = flat.solve(m.task(), self.amounts);
+                let [v, b] = flat.solve(m.task(), self.displacements);
                 self.assemble(&v, &b);
             }
             Anchor::Leg(leg) => {
-                let v = self.held_displacement(*leg);
-                let mut known = none;
+                let v = self.actuated_lower_section(*leg);
+                let mut known = unknown;
                 known[*leg] = Some(JointDisplacement::Value(0.0));
                 self.with_lower(&v, &known);
             }
@@ -82,32 +86,39 @@ impl<'a> Search<'a> {
                             self.out.unmet.push(Unmet::Legs(tracked.map(|t| t.leg)));
                         }
                         for v in vs {
-                            self.with_lower(&v, &none);
+                            self.with_lower(&v, &unknown);
                         }
                     }
                 }
             }
             Anchor::Level { leg, joint } => {
-                let Some(Condition::Flat { normal: [a, b], value }) = self.lower(*leg, *joint)
+                let Some(Condition::Flat { normal: [a, b], value }) =
+                    self.lower_condition(*leg, *joint)
                 else {
                     return;
                 };
                 let share = value / (a * a + b * b);
                 let v = m.task().lower.kind.of_sum([a * share, b * share]);
-                self.with_lower(&v, &none);
+                self.with_lower(&v, &unknown);
             }
             Anchor::CoupledLegs { functional, legs } => {
-                let mut known = none;
+                let mut known = unknown;
                 let mut conditions = Vec::new();
                 for (number, (leg, held)) in m.legs.iter().zip(&plan.legs).enumerate() {
                     if legs.contains(&number) {
-                        let tau = self.followed(number, functional);
+                        let tau = self.coupled_tau(number, functional);
                         known[number] = Some(tau);
                         let cut = m.task().lower_intersection.displacement(tau);
-                        let own = held.lower.iter().filter_map(|slot| self.lower(number, *slot));
+                        let own = held
+                            .lower
+                            .iter()
+                            .filter_map(|slot| self.lower_condition(number, *slot));
                         conditions.extend(own.map(|c| c.before(&cut)));
                     } else if leg.split_section == Section::Lower {
-                        let own = held.lower.iter().filter_map(|slot| self.lower(number, *slot));
+                        let own = held
+                            .lower
+                            .iter()
+                            .filter_map(|slot| self.lower_condition(number, *slot));
                         conditions.extend(own);
                     }
                 }
@@ -126,82 +137,84 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The amount of a held slot.
-    fn amount(&self, leg: usize, section: Section, slot: usize) -> JointDisplacement {
+    /// The displacement of the joint in a slot; zero if that joint is not actuated.
+    fn displacement(&self, leg: usize, section: Section, slot: usize) -> JointDisplacement {
         let slot = self.manipulator.legs[leg].section(section).coordinates[slot];
         JointDisplacement::Value(
-            slot.and_then(|slot| slot.actuated).map_or(0.0, |drive| self.amounts[drive]),
+            slot.and_then(|slot| slot.actuated).map_or(0.0, |drive| self.displacements[drive]),
         )
     }
 
-    /// What a held lower slot asks of `v`, or of `v · exp(I τ)`.
-    fn lower(&self, leg: usize, slot: usize) -> Option<Condition> {
+    /// The condition that an actuated joint of the lower section puts on `v`, or on `v · exp(I τ)`.
+    fn lower_condition(&self, leg: usize, slot: usize) -> Option<Condition> {
         let chain = &self.manipulator.legs[leg].lower.chain;
-        Condition::new(chain, slot, self.amount(leg, Section::Lower, slot))
+        Condition::new(chain, slot, self.displacement(leg, Section::Lower, slot))
     }
 
+    /// The track on which a leg keeps the axis of the intersection motion.
     fn track(&self, leg: usize, slot: usize) -> Option<Track> {
         let compiled = &self.manipulator.legs[leg];
         match compiled.split_section {
-            Section::Lower => Track::of_condition(&self.lower(leg, slot)?),
+            Section::Lower => Track::of_condition(&self.lower_condition(leg, slot)?),
             Section::Upper => {
-                let amounts = [0, 1, 2].map(|slot| self.amount(leg, Section::Lower, slot));
-                Track::of_chain(&compiled.lower.chain, slot, &amounts)
+                let displacements =
+                    [0, 1, 2].map(|slot| self.displacement(leg, Section::Lower, slot));
+                Track::of_chain(&compiled.lower.chain, slot, &displacements)
             }
         }
     }
 
-    /// Where a leg whose lower joints are all actuated has its cut.
-    fn held_displacement(&self, leg: usize) -> Displacement {
-        let a = [0, 1, 2].map(|slot| self.amount(leg, Section::Lower, slot));
+    /// The displacement of the lower section of a leg whose lower joints are all actuated.
+    fn actuated_lower_section(&self, leg: usize) -> Displacement {
+        let q = [0, 1, 2].map(|slot| self.displacement(leg, Section::Lower, slot));
         match &self.manipulator.legs[leg].lower.chain {
-            Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &a)),
-            Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&a)),
-            Chain::Ball(ball) => Displacement::Spherical(ball.forward(&a)),
-            Chain::Cylindrical(chain) => Displacement::Cylindrical(chain.forward(&[a[0], a[1]])),
+            Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
+            Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&q)),
+            Chain::Ball(ball) => Displacement::Spherical(ball.forward(&q)),
+            Chain::Cylindrical(chain) => Displacement::Cylindrical(chain.forward(&[q[0], q[1]])),
             Chain::Translational(chain) => {
-                Displacement::Translational(chain.forward(&[a[0], a[1]]))
+                Displacement::Translational(chain.forward(&[q[0], q[1]]))
             }
         }
     }
 
-    /// The τ of a leg whose cut follows a functional of `b`, where that is zero.
-    fn followed(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
+    /// The τ of one of several coupled legs, where the functional of `b` that couples them is zero.
+    fn coupled_tau(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
         let held = self.plan.legs[leg].upper.first();
         let driven = held.and_then(|&slot| {
             let chain = &self.manipulator.legs[leg].upper.chain;
             let [p, q] = flat_joints(chain)?[slot];
-            let amount = self.amount(leg, Section::Upper, slot).value();
-            Some(-(functional[0] * p + functional[1] * q) * amount)
+            let value = self.displacement(leg, Section::Upper, slot).value();
+            Some(-(functional[0] * p + functional[1] * q) * value)
         });
         JointDisplacement::Value(driven.unwrap_or(0.0))
     }
 
-    /// With `v` known: every combination of the legs' τ.
+    /// Tries every combination of the legs' τ, with `v` known.
     fn with_lower(&mut self, v: &Displacement, known: &[Option<JointDisplacement>]) {
-        // As the pose has it: then what is within half a turn here is so there.
-        let (v, turned) = self.manipulator.task().without_shared_rotation(v);
+        // `v` as the pose gives it, so that angles within π here are within π there.
+        let (v, removed) = self.manipulator.task().without_shared_rotation(v);
         let v = &v;
         let mut options: Vec<[Option<JointDisplacement>; 2]> = Vec::with_capacity(known.len());
-        let mut closes = true;
+        let mut all_reach = true;
         for (leg, known) in known.iter().enumerate() {
             options.push(match known {
-                Some(tau) => [Some(turned.plus(*tau)), None],
+                Some(tau) => [Some(removed.plus(*tau)), None],
                 None => match self.taus(leg, v) {
-                    Taus::These(taus) => taus,
+                    Taus::At(taus) => taus,
                     Taus::Free => [None; 2],
-                    Taus::Never(deficit) => {
+                    Taus::None(deficit) => {
                         let least = self.deficits[leg].map_or(f64::INFINITY, |least| least.excess);
                         if deficit.excess < least {
                             self.deficits[leg] = Some(deficit);
                         }
-                        closes = false;
+                        all_reach = false;
                         continue;
                     }
                 },
             });
         }
-        if !closes {
+        if !all_reach {
             return;
         }
         let choices: Vec<usize> = (0..options.len()).filter(|&i| options[i][1].is_some()).collect();
@@ -217,18 +230,19 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// The possible values of a leg's τ, with `v` known.
     fn taus(&self, number: usize, v: &Displacement) -> Taus {
         let m = self.manipulator;
         let (leg, held) = (&m.legs[number], &self.plan.legs[number]);
         match leg.split_section {
             Section::Upper => {
                 for &slot in &held.lower {
-                    let Some(condition) = self.lower(number, slot) else { continue };
+                    let Some(condition) = self.lower_condition(number, slot) else { continue };
                     match along(&condition, v, &m.task().lower_intersection, m.closure.size) {
-                        Meeting::At(taus) => return Taus::These(taus),
-                        Meeting::Never(gap) => return Taus::Never(gap),
-                        // Another held joint may say more.
-                        Meeting::Anywhere => {}
+                        along::Solutions::At(taus) => return Taus::At(taus),
+                        along::Solutions::None(deficit) => return Taus::None(deficit),
+                        // Another actuated joint may fix τ.
+                        along::Solutions::Any => {}
                     }
                 }
                 Taus::Free
@@ -236,28 +250,28 @@ impl<'a> Search<'a> {
             Section::Lower if held.upper.is_empty() => Taus::Free,
             Section::Lower => {
                 let mut taus = [None; 2];
-                let mut gap = None;
+                let mut deficit = None;
                 for (tau, branch) in taus.iter_mut().zip(Branch::BOTH) {
                     match leg.lower.chain.inverse(v, branch) {
-                        Ok(amounts) => {
-                            *tau = Some(amounts[leg.lower.chain.freedoms() - 1].inverse());
+                        Ok(displacements) => {
+                            *tau = Some(displacements[leg.lower.chain.freedoms() - 1].inverse());
                         }
-                        Err(missed) => gap = Some(missed),
+                        Err(missed) => deficit = Some(missed),
                     }
                     if !leg.lower.chain.has_choice() {
                         break;
                     }
                 }
-                match (taus, gap) {
-                    ([None, None], Some(gap)) => Taus::Never(gap),
-                    ([None, tau], _) => Taus::These([tau, None]),
-                    (taus, _) => Taus::These(taus),
+                match (taus, deficit) {
+                    ([None, None], Some(deficit)) => Taus::None(deficit),
+                    ([None, tau], _) => Taus::At([tau, None]),
+                    (taus, _) => Taus::At(taus),
                 }
             }
         }
     }
 
-    /// With `v` and the cuts known: `b` from the legs' conditions.
+    /// Finds `b` from the legs' conditions, with `v` and every τ known.
     fn with_cuts(&mut self, v: &Displacement, taus: &[Option<JointDisplacement>]) {
         let m = self.manipulator;
         let upper = m.task().upper.kind;
@@ -266,14 +280,14 @@ impl<'a> Search<'a> {
         for (number, (leg, tau)) in m.legs.iter().zip(taus).enumerate() {
             let chain = &leg.upper.chain;
             let own = self.plan.legs[number].upper.iter().filter_map(|&slot| {
-                Condition::new(chain, slot, self.amount(number, Section::Upper, slot))
+                Condition::new(chain, slot, self.displacement(number, Section::Upper, slot))
             });
             match (leg.split_section, tau) {
                 (Section::Upper, Some(tau)) => {
                     let tau = match tau {
                         JointDisplacement::Direction(_) if upper.commutes() => {
                             let counted = tau.nearest(slider_angle) + self.whole_turns(number);
-                            JointDisplacement::Value(if slides(chain) {
+                            JointDisplacement::Value(if only_slides(chain) {
                                 slider_angle
                             } else {
                                 counted
@@ -303,33 +317,34 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The angle that a leg whose upper joint only slides gives a platform on a cylinder: screws are then
-    /// taken within half a turn. Zero where there is no such leg.
+    /// The angle of a platform on a cylinder, as a leg whose upper joint only slides fixes it. The angles of
+    /// screws are then taken within π of it. Zero if there is no such leg.
     fn slider_angle(&self, taus: &[Option<JointDisplacement>]) -> f64 {
         let legs = self.manipulator.legs.iter().zip(taus);
         let slider_angle = legs.filter_map(|(leg, tau)| match (leg.split_section, tau) {
-            (Section::Upper, Some(tau)) if slides(&leg.upper.chain) => Some(tau.value()),
+            (Section::Upper, Some(tau)) if only_slides(&leg.upper.chain) => Some(tau.value()),
             _ => None,
         });
         slider_angle.take(1).sum()
     }
 
-    /// The whole turns, as an angle, that the actuated revolutes of a planar section hand on to a screw.
+    /// The full revolutions, as an angle in radians, that the actuated revolute joints of a planar section
+    /// pass on to a screw.
     fn whole_turns(&self, leg: usize) -> f64 {
         let Chain::Planar(chain) = &self.manipulator.legs[leg].lower.chain else { return 0.0 };
         let joints = chain.joints();
-        let turns = |&slot: &usize| match joints[slot] {
+        let revolutions = |&slot: &usize| match joints[slot] {
             PlanarJoint::Revolute { reversed, .. } => {
-                let turns = whole_turns(self.amount(leg, Section::Lower, slot).value());
-                if reversed { -turns } else { turns }
+                let count = whole_turns(self.displacement(leg, Section::Lower, slot).value());
+                if reversed { -count } else { count }
             }
             PlanarJoint::Prismatic { .. } => 0.0,
         };
-        TAU * self.plan.legs[leg].lower.iter().map(turns).sum::<f64>()
+        TAU * self.plan.legs[leg].lower.iter().map(revolutions).sum::<f64>()
     }
 
-    /// The displacements that satisfy all conditions, or those of the first that are independent; `None`
-    /// where there are none such.
+    /// The displacements that satisfy the first independent conditions, as many as the subspace has
+    /// dimensions; `None` if there are not enough independent conditions.
     fn solve(&self, kind: SubspaceKind, conditions: &[Condition]) -> Option<Vec<Displacement>> {
         let size = self.manipulator.closure.size;
         match kind {
@@ -337,17 +352,18 @@ impl<'a> Search<'a> {
                 crossing(kind, conditions, size).map(|g| vec![g])
             }
             SubspaceKind::Planar => {
-                first_at(conditions, size, three::planar, |g: PlanarDisplacement| {
+                first_independent(conditions, size, three::planar, |g: PlanarDisplacement| {
                     let translation = g.translation * size;
                     Displacement::Planar(PlanarDisplacement { translation, ..g })
                 })
             }
             SubspaceKind::Spherical => {
-                first_at(conditions, size, three::spherical, Displacement::Spherical)
+                first_independent(conditions, size, three::spherical, Displacement::Spherical)
             }
         }
     }
 
+    /// Notes that a section can move while the actuated joints are held.
     fn loose(&mut self, section: Section) {
         if !self.out.loose.contains(&section) {
             self.out.loose.push(section);
@@ -355,9 +371,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The solutions of the first three conditions that are independent, which are solved with lengths over
-/// the size.
-fn first_at<G>(
+/// The solutions of the first three conditions that are independent. They are solved with lengths over the
+/// size.
+fn first_independent<G>(
     conditions: &[Condition],
     size: f64,
     solve: fn(&[Condition; 3]) -> Solutions<G>,
@@ -378,8 +394,8 @@ fn first_at<G>(
     None
 }
 
-/// Whether a chain of the cut and one joint is a spline: the joint slides where the cut turns.
-fn slides(chain: &Chain) -> bool {
+/// Whether a chain of the cut and one joint is a splined shaft: the cut rotates, and the joint only slides.
+fn only_slides(chain: &Chain) -> bool {
     match chain {
         Chain::Cylindrical(chain) => {
             chain.joints()[0].rotation != 0.0 && chain.joints()[1].rotation == 0.0
@@ -388,9 +404,10 @@ fn slides(chain: &Chain) -> bool {
     }
 }
 
-/// Where the first two of several lines that are not parallel meet, those that are the most nearly perpendicular.
+/// The point where two of several lines meet: the two that are most nearly perpendicular. `None` if all are
+/// parallel.
 fn crossing(kind: SubspaceKind, conditions: &[Condition], size: f64) -> Option<Displacement> {
-    // Angles and advances, or lengths, over the size.
+    // The units of the two coordinates: radians, or lengths over the size.
     let scale = kind.sum_units(size);
     let rows: Vec<([f64; 2], f64)> = conditions
         .iter()

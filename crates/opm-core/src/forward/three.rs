@@ -1,12 +1,12 @@
 //! Three conditions on a displacement of a planar or a spherical subspace: the forward kinematics of a
-//! planar 3-RRR or 3-PRR and all its relatives, and of a spherical 3-RRR.
+//! planar 3-RRR or 3-PRR and its relatives, and of a spherical 3-RRR.
 //!
-//! One circle or cone is satisfied by two angles: `g = D · turn(θ) · K · turn(φ) · E`, about the fixed
-//! point or direction and about the carried one. The two other conditions are then linear in
-//! `1, cos φ, sin φ`, with coefficients that are linear in `1, cos θ, sin θ`; eliminating φ leaves one
-//! trigonometric polynomial of degree four in θ: at most eight solutions, six in a plane, where the
-//! highest coefficient vanishes. Three lines in a plane are linear in the translation instead, with the
-//! rotation as θ.
+//! All displacements that satisfy one circle or cone are given by two angles: `g = D · R(θ) · K · R(φ) · E`,
+//! a rotation by θ about the fixed point or direction and one by φ about the carried one. The two other
+//! conditions are then linear in `1, cos φ, sin φ`, with coefficients that are linear in `1, cos θ, sin θ`.
+//! Eliminating φ leaves one trigonometric polynomial of degree four in θ. It has at most eight roots, or six
+//! in a planar subspace, where the highest coefficient vanishes. Three lines in a plane are linear in the
+//! translation instead, and θ is the rotation.
 
 use super::trigonometric::{Roots, Trigonometric};
 use crate::chain::condition::{Condition, QUARTER, dot, length};
@@ -14,50 +14,53 @@ use crate::group::{PlanarDisplacement, Spherical, Subgroup};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Matrix3, Vector3};
 
-/// What three conditions leave.
+/// The displacements that satisfy three conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solutions<G> {
-    /// Single displacements.
+    /// Finitely many displacements, or none.
     At(Vec<G>),
-    /// A motion, or nothing: the conditions are not independent.
+    /// The conditions are not independent: a continuous motion satisfies them, or nothing does.
     Dependent,
 }
 
-/// A root in θ is off by up to the root of rounding where it is double; the solution for φ that does not
-/// belong to it misses by far more, or is within what the polish mends.
+/// A solution for φ belongs to a root in θ if it misses the second equation by no more than this share of
+/// its terms. A double root in θ has an error of up to the square root of rounding; a wrong φ misses by far
+/// more, or is so near that polishing leads to the right solution.
 const BELONGS: f64 = 1e-5;
 
-/// Two solutions nearer than this, in radians and sizes, are one: a double root is only known to about
-/// the root of rounding.
+/// Two solutions nearer to each other than this, in radians and shares of the size, are one. A double root is
+/// only known to about the square root of rounding.
 const SAME: f64 = 1e-7;
 
-/// A polishing step longer than this comes from a singular derivative.
+/// The longest polishing step, in radians and shares of the size. A longer one comes from a singular
+/// derivative.
 const LONGEST_STEP: f64 = 0.1;
 
-/// The steps of a polish: each squares an error that is already small.
+/// The largest number of polishing steps. Each squares an error that is already small.
 const POLISH: usize = 3;
 
 /// An equation in θ (rows: 1, cos, sin) and φ (columns: 1, cos, sin).
 #[derive(Clone, Copy, Debug)]
 struct Bilinear {
+    /// The coefficients, row by row.
     coefficients: Matrix3<f64>,
-    /// Of the terms that they are differences of.
+    /// The size of the terms whose differences the coefficients are.
     size: f64,
 }
 
-/// A group that three conditions are solved in, with a frame of size one.
+/// A group in which three conditions are solved, with lengths over the mechanism's size.
 trait Group: Copy {
-    /// By how much a condition is missed, and the derivative by a small motion from here: rotation, then
-    /// translation, or rotation vector.
-    fn miss(&self, condition: &Condition) -> (f64, Vector3<f64>);
-    /// After a small motion.
+    /// The error of a condition, and its derivative by a small step: a rotation and a translation in a
+    /// plane, a rotation vector in a spherical subspace.
+    fn error(&self, condition: &Condition) -> (f64, Vector3<f64>);
+    /// The displacement after a small step.
     fn moved(&self, step: &Vector3<f64>) -> Self;
-    /// Distance from another.
-    fn apart(&self, other: &Self) -> f64;
+    /// The distance from another displacement.
+    fn distance(&self, other: &Self) -> f64;
 }
 
 impl Group for PlanarDisplacement {
-    fn miss(&self, condition: &Condition) -> (f64, Vector3<f64>) {
+    fn error(&self, condition: &Condition) -> (f64, Vector3<f64>) {
         let at = |z: Complex<f64>, along: Complex<f64>| {
             // d(rotation z + translation) = i dω (rotation z) + dt
             Vector3::new(dot(along, QUARTER * self.rotation * z), along.re, along.im)
@@ -90,13 +93,13 @@ impl Group for PlanarDisplacement {
         Self { rotation: rotation / length(rotation), translation }
     }
 
-    fn apart(&self, other: &Self) -> f64 {
+    fn distance(&self, other: &Self) -> f64 {
         length(self.rotation - other.rotation) + length(self.translation - other.translation)
     }
 }
 
 impl Group for Matrix3<f64> {
-    fn miss(&self, condition: &Condition) -> (f64, Vector3<f64>) {
+    fn error(&self, condition: &Condition) -> (f64, Vector3<f64>) {
         let (fixed, carried, cosine) = condition.cone();
         let w = self * carried;
         (fixed.dot(&w) - cosine, w.cross(&fixed))
@@ -106,21 +109,21 @@ impl Group for Matrix3<f64> {
         Spherical::product(&Spherical::exponential(step), self)
     }
 
-    fn apart(&self, other: &Self) -> f64 {
+    fn distance(&self, other: &Self) -> f64 {
         (self - other).norm()
     }
 }
 
-/// The rotations that satisfy three cones.
+/// The rotations that satisfy three cone conditions.
 pub fn spherical(conditions: &[Condition; 3]) -> Solutions<Matrix3<f64>> {
     let cone = |i: usize| conditions[i].cone();
-    // The widest cone is parametrised best.
+    // The widest cone is the best to parametrise.
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| cone(a).2.abs().total_cmp(&cone(b).2.abs()));
     solve(&order, |first, found| on_cone(conditions, first, cone, found))
 }
 
-/// Finds solutions with one cone satisfied by two angles.
+/// Finds solutions by satisfying the condition number `first`, a cone, with two angles.
 fn on_cone(
     conditions: &[Condition; 3],
     first: usize,
@@ -148,23 +151,24 @@ fn on_cone(
         Bilinear { coefficients, size: 1.0 }
     });
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
-        from * turn(theta) * tilt * turn(phi) * to.transpose()
+        from * rotation_about_z(theta) * tilt * rotation_about_z(phi) * to.transpose()
     };
     eliminate_angle(&rest, conditions, place, found)
 }
 
-fn turn(e: Complex<f64>) -> Matrix3<f64> {
+/// The rotation about z by the angle of a unit complex number.
+fn rotation_about_z(e: Complex<f64>) -> Matrix3<f64> {
     Matrix3::new(e.re, -e.im, 0.0, e.im, e.re, 0.0, 0.0, 0.0, 1.0)
 }
 
 /// A right-handed frame whose third direction is `axis`.
 fn triad(axis: &Vector3<f64>) -> Matrix3<f64> {
-    let beside = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
-    let first = (beside - axis * axis.dot(&beside)).normalize();
+    let other = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let first = (other - axis * axis.dot(&other)).normalize();
     Matrix3::from_columns(&[first, axis.cross(&first), *axis])
 }
 
-/// The displacements of the plane that satisfy three conditions, whose lengths are over the size.
+/// The displacements of the plane that satisfy three conditions. Lengths are over the mechanism's size.
 pub fn planar(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     let radius = |i: usize| match conditions[i] {
         Condition::Circle { radius, .. } => radius,
@@ -183,16 +187,16 @@ pub fn planar(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     }
 }
 
-/// Finds solutions with one circle satisfied by two angles.
+/// Finds solutions by satisfying the condition number `first`, a circle, with two angles.
 fn from_circle(
     conditions: &[Condition; 3],
     first: usize,
     found: &mut Vec<PlanarDisplacement>,
 ) -> Found {
     let Condition::Circle { point, centre, radius } = conditions[first] else {
-        unreachable!("only circles are asked for")
+        unreachable!("`planar` eliminates with circles only")
     };
-    // g point = centre + radius e(θ), turned by e(φ).
+    // g point = centre + radius e(θ), where g rotates by e(φ).
     let rest = [(first + 1) % 3, (first + 2) % 3]
         .map(|i| on_circle(&conditions[i], point, centre, radius));
     let place = |theta: Complex<f64>, phi: Complex<f64>| PlanarDisplacement {
@@ -202,14 +206,14 @@ fn from_circle(
     eliminate_angle(&rest, conditions, place, found)
 }
 
-/// A condition on a body whose `point` is at `centre + radius e(θ)` and that is turned by `e(φ)`.
+/// A condition on a body that is rotated by `e(φ)` and whose `point` is at `centre + radius e(θ)`.
 fn on_circle(
     condition: &Condition,
     point: Complex<f64>,
     centre: Complex<f64>,
     radius: f64,
 ) -> Bilinear {
-    // Re(z e(θ)) and so on, as coefficients of 1, cos, sin.
+    // Terms like Re(z e(θ)) are written as coefficients of 1, cos and sin.
     let mut bilinear = Matrix3::zeros();
     let mut theta = |z: Complex<f64>| {
         bilinear[(1, 0)] += z.re;
@@ -264,19 +268,20 @@ fn on_circle(
     Bilinear { coefficients: bilinear, size }
 }
 
-/// What one way of eliminating has found.
+/// What one elimination has found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Found {
-    /// Everything.
+    /// All solutions.
     All,
-    /// Roots that are all but double: there may be more to them.
+    /// Some roots are nearly double, so that solutions may be missing.
     Doubtful,
     /// The conditions are not independent.
     Dependent,
 }
 
-/// Eliminates with one condition after the other as the first. Two solutions at one θ, or near it, are a
-/// double root of one polynomial, and as a rule not of the others.
+/// Eliminates with one condition after the other as the first one, until no solutions can be missing. Two
+/// solutions with equal or nearly equal θ are a double root of one polynomial, but as a rule not of the
+/// others.
 fn solve<G: Group>(
     order: &[usize],
     eliminate: impl Fn(usize, &mut Vec<G>) -> Found,
@@ -292,7 +297,7 @@ fn solve<G: Group>(
     Solutions::At(found)
 }
 
-/// Two equations in two angles.
+/// Solves two equations in two angles, and adds the solutions to `found`.
 fn eliminate_angle<G: Group>(
     rest: &[Bilinear; 2],
     conditions: &[Condition; 3],
@@ -304,7 +309,7 @@ fn eliminate_angle<G: Group>(
         let column = |j: usize| Trigonometric::linear([m[(0, j)], m[(1, j)], m[(2, j)]]);
         [column(0), column(1), column(2)]
     });
-    // Of a cos φ + b sin φ + c = 0, twice: cos φ = x / z, sin φ = y / z.
+    // Two equations a cos φ + b sin φ + c = 0 give cos φ = x / z and sin φ = y / z.
     let minor = |p: &Trigonometric, q: &Trigonometric, r: &Trigonometric, s: &Trigonometric| {
         p.times(q).minus(&r.times(s))
     };
@@ -326,12 +331,12 @@ fn eliminate_angle<G: Group>(
     if doubtful { Found::Doubtful } else { Found::All }
 }
 
-/// The turns that satisfy two equations `a cos φ + b sin φ + c = 0`, of which one is a consequence of the
-/// other at the most.
+/// The unit complex numbers `e(φ)` that satisfy two equations `a cos φ + b sin φ + c = 0`, not both of which
+/// are trivial.
 fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 2] {
-    let clear =
+    let weight =
         |i: usize| (equations[i][0].powi(2) + equations[i][1].powi(2)) / (sizes[i] * sizes[i]);
-    let better = usize::from(clear(1) > clear(0));
+    let better = usize::from(weight(1) > weight(0));
     let [a, b, c] = equations[better];
     let square = a * a + b * b;
     if square == 0.0 || !square.is_finite() {
@@ -351,7 +356,8 @@ fn common(equations: &[[f64; 3]; 2], sizes: [f64; 2]) -> [Option<Complex<f64>>; 
     })
 }
 
-/// Three conditions without a circle: rows `n · t + m = 0` in the translation, whose determinant is zero.
+/// Solves three conditions without a circle. They are equations `n · t + m = 0` in the translation `t`, which
+/// have a solution if their determinant vanishes. That is a trigonometric polynomial in the rotation.
 fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     let rows = conditions.map(|condition| match condition {
         Condition::Line { point, normal, offset } => {
@@ -365,7 +371,7 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
         }
         Condition::Heading { rotation } => [[0.0; 3], [0.0; 3], [0.0, -rotation.im, rotation.re]],
         Condition::Circle { .. } | Condition::Cone { .. } | Condition::Flat { .. } => {
-            unreachable!("not a line")
+            unreachable!("`planar` solves conditions without a circle here")
         }
     });
     let rows = rows.map(|row| row.map(Trigonometric::linear));
@@ -394,10 +400,10 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
     Solutions::At(found)
 }
 
-/// Newton's steps on the conditions themselves: the elimination's rounding does not stay.
+/// Removes the rounding of the elimination by steps of Newton's method on the conditions themselves.
 fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     let evaluate = |g: &G| {
-        let parts = conditions.each_ref().map(|condition| g.miss(condition));
+        let parts = conditions.each_ref().map(|condition| g.error(condition));
         let miss = Vector3::from_fn(|i, _| parts[i].0);
         let derivative = Matrix3::from_rows(&parts.map(|part| part.1.transpose()));
         (miss, derivative)
@@ -422,8 +428,9 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     here
 }
 
+/// Adds a displacement to the solutions, unless it is there already.
 fn collect<G: Group>(g: G, found: &mut Vec<G>) {
-    if !found.iter().any(|other| g.apart(other) < SAME) {
+    if !found.iter().any(|other| g.distance(other) < SAME) {
         found.push(g);
     }
 }

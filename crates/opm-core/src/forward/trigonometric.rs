@@ -2,39 +2,41 @@
 
 use nalgebra::Complex;
 
-/// Highest degree: that of a planar or a spherical section of three conditions.
+/// The highest degree: that of the polynomial of three conditions in a planar or a spherical section.
 const DEGREE: usize = 4;
-/// Degree in the tangent of the half angle, and coefficients.
+/// The degree of the polynomial in the tangent of the half angle.
 const HALF: usize = 2 * DEGREE;
+/// The number of its coefficients.
 const COEFFICIENTS: usize = HALF + 1;
 
-/// A polynomial that stays within this share of the size of what it was computed from is zero there:
-/// what is left of rounding after some twenty products and sums.
+/// A polynomial is zero where it is below this share of the terms that it was computed from: the rounding
+/// after some twenty products and sums.
 pub const NOISE: f64 = 1e-14;
 
-/// An interval of the half angle's tangent this short is not divided further: two roots in it are
-/// nearer to each other than the rounding of a double root, which is the root of [`NOISE`].
+/// The shortest interval of the half angle's tangent that is divided further. Two roots in a shorter one are
+/// nearer to each other than the error of a double root, which is the square root of [`NOISE`].
 const SHORTEST: f64 = 1e-8;
 
-/// Roots nearer to each other than this are in doubt: four of them, and a polynomial is lost in its noise.
+/// Roots nearer to each other than this are doubtful: near four of them a polynomial is lost in its
+/// rounding.
 const NEAR: f64 = 1e-3;
 
-/// `f(θ) = Re c₀ + Σ 2 Re(c_k exp(i k θ))`, that is `c₋ₖ` the conjugate of `c_k`.
+/// The polynomial `f(θ) = Re c₀ + Σ 2 Re(c_k exp(i k θ))`: `c₋ₖ` is the conjugate of `c_k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigonometric {
     coefficients: [Complex<f64>; DEGREE + 1],
     degree: usize,
 }
 
-/// The roots that were found, as unit vectors, counter-clockwise from minus a quarter turn.
+/// The real roots of a polynomial, as unit complex numbers `e(θ)`, counter-clockwise from −π/2.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Roots {
-    /// Finitely many; `doubtful` if some lie so near to each other that rounding has a say in how many they
-    /// are and where.
+    /// Finitely many roots.
     At {
-        /// Unit vectors.
+        /// The roots, unit complex numbers.
         roots: Vec<Complex<f64>>,
-        /// Roots all but double.
+        /// Whether some roots are so near to each other, or nearly double, that rounding affects their number
+        /// and their values.
         doubtful: bool,
     },
     /// The polynomial is zero everywhere.
@@ -42,7 +44,7 @@ pub enum Roots {
 }
 
 impl Trigonometric {
-    /// `a + b cos θ + c sin θ`.
+    /// The polynomial `a + b cos θ + c sin θ`.
     #[inline]
     pub fn linear([a, b, c]: [f64; 3]) -> Self {
         let mut coefficients = [Complex::new(0.0, 0.0); DEGREE + 1];
@@ -51,7 +53,7 @@ impl Trigonometric {
         Self { coefficients, degree: 1 }
     }
 
-    /// The value at the angle of a unit vector.
+    /// The value at the angle of a unit complex number.
     #[inline]
     pub fn value(&self, e: Complex<f64>) -> f64 {
         let mut value = self.coefficients[0].re;
@@ -63,7 +65,7 @@ impl Trigonometric {
         value
     }
 
-    /// The product; the degrees add up to at most four.
+    /// The product. The degrees must add up to at most four.
     #[inline]
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
@@ -77,7 +79,7 @@ impl Trigonometric {
         Self { coefficients, degree: (n + m) as usize }
     }
 
-    /// `self − other`.
+    /// The difference `self − other`.
     #[inline]
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
@@ -101,7 +103,7 @@ impl Trigonometric {
         sum
     }
 
-    /// A bound on its values.
+    /// A bound on the absolute values of the polynomial.
     #[inline]
     pub fn size(&self) -> f64 {
         let higher = self.coefficients[1..=self.degree].iter();
@@ -115,29 +117,30 @@ impl Trigonometric {
     }
 
     /// Every real root of a polynomial that was computed from terms of size `scale`: where it changes
-    /// its sign, and where it touches zero to within [`NOISE`]. Roots nearer to each other than some
-    /// 1e-7 may be given as one, or one that is double as two or three.
+    /// sign, and where it touches zero to within [`NOISE`]. Roots nearer to each other than some 1e-7 may
+    /// be given as one, and a double root as two or three.
     ///
-    /// With `t = tan(θ/2)`, `(1 + t²)⁴ f` is a polynomial of degree eight in `t`; half of the circle is
-    /// `|t| ≤ 1`, and the other half, turned, too. In Bernstein's basis its coefficients bound it, and
-    /// their differences tell where it is monotonic; what they leave open is halved (de Casteljau).
+    /// With `t = tan(θ/2)`, `(1 + t²)⁴ f` is a polynomial of degree eight in `t`. One half of the circle is
+    /// `|t| ≤ 1`, and so is the other half after a rotation by π. In Bernstein's basis the coefficients
+    /// bound the polynomial, and their differences show where it is monotonic. An interval that they do not
+    /// decide is halved (de Casteljau's algorithm).
     pub fn roots(&self, scale: f64) -> Roots {
         if self.size() <= NOISE * scale || !self.size().is_finite() {
             return Roots::Everywhere;
         }
-        // (1 + t²)⁴ is 16 at the ends.
+        // The factor (1 + t²)⁴ is at most 16, at the ends.
         let noise = 16.0 * NOISE * scale;
         let mut roots: Vec<Complex<f64>> = Vec::with_capacity(HALF);
         let mut doubtful = false;
-        // Each halving leaves one interval to come back to, down to the shortest.
+        // Each halving leaves one interval for later, down to the shortest.
         let mut open = Vec::with_capacity(32);
         for half in [1.0, -1.0] {
-            let mut turned = *self;
-            for c in turned.coefficients[1..].iter_mut().step_by(2) {
+            let mut rotated = *self;
+            for c in rotated.coefficients[1..].iter_mut().step_by(2) {
                 *c *= half;
             }
-            let polynomial = turned.in_half_tangent();
-            open.push((turned.bernstein(), -1.0, 2.0));
+            let polynomial = rotated.in_half_tangent();
+            open.push(Interval { bernstein: rotated.bernstein(), low: -1.0, width: 2.0 });
             isolate(&mut open, &polynomial, noise, &mut |t, simple| {
                 let square = t * t;
                 let e = Complex::new(1.0 - square, 2.0 * t) * half / (1.0 + square);
@@ -159,6 +162,7 @@ impl Trigonometric {
         self.expanded(&BERNSTEIN)
     }
 
+    /// The coefficients of `(1 + t²)⁴ f` in the basis of a table.
     fn expanded(&self, table: &Table) -> [f64; COEFFICIENTS] {
         let mut sum = [0.0; COEFFICIENTS];
         for (k, c) in self.coefficients[..=self.degree].iter().enumerate() {
@@ -175,12 +179,14 @@ impl Trigonometric {
 /// coefficients in some basis, for each `k`.
 type Table = [[[f64; 2]; COEFFICIENTS]; DEGREE + 1];
 
+/// The table for the powers of `t`.
 const POWERS: Table = table([[1, 0], [0, 1]], false);
-/// On `-1 ≤ t ≤ 1` the factor `1 + i t` runs from `1 − i` to `1 + i`.
+/// The table for Bernstein's basis on `-1 ≤ t ≤ 1`, where the factor `1 + i t` runs from `1 − i` to `1 + i`.
 const BERNSTEIN: Table = table([[1, -1], [1, 1]], true);
 
-/// The product of eight linear factors, `1 + i t` in the basis asked for and its conjugates, in Gaussian
-/// integers; over the binomial coefficients for Bernstein's basis.
+/// The products of eight linear factors `1 + i t` or `1 − i t`, in Gaussian integers. `factor` has the
+/// coefficients of `1 + i t` in the basis. For Bernstein's basis the products are divided by binomial
+/// coefficients.
 const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
     let mut table = [[[0.0; 2]; COEFFICIENTS]; DEGREE + 1];
     let mut k = 0;
@@ -219,18 +225,25 @@ const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
     table
 }
 
-/// An interval by its low end and its width, and Bernstein coefficients on it.
-type Interval = ([f64; COEFFICIENTS], f64, f64);
+/// A polynomial on an interval.
+struct Interval {
+    /// The Bernstein coefficients on the interval.
+    bernstein: [f64; COEFFICIENTS],
+    /// The low end of the interval.
+    low: f64,
+    /// The width of the interval.
+    width: f64,
+}
 
-/// Finds the roots of a polynomial on the intervals that are open, ascending, and says of each whether it is
-/// known to be a simple one.
+/// Finds the roots of a polynomial on the `open` intervals, in ascending order. `found` is called with each
+/// root, and with whether it is certainly simple.
 fn isolate(
     open: &mut Vec<Interval>,
     powers: &[f64; COEFFICIENTS],
     noise: f64,
     found: &mut impl FnMut(f64, bool),
 ) {
-    while let Some((b, low, width)) = open.pop() {
+    while let Some(Interval { bernstein: b, low, width }) = open.pop() {
         let (least, most) =
             b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
         if least > noise || most < -noise {
@@ -238,7 +251,7 @@ fn isolate(
         }
         let rising = b.windows(2).all(|pair| pair[1] > pair[0]);
         if rising || b.windows(2).all(|pair| pair[1] < pair[0]) {
-            // Where neighbours share an end that is a root, it belongs to the right one.
+            // A root at the common end of two intervals belongs to the right one.
             let (first, last) = (b[0], b[HALF]);
             let crosses =
                 if rising { first <= 0.0 && last > 0.0 } else { first >= 0.0 && last < 0.0 };
@@ -247,25 +260,27 @@ fn isolate(
             }
             continue;
         }
-        // Lost in the noise, unless it has one bend there: that can be followed to its turning point.
-        let flat = least.abs().max(most.abs()) <= noise && !bends(&b);
+        // The polynomial is below the rounding here. Unless it is convex or concave, in which case halving
+        // leads to its turning point, nothing more can be found.
+        let flat = least.abs().max(most.abs()) <= noise && !is_convex_or_concave(&b);
         if width <= SHORTEST || flat {
             found(low + 0.5 * width, false);
             continue;
         }
         let (left, right) = halves(&b);
-        open.push((right, low + 0.5 * width, 0.5 * width));
-        open.push((left, low, 0.5 * width));
+        let width = 0.5 * width;
+        open.push(Interval { bernstein: right, low: low + width, width });
+        open.push(Interval { bernstein: left, low, width });
     }
 }
 
-/// Whether the second derivative keeps its sign.
-fn bends(b: &[f64; COEFFICIENTS]) -> bool {
+/// Whether the second derivative keeps its sign on the interval.
+fn is_convex_or_concave(b: &[f64; COEFFICIENTS]) -> bool {
     let second = |w: &[f64]| w[0] - 2.0 * w[1] + w[2];
     b.windows(3).all(|w| second(w) > 0.0) || b.windows(3).all(|w| second(w) < 0.0)
 }
 
-/// De Casteljau's halves.
+/// The Bernstein coefficients on the two halves of an interval, by de Casteljau's algorithm.
 fn halves(b: &[f64; COEFFICIENTS]) -> ([f64; COEFFICIENTS], [f64; COEFFICIENTS]) {
     let (mut left, mut right) = ([0.0; COEFFICIENTS], *b);
     for (i, left) in left.iter_mut().enumerate() {
@@ -277,10 +292,10 @@ fn halves(b: &[f64; COEFFICIENTS]) -> ([f64; COEFFICIENTS], [f64; COEFFICIENTS])
     (left, right)
 }
 
-/// The root of a polynomial that is monotonic on an interval with a root: Newton's steps, halving where
-/// they leave it.
+/// The root of a polynomial on an interval where it is monotonic and changes sign, by Newton's method.
+/// Steps that leave the interval are replaced by halving it.
 fn bracketed(powers: &[f64; COEFFICIENTS], [mut low, mut high]: [f64; 2], rising: bool) -> f64 {
-    /// Halving alone comes to the last bit in as many.
+    /// With this number of steps, halving alone reaches the last bit.
     const STEPS: usize = 64;
     let mut t = 0.5 * (low + high);
     for _ in 0..STEPS {
@@ -311,7 +326,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
-    /// `Π sin((θ − r) / 2)` over eight angles: a polynomial of degree four with these roots.
+    /// The product of `sin((θ − r) / 2)` over eight angles `r`: a polynomial of degree four with these roots.
     fn with_roots(roots: &[f64]) -> Trigonometric {
         // sin((θ−r)/2) sin((θ−s)/2) = (cos((r−s)/2) − cos(θ − (r+s)/2)) / 2
         let pair = |r: f64, s: f64| {
@@ -333,12 +348,12 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-        /// Roots a hundredth apart are all found, each once, and nothing else is.
+        /// Eight roots that are at least a hundredth apart are all found, each once.
         #[test]
-        fn roots_that_are_apart_are_found_once(start in 0.0..TAU, gaps in proptest::array::uniform8(0.01..1.0_f64)) {
-            let whole: f64 = gaps.iter().sum();
+        fn roots_that_are_apart_are_found_once(start in 0.0..TAU, distances in proptest::array::uniform8(0.01..1.0_f64)) {
+            let whole: f64 = distances.iter().sum();
             let mut at = start;
-            let roots = gaps.map(|gap| { at += gap.max(0.01 * whole) * TAU / (1.1 * whole); at });
+            let roots = distances.map(|distance| { at += distance.max(0.01 * whole) * TAU / (1.1 * whole); at });
             let f = with_roots(&roots);
             let found = angles(&f.roots(f.size()));
             prop_assert_eq!(found.len(), 8);
@@ -353,7 +368,7 @@ mod tests {
         #[test]
         fn double_roots_are_found(at in -4.0..4.0_f64, others in proptest::array::uniform6(0.3..1.0_f64), lift in -1.0..1.0_f64) {
             let mut next = at;
-            let others = others.map(|gap| { next += 0.8 * gap; next });
+            let others = others.map(|distance| { next += 0.8 * distance; next });
             let mut roots = vec![at, at];
             roots.extend(others);
             let f = with_roots(&roots);
@@ -365,7 +380,7 @@ mod tests {
             prop_assert!(found.len() - near == 6, "{:?}", found);
         }
 
-        /// What is found is what a scan finds: sign changes between points a ten-thousandth apart.
+        /// The roots are those that a scan finds: sign changes between 10,000 points of the circle.
         #[test]
         fn as_many_as_a_scan_finds(c in proptest::array::uniform9(-1.0..1.0_f64)) {
             let f = Trigonometric {
@@ -378,7 +393,7 @@ mod tests {
             let count = 10_000;
             let at = |i: usize| {
                 let theta = TAU * i as f64 / count as f64;
-                // Straight from the definition.
+                // This is the definition.
                 (1..=4).fold(c[0], |sum, k| {
                     let (sin, cos) = (k as f64 * theta).sin_cos();
                     sum + 2.0 * (c[2 * k - 1] * cos - c[2 * k] * sin)

@@ -1,21 +1,22 @@
-//! Rotations about and translations along one axis, the frame's third direction. They commute, and count
-//! whole turns: a screw on the axis tells one turn from the next. A twist is `(ω, v, 0)`.
+//! The cylindrical subgroup: rotations about and translations along one axis, the frame's third direction.
+//! They commute. Angles count full revolutions, because a screw on the axis advances with each of them. A
+//! twist is `(ω, v, 0)`.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Rotation3, Vector3};
 
-/// The subgroup.
+/// The cylindrical subgroup.
 pub(crate) struct Cylindrical;
 
-/// A displacement about and along one axis.
+/// A rotation about an axis and a translation along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylindricalDisplacement {
-    /// Radians, whole turns counted.
+    /// The angle of rotation in radians; full revolutions count.
     pub angle: f64,
-    /// Metres.
+    /// The translation along the axis, metres.
     pub advance: f64,
 }
 
@@ -23,9 +24,9 @@ pub struct CylindricalDisplacement {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CylindricalMotion {
     /// Rotation about the axis.
-    Turn,
+    Rotation,
     /// Translation along the axis.
-    Advance,
+    Translation,
 }
 
 impl Subgroup for Cylindrical {
@@ -96,22 +97,25 @@ impl Subgroup for Cylindrical {
         g.angle.abs().max(g.advance.abs())
     }
 
-    fn motion(_: &Vector3<f64>, rotation: bool) -> CylindricalMotion {
-        if rotation { CylindricalMotion::Turn } else { CylindricalMotion::Advance }
+    fn motion(_: &Vector3<f64>, motion: MotionType) -> CylindricalMotion {
+        match motion {
+            MotionType::Rotation => CylindricalMotion::Rotation,
+            MotionType::Translation => CylindricalMotion::Translation,
+        }
     }
 
     #[inline]
     fn unit_twist(motion: &CylindricalMotion) -> LocalTwist {
         match motion {
-            CylindricalMotion::Turn => LocalTwist::x(),
-            CylindricalMotion::Advance => LocalTwist::y(),
+            CylindricalMotion::Rotation => LocalTwist::x(),
+            CylindricalMotion::Translation => LocalTwist::y(),
         }
     }
 
     fn complement(motion: &CylindricalMotion) -> Vec<LocalTwist> {
         match motion {
-            CylindricalMotion::Turn => vec![LocalTwist::y()],
-            CylindricalMotion::Advance => vec![LocalTwist::x()],
+            CylindricalMotion::Rotation => vec![LocalTwist::y()],
+            CylindricalMotion::Translation => vec![LocalTwist::x()],
         }
     }
 
@@ -122,16 +126,16 @@ impl Subgroup for Cylindrical {
         tau: JointDisplacement,
     ) -> CylindricalDisplacement {
         match motion {
-            CylindricalMotion::Turn => {
+            CylindricalMotion::Rotation => {
                 CylindricalDisplacement { angle: v.angle + tau.value(), advance: v.advance }
             }
-            CylindricalMotion::Advance => {
+            CylindricalMotion::Translation => {
                 CylindricalDisplacement { angle: v.angle, advance: v.advance + tau.value() }
             }
         }
     }
 
-    /// The same: displacements on one axis commute.
+    /// The same as `after`, because displacements on one axis commute.
     #[inline(always)]
     fn before(
         motion: &CylindricalMotion,

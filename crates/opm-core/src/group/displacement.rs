@@ -1,5 +1,5 @@
-//! A displacement of any subgroup, and the algebra of a subgroup that is known at run time: each operation
-//! is that of [`Subgroup`], for the one at hand.
+//! A displacement of any subgroup, and the algebra of a subgroup that is chosen at run time. Each operation
+//! calls that of the trait [`Subgroup`].
 
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{
@@ -11,13 +11,13 @@ use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 /// A displacement inside one subspace, in that subspace's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Displacement {
-    /// A displacement of a plane.
+    /// A planar displacement.
     Planar(PlanarDisplacement),
     /// A rotation about a centre.
     Spherical(Matrix3<f64>),
-    /// A displacement about and along an axis.
+    /// A rotation about an axis and a translation along it.
     Cylindrical(CylindricalDisplacement),
-    /// A translation in a plane.
+    /// A translation in a plane, metres.
     Translational(Complex<f64>),
 }
 
@@ -70,23 +70,23 @@ macro_rules! of_displacement {
 }
 
 impl SubspaceKind {
-    /// Number of freedoms of the motion inside the subspace.
+    /// The dimension of the subspace: its number of degrees of freedom.
     pub fn dimension(self) -> usize {
         of_kind!(self, G => G::DIMENSION)
     }
 
-    /// Whether its displacements commute, and so add up.
+    /// Whether displacements of the subspace commute. Their logarithms then add up.
     pub fn commutes(self) -> bool {
         of_kind!(self, G => G::COMMUTES)
     }
 
-    /// The displacement that leaves everything where it is.
+    /// The identity displacement.
     pub fn identity(self) -> Displacement {
         of_kind!(self, G => G::IDENTITY.into())
     }
 
-    /// The displacement that a constant twist makes in unit time: see the table in the docs of
-    /// [`group`](crate::group) for its three numbers.
+    /// The exponential: the displacement after moving with a constant twist for unit time. The table in
+    /// the docs of [`group`](crate::group) says what the three components of the twist are.
     pub fn exponential(self, twist: &Vector3<f64>) -> Displacement {
         of_kind!(self, G => G::exponential(twist).into())
     }
@@ -96,35 +96,37 @@ impl SubspaceKind {
         of_kind!(self, G => G::first_order(twist).into())
     }
 
-    /// Lie bracket: how the second twist changes when it is carried along by the first.
+    /// The Lie bracket `[a, b]`: the rate of change of `b` when it moves with `a`.
     #[inline]
     pub(crate) fn bracket(self, a: &LocalTwist, b: &LocalTwist) -> LocalTwist {
         of_kind!(self, G => G::bracket(a, b))
     }
 
-    /// A twist as an angular velocity and the velocity of the point at the frame's origin, along the
-    /// frame's directions.
+    /// A twist as two vectors in the frame: the angular velocity, and the velocity of the point at the
+    /// frame's origin.
     pub(crate) fn embed(self, twist: &LocalTwist) -> [Vector3<f64>; 2] {
         of_kind!(self, G => G::embed(twist))
     }
 
-    /// Whether a twist of the subspace is a translation.
+    /// Whether a twist of the subspace is a translation. The zero twist is not.
     pub(crate) fn is_translation(self, twist: &LocalTwist) -> bool {
         *twist != LocalTwist::zeros() && of_kind!(self, G => G::is_translation(twist))
     }
 
-    /// Sums of displacements that commute, as a displacement: see [`Displacement::sum`].
+    /// The displacement with a given sum of logarithms, in a subspace whose displacements commute: the
+    /// inverse of [`Displacement::sum`].
     pub(crate) fn of_sum(self, [first, second]: [f64; 2]) -> Displacement {
         self.exponential(&LocalTwist::new(first, second, 0.0))
     }
 
-    /// What the numbers of a sum are measured in: radians, or lengths in `size`.
+    /// The units of the two components of a logarithm: one radian for an angle, `size` (metres) for a
+    /// length.
     pub(crate) fn sum_units(self, size: f64) -> [f64; 2] {
         let unit = |twist: LocalTwist| if self.is_translation(&twist) { size } else { 1.0 };
         [unit(LocalTwist::x()), unit(LocalTwist::y())]
     }
 
-    /// A basis of the subspace's twists.
+    /// The unit twists: a basis of the subspace's twists.
     pub(crate) fn basis(self) -> Vec<LocalTwist> {
         let axes = [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()];
         axes[..self.dimension()].to_vec()
@@ -132,15 +134,15 @@ impl SubspaceKind {
 }
 
 impl Displacement {
-    /// The kind of subspace that it is a displacement of.
+    /// The kind of subspace that the displacement belongs to.
     pub fn kind(&self) -> SubspaceKind {
         of_displacement!(self, G, _g => G::KIND)
     }
 
-    /// First `other`, then `self`.
+    /// The product `self · other`: `other` is applied to points first.
     ///
     /// # Panics
-    /// If they are displacements of two kinds of subspace.
+    /// If the two displacements belong to different kinds of subspace.
     #[must_use]
     pub fn after(&self, other: &Self) -> Self {
         match self {
@@ -151,22 +153,23 @@ impl Displacement {
         }
     }
 
-    /// The displacement back.
+    /// The inverse displacement.
     #[must_use]
     pub fn inverse(&self) -> Self {
         of_displacement!(self, G, g => G::inverse(g).into())
     }
 
-    /// The shortest twist whose exponential it is: rotations by at most half a turn, but those about a
-    /// cylinder's axis as they are.
+    /// The shortest twist whose exponential is this displacement. Its angle is at most π, except about the
+    /// axis of a cylinder, where full revolutions count.
     pub fn logarithm(&self) -> Vector3<f64> {
         of_displacement!(self, G, g => G::logarithm(g))
     }
 
-    /// The two numbers that add up in products, of a subspace whose displacements commute.
+    /// The two components of the logarithm, which add up in products, in a subspace whose displacements
+    /// commute.
     ///
     /// # Panics
-    /// If its displacements do not commute.
+    /// If displacements of this kind do not commute.
     pub(crate) fn sum(&self) -> [f64; 2] {
         match self {
             Self::Cylindrical(_) | Self::Translational(_) => {
@@ -177,7 +180,7 @@ impl Displacement {
         }
     }
 
-    /// The twist as it is after the displacement: adjoint action.
+    /// The adjoint action: the twist displaced by this displacement.
     #[inline]
     pub(crate) fn adjoint(&self, twist: &LocalTwist) -> LocalTwist {
         of_displacement!(self, G, g => G::adjoint(g, twist))
@@ -189,23 +192,24 @@ impl Displacement {
         of_displacement!(self, G, g => G::adjoint_of_inverse(g, twist))
     }
 
-    /// Where a point, given in the subspace's frame, goes.
+    /// The image of a point, which is given in the subspace's frame, in metres.
     #[inline]
     pub fn act(&self, point: &Vector3<f64>) -> Vector3<f64> {
         of_displacement!(self, G, g => G::act(g, point))
     }
 
-    /// The displacement as a rotation about the frame's origin, then a translation.
+    /// The displacement as a rotation about the frame's origin, followed by a translation.
     pub(super) fn rotation_and_translation(&self) -> (Rotation3<f64>, Vector3<f64>) {
         of_displacement!(self, G, g => G::rotation_and_translation(g))
     }
 
-    /// Its largest number, radians or metres; of a rotation about a centre zero.
+    /// The largest component that can grow without bound, in radians or metres; zero for a rotation about
+    /// a centre.
     pub(crate) fn size(&self) -> f64 {
         of_displacement!(self, G, g => G::size(g))
     }
 
-    /// The displacement, which is one of a plane.
+    /// The planar displacement. Panics if it is of another kind.
     #[inline(always)]
     pub(crate) fn planar(&self) -> &PlanarDisplacement {
         match self {
@@ -216,7 +220,7 @@ impl Displacement {
         }
     }
 
-    /// The displacement, which is one about a centre.
+    /// The rotation about a centre. Panics if the displacement is of another kind.
     #[inline(always)]
     pub(crate) fn spherical(&self) -> &Matrix3<f64> {
         match self {
@@ -227,7 +231,7 @@ impl Displacement {
         }
     }
 
-    /// The displacement, which is one about and along an axis.
+    /// The cylindrical displacement. Panics if it is of another kind.
     #[inline(always)]
     pub(crate) fn cylindrical(&self) -> &CylindricalDisplacement {
         match self {
@@ -238,7 +242,7 @@ impl Displacement {
         }
     }
 
-    /// The displacement, which is a translation in a plane.
+    /// The translation in a plane. Panics if the displacement is of another kind.
     #[inline(always)]
     pub(crate) fn translational(&self) -> &Complex<f64> {
         match self {

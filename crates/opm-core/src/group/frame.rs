@@ -1,52 +1,70 @@
-//! A subspace with the frame that its chains and its task coordinates use.
+//! A subspace, and the frame that its chains and its task coordinates use.
 
 use super::subgroup::LocalTwist;
 use super::{Displacement, SubspaceKind};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 /// A subspace with the frame that its chains and its task coordinates use.
+///
+/// ```
+/// use nalgebra::{Matrix3, Point3, Vector3};
+/// use opm_core::group::{Subspace, SubspaceKind};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// // Planar motion in a level plane at z = 2 m, about a reference point above (1, 0, 0).
+/// let origin = Point3::new(1.0, 0.0, 2.0);
+/// let axes = Matrix3::identity();
+/// let plane =
+///     Subspace { kind: SubspaceKind::Planar, origin, axes, measured_from: Point3::origin() };
+/// assert_eq!(plane.dimension(), 3);
+/// // A quarter revolution about the reference point, as a displacement in base coordinates.
+/// let quarter = plane.kind.exponential(&Vector3::new(FRAC_PI_2, 0.0, 0.0));
+/// let moved = plane.isometry(&quarter) * Point3::new(2.0, 0.0, 2.0);
+/// assert!((moved - Point3::new(1.0, 1.0, 2.0)).norm() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subspace {
-    /// Which subgroup it is.
+    /// The kind of subspace: which subgroup its displacements form.
     pub kind: SubspaceKind,
-    /// Its reference point at home, base coordinates: the frame's origin for displacements, about
-    /// which angles turn.
+    /// The frame's origin, in base coordinates and metres: the reference point at home, about which angles
+    /// are measured.
     pub origin: Point3<f64>,
-    /// Columns: the frame's directions in base coordinates. The third is the normal of a plane, the
-    /// axis of a cylinder, and the intersection motion's axis in a sphere.
+    /// The frame's three directions in base coordinates, as columns. The third is the normal of a plane,
+    /// the axis of a cylinder, or the axis of the intersection motion in a spherical subspace.
     pub axes: Matrix3<f64>,
-    /// The point that lengths are measured from, along the frame's directions, base coordinates: the
-    /// base's origin unless the file says otherwise; of a sphere the centre.
+    /// The point from which lengths are measured along the frame's directions, in base coordinates and
+    /// metres: the base's origin unless the file says otherwise, or the centre of a spherical subspace.
     pub measured_from: Point3<f64>,
 }
 
 impl Subspace {
-    /// Where its reference point is at home, in its frame and from where lengths are measured.
+    /// The reference point at home, along the frame's directions and relative to the point that lengths are
+    /// measured from.
     pub(crate) fn home(&self) -> Vector3<f64> {
         self.axes.tr_mul(&(self.origin - self.measured_from))
     }
 
-    /// Number of freedoms of the motion inside it.
+    /// The dimension of the subspace: its number of degrees of freedom.
     pub fn dimension(&self) -> usize {
         self.kind.dimension()
     }
 
-    /// A direction of the base in this frame.
+    /// Converts a direction from base coordinates to this frame.
     pub fn direction(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.axes.tr_mul(direction)
     }
 
-    /// A point of the base in this frame.
+    /// Converts a point from base coordinates to this frame.
     pub fn point(&self, point: &Point3<f64>) -> Vector3<f64> {
         self.axes.tr_mul(&(point - self.origin))
     }
 
-    /// A point of this frame in base coordinates.
+    /// Converts a point from this frame to base coordinates.
     pub(crate) fn restored(&self, point: &Vector3<f64>) -> Point3<f64> {
         self.origin + self.axes * point
     }
 
-    /// A displacement of this subspace in base coordinates.
+    /// Converts a displacement of this subspace to base coordinates.
     pub fn isometry(&self, displacement: &Displacement) -> Isometry3<f64> {
         let (rotation, translation) = displacement.rotation_and_translation();
         let axes =
@@ -59,8 +77,8 @@ impl Subspace {
         frame * local * frame.inverse()
     }
 
-    /// A twist of this subspace in base coordinates: its angular part, and the velocity of the point
-    /// at this frame's origin.
+    /// Converts a twist of this subspace to base directions: the angular velocity, and the velocity of the
+    /// point at this frame's origin.
     pub(crate) fn embedded(&self, twist: &LocalTwist) -> [Vector3<f64>; 2] {
         self.kind.embed(twist).map(|part| self.axes * part)
     }

@@ -8,16 +8,25 @@ use super::{
 };
 use nalgebra::Vector3;
 
-/// The intersection motion `I`, as it is in the frame of one of the two subspaces.
+/// Whether a one-parameter motion is a rotation or a translation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionType {
+    /// A rotation about an axis.
+    Rotation,
+    /// A translation along a direction.
+    Translation,
+}
+
+/// The intersection motion `I` of two subspaces, in the frame of one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntersectionMotion {
-    /// In a plane.
+    /// A planar motion.
     Planar(PlanarMotion),
-    /// About a centre.
+    /// A rotation about a centre.
     Spherical(SphericalMotion),
-    /// About or along an axis.
+    /// A motion about or along the axis of a cylinder.
     Cylindrical(CylindricalMotion),
-    /// In a translational plane.
+    /// A translation in a translational plane.
     Translational(TranslationalMotion),
 }
 
@@ -46,52 +55,51 @@ macro_rules! of_motion {
 }
 
 impl IntersectionMotion {
-    /// The motion in a subspace of this kind, by its direction in the frame: a rotation about it through
-    /// the frame's origin, or a translation along it.
+    /// The intersection motion in a subspace of a kind. `direction` is a unit vector in the subspace's frame:
+    /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation.
     ///
     /// # Panics
-    /// If the subspace does not hold such a motion.
-    pub fn new(kind: SubspaceKind, direction: &Vector3<f64>, rotation: bool) -> Self {
+    /// If the subspace does not contain such a motion.
+    pub fn new(kind: SubspaceKind, direction: &Vector3<f64>, motion: MotionType) -> Self {
         match kind {
-            SubspaceKind::Planar => Self::Planar(Planar::motion(direction, rotation)),
-            SubspaceKind::Spherical => Self::Spherical(Spherical::motion(direction, rotation)),
-            SubspaceKind::Cylindrical => {
-                Self::Cylindrical(Cylindrical::motion(direction, rotation))
-            }
+            SubspaceKind::Planar => Self::Planar(Planar::motion(direction, motion)),
+            SubspaceKind::Spherical => Self::Spherical(Spherical::motion(direction, motion)),
+            SubspaceKind::Cylindrical => Self::Cylindrical(Cylindrical::motion(direction, motion)),
             SubspaceKind::TranslationalPlane => {
-                Self::Translational(TranslationalPlane::motion(direction, rotation))
+                Self::Translational(TranslationalPlane::motion(direction, motion))
             }
         }
     }
 
-    /// The kind of subspace in whose frame it is given.
+    /// The kind of subspace in whose frame the motion is given.
     pub fn kind(&self) -> SubspaceKind {
         of_motion!(self, G, _m => G::KIND)
     }
 
-    /// Whether it is a rotation; else it is a translation.
+    /// Whether the motion is a rotation; otherwise it is a translation.
     pub fn is_rotation(&self) -> bool {
         !self.kind().is_translation(&self.unit_twist())
     }
 
-    /// Its unit twist.
+    /// The unit twist of the motion, in the subspace's frame.
     #[inline]
     pub fn unit_twist(&self) -> Vector3<f64> {
         of_motion!(self, G, m => G::unit_twist(m))
     }
 
-    /// What a unit of it adds to a displacement, in a subspace whose displacements commute.
+    /// What a unit of the motion adds to the logarithm of a displacement, in a subspace whose displacements
+    /// commute.
     pub(crate) fn sum(&self) -> [f64; 2] {
         let twist = self.unit_twist();
         [twist.x, twist.y]
     }
 
-    /// The subspace's directions beside it.
+    /// Twists that complete the unit twist to a basis of the subspace's twists.
     pub(crate) fn complement(&self) -> Vec<LocalTwist> {
         of_motion!(self, G, m => G::complement(m))
     }
 
-    /// `v · exp(I τ)`.
+    /// The product `v · exp(I τ)`.
     ///
     /// # Panics
     /// If `v` is a displacement of another kind of subspace.
@@ -105,7 +113,7 @@ impl IntersectionMotion {
         }
     }
 
-    /// `exp(I τ) · b`.
+    /// The product `exp(I τ) · b`.
     ///
     /// # Panics
     /// If `b` is a displacement of another kind of subspace.
@@ -119,7 +127,7 @@ impl IntersectionMotion {
         }
     }
 
-    /// `exp(I τ) · b` for every τ.
+    /// The products `exp(I τ) · b` for all τ, as a path.
     ///
     /// # Panics
     /// If `b` is a displacement of another kind of subspace.
@@ -137,14 +145,15 @@ impl IntersectionMotion {
         self.before(&self.kind().identity(), tau)
     }
 
-    /// The twist as it is after `exp(I τ)`.
+    /// The adjoint action of `exp(I τ)` on a twist.
     #[inline]
     pub(crate) fn adjoint(&self, tau: JointDisplacement, twist: &LocalTwist) -> LocalTwist {
-        // Where displacements commute no twist changes: that saves the angle of τ.
+        // Where displacements commute, the adjoint action is the identity. This case avoids computing the
+        // angle of τ.
         if self.kind().commutes() { *twist } else { self.displacement(tau).adjoint(twist) }
     }
 
-    /// The motion, which is one in a plane.
+    /// The planar motion. Panics if it is of another kind.
     #[inline(always)]
     pub(crate) fn planar(&self) -> &PlanarMotion {
         match self {
@@ -155,7 +164,7 @@ impl IntersectionMotion {
         }
     }
 
-    /// The motion, which is one about a centre.
+    /// The spherical motion. Panics if it is of another kind.
     #[inline(always)]
     pub(crate) fn spherical(&self) -> &SphericalMotion {
         match self {

@@ -1,22 +1,21 @@
-//! The displacement of one joint of one degree of freedom.
+//! The displacement of a joint with one degree of freedom.
 
 use crate::numeric::angle::{self, unit};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// A joint's displacement from home, as a chain finds it.
+/// A joint's displacement from home, in the form in which a chain's closed form gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointDisplacement {
-    /// A rotation, as a vector that points at its angle: an angle modulo a whole turn. The vector is *not
-    /// normalised*, and may have any length. The zero vector stands for an angle that is free; its value
-    /// is zero.
+    /// An angle modulo 2π, as a complex number that points in its direction. The number is *not
+    /// normalised*: it may have any length. Zero stands for an angle that is free; its value is zero.
     Direction(Complex<f64>),
-    /// A number: a length in metres, or an angle in radians that counts whole turns.
+    /// A number: a length in metres, or an angle in radians that counts full revolutions.
     Value(f64),
 }
 
 impl JointDisplacement {
-    /// As a number; of a direction, the angle in `(-π, π]`.
+    /// The displacement as a number, in radians or metres. A direction gives the angle in `(-π, π]`.
     #[inline(always)]
     pub fn value(self) -> f64 {
         match self {
@@ -25,20 +24,21 @@ impl JointDisplacement {
         }
     }
 
-    /// As a number; of a direction, the angle nearest to `reference`.
+    /// The displacement as a number, in radians or metres. A direction gives the angle nearest to
+    /// `reference`; a number stays as it is.
     #[inline]
     pub fn nearest(self, reference: f64) -> f64 {
         match self {
             Self::Direction(_) => {
                 let value = self.value();
-                let turns = (reference - value) / TAU;
-                if turns.abs() <= 0.5 { value } else { value + TAU * turns.round() }
+                let revolutions = (reference - value) / TAU;
+                if revolutions.abs() <= 0.5 { value } else { value + TAU * revolutions.round() }
             }
             Self::Value(value) => value,
         }
     }
 
-    /// One after the other.
+    /// The sum of two displacements of one joint.
     #[inline]
     #[must_use]
     pub(crate) fn plus(self, other: Self) -> Self {
@@ -60,7 +60,7 @@ impl JointDisplacement {
         }
     }
 
-    /// The rotation as a unit vector, whichever way it is held.
+    /// The unit complex number in the direction of the angle, for either form.
     #[inline(always)]
     pub fn unit_direction(self) -> Complex<f64> {
         match self {

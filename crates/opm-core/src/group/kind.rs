@@ -1,4 +1,4 @@
-//! Which subgroups have closed-form chains.
+//! The kinds of subspaces that have closed-form chains.
 
 use super::subspace::SubspaceClass;
 use std::fmt;
@@ -6,18 +6,18 @@ use std::fmt;
 /// The subgroups that have closed-form chains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SubspaceKind {
-    /// `SE(2)`: two translations and the rotation about their normal.
+    /// `SE(2)`: the translations in a plane and the rotations about its normals.
     Planar,
-    /// `SO(3)`: rotations about a centre.
+    /// `SO(3)`: the rotations about a centre.
     Spherical,
-    /// Rotation about and translation along an axis.
+    /// The rotations about and translations along one axis.
     Cylindrical,
-    /// Two translations.
+    /// The translations in a plane.
     TranslationalPlane,
 }
 
 impl SubspaceKind {
-    /// The kind of a subspace, if it has closed-form chains.
+    /// The kind of a subspace; `None` if no closed-form chains are known for it.
     pub fn of(class: &SubspaceClass) -> Option<Self> {
         match class {
             SubspaceClass::Planar { .. } => Some(Self::Planar),

@@ -1,4 +1,4 @@
-//! Displacements that move along a one-parameter motion.
+//! Displacements that move along an intersection motion, as a function of one number.
 
 use super::{
     Cylindrical, CylindricalDisplacement, Planar, PlanarDisplacement, Spherical, SubspaceKind,
@@ -6,60 +6,62 @@ use super::{
 };
 use nalgebra::{Complex, Matrix3, Vector3};
 
-/// A displacement that one number `t` moves: `exp(t · rate) · start`.
+/// A displacement as a function of one number `t`: `exp(t · rate) · start`. `t` is in radians along a
+/// rotation and in metres along a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
-    /// In a plane.
+    /// The displacement is in a plane.
     Planar(PlanarPath),
-    /// About the centre of a sphere, by a rotation.
+    /// The displacement is a rotation about a centre, and `t` rotates it about an axis.
     Spherical {
-        /// At `t = 0`.
+        /// The displacement at `t = 0`.
         start: Matrix3<f64>,
         /// The axis of the rotation, a unit vector.
         axis: Vector3<f64>,
     },
-    /// About and along the axis of a cylinder.
+    /// The displacement is about and along the axis of a cylinder.
     Cylindrical {
-        /// At `t = 0`.
+        /// The displacement at `t = 0`.
         start: CylindricalDisplacement,
-        /// Displacement a unit of `t`.
+        /// The displacement for a unit of `t`.
         rate: CylindricalDisplacement,
     },
-    /// In a plane, without rotation.
+    /// The displacement is a translation in a plane.
     Translational {
-        /// At `t = 0`.
+        /// The displacement at `t = 0`.
         start: Complex<f64>,
-        /// Translation a unit of `t`.
+        /// The translation for a unit of `t`.
         rate: Complex<f64>,
     },
 }
 
-/// A path in a plane.
+/// A path of planar displacements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarPath {
-    /// By a translation.
-    Slide {
-        /// At `t = 0`.
+    /// `t` translates the plane.
+    Translation {
+        /// The displacement at `t = 0`.
         start: PlanarDisplacement,
-        /// Translation a unit of `t`.
+        /// The translation for a unit of `t`.
         rate: Complex<f64>,
     },
-    /// By a rotation about the origin.
-    Turn {
-        /// At `t = 0`.
+    /// `t` rotates the plane about the frame's origin.
+    Rotation {
+        /// The displacement at `t = 0`.
         start: PlanarDisplacement,
     },
 }
 
 impl Path {
-    /// The largest number of a displacement on it, `t` being at most `reach` in size.
-    pub fn size(&self, reach: f64) -> f64 {
-        let far = |start: f64, rate: f64| start + rate * reach;
+    /// A bound on the components of the displacements on the path (see `Subgroup::size`) for `|t|` up to
+    /// `range`.
+    pub fn size(&self, range: f64) -> f64 {
+        let far = |start: f64, rate: f64| start + rate * range;
         match self {
-            Self::Planar(PlanarPath::Slide { start, rate }) => {
+            Self::Planar(PlanarPath::Translation { start, rate }) => {
                 far(Planar::size(start), rate.norm())
             }
-            Self::Planar(PlanarPath::Turn { start }) => Planar::size(start),
+            Self::Planar(PlanarPath::Rotation { start }) => Planar::size(start),
             Self::Spherical { start, .. } => Spherical::size(start),
             Self::Cylindrical { start, rate } => far(start.angle.abs(), rate.angle.abs())
                 .max(far(start.advance.abs(), rate.advance.abs())),
@@ -67,6 +69,7 @@ impl Path {
         }
     }
 
+    /// The kind of subspace that the displacements are in.
     fn kind(&self) -> SubspaceKind {
         match self {
             Self::Planar(_) => Planar::KIND,
@@ -76,7 +79,7 @@ impl Path {
         }
     }
 
-    /// The path, which is one in a plane.
+    /// The planar path. Panics if the path is of another kind.
     pub(crate) fn planar(&self) -> &PlanarPath {
         match self {
             Self::Planar(path) => path,
@@ -86,7 +89,7 @@ impl Path {
         }
     }
 
-    /// The start and the axis of the path, which is one about a centre.
+    /// The start and the axis of a spherical path. Panics if the path is of another kind.
     pub(crate) fn spherical(&self) -> (&Matrix3<f64>, &Vector3<f64>) {
         match self {
             Self::Spherical { start, axis } => (start, axis),
@@ -96,7 +99,7 @@ impl Path {
         }
     }
 
-    /// The start and the rate of the path, which is one about and along an axis.
+    /// The start and the rate of a cylindrical path. Panics if the path is of another kind.
     pub(crate) fn cylindrical(&self) -> [&CylindricalDisplacement; 2] {
         match self {
             Self::Cylindrical { start, rate } => [start, rate],
@@ -106,7 +109,7 @@ impl Path {
         }
     }
 
-    /// The start and the rate of the path, which is one of translations in a plane.
+    /// The start and the rate of a translational path. Panics if the path is of another kind.
     pub(crate) fn translational(&self) -> [&Complex<f64>; 2] {
         match self {
             Self::Translational { start, rate } => [start, rate],

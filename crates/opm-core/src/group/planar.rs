@@ -1,69 +1,71 @@
-//! `SE(2)`: displacements of a plane, as complex numbers. A displacement takes the point `z` to `r z + t`,
-//! with `|r| = 1`; a twist is `(ω, vx, vy)`, with the velocity of the point at the origin.
+//! The planar subgroup, `SE(2)`: displacements of a plane, as complex numbers. A displacement takes the point
+//! `z` to `r z + t`, with `|r| = 1`. A twist is `(ω, vx, vy)`, where `(vx, vy)` is the velocity of the point
+//! at the origin.
 
 use super::path::{Path, PlanarPath};
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::{sinc, unit};
 use nalgebra::{Complex, Rotation3, Vector3};
 
-/// The subgroup.
+/// The planar subgroup.
 pub(crate) struct Planar;
 
 /// A displacement of the plane: `z ↦ rotation · z + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarDisplacement {
-    /// The rotation, a unit complex number.
+    /// The rotation, a unit complex number `e(angle)`.
     pub rotation: Complex<f64>,
     /// The translation, metres.
     pub translation: Complex<f64>,
 }
 
-/// A one-parameter motion in the plane that another subspace may share.
+/// A one-parameter planar motion that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarMotion {
     /// Rotation about the frame's origin.
-    Turn,
-    /// Translation in this direction, a unit vector.
-    Slide(Complex<f64>),
+    Rotation,
+    /// Translation along a direction of the plane, which is a unit complex number.
+    Translation(Complex<f64>),
 }
 
 impl PlanarDisplacement {
-    /// The identity.
+    /// The displacement that leaves every point where it is.
     pub const IDENTITY: Self =
         Self { rotation: Complex::new(1.0, 0.0), translation: Complex::new(0.0, 0.0) };
 
-    /// The rotation about a point that turns by a unit complex number.
+    /// The rotation about a point, in metres, by a unit complex number `e(angle)`.
     #[inline]
-    pub(crate) fn about(at: Complex<f64>, rotation: Complex<f64>) -> Self {
-        Self { rotation, translation: at - rotation * at }
+    pub(crate) fn about(point: Complex<f64>, rotation: Complex<f64>) -> Self {
+        Self { rotation, translation: point - rotation * point }
     }
 
-    /// The translation.
+    /// The translation by a vector, in metres.
     #[inline]
     pub(crate) fn translation(translation: Complex<f64>) -> Self {
         Self { rotation: Complex::new(1.0, 0.0), translation }
     }
 
-    /// The displacement along a joint's screw at home: of unit angular velocity, or a unit translation.
+    /// The displacement along a joint's screw at home, which is a rotation of angular velocity ±1 or a unit
+    /// translation.
     #[inline]
-    pub(crate) fn along_screw(screw: &LocalTwist, amount: JointDisplacement) -> Self {
+    pub(crate) fn along_screw(screw: &LocalTwist, displacement: JointDisplacement) -> Self {
         if screw.x == 0.0 {
-            return Self::translation(linear(screw) * amount.value());
+            return Self::translation(linear(screw) * displacement.value());
         }
-        let turn = amount.unit_direction();
+        let rotation = displacement.unit_direction();
         // v = -i ω p, with ω = ±1.
-        let at = quarter(linear(screw)) * screw.x;
-        Self::about(at, if screw.x < 0.0 { turn.conj() } else { turn })
+        let point = quarter(linear(screw)) * screw.x;
+        Self::about(point, if screw.x < 0.0 { rotation.conj() } else { rotation })
     }
 
-    /// Where the point `z` goes.
+    /// The image of the point `z`, in metres.
     #[inline]
     pub fn apply(&self, z: Complex<f64>) -> Complex<f64> {
         self.rotation * z + self.translation
     }
 
-    /// First `other`, then `self`.
+    /// The product `self · other`: `other` is applied to points first.
     #[inline]
     #[must_use]
     pub fn after(&self, other: &Self) -> Self {
@@ -73,7 +75,7 @@ impl PlanarDisplacement {
         }
     }
 
-    /// The displacement back.
+    /// The inverse displacement.
     #[inline]
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -82,19 +84,19 @@ impl PlanarDisplacement {
     }
 }
 
-/// The linear part of a planar twist.
+/// The linear part `(vx, vy)` of a planar twist.
 #[inline]
 pub(crate) fn linear(twist: &LocalTwist) -> Complex<f64> {
     Complex::new(twist.y, twist.z)
 }
 
-/// A planar twist of its two parts.
+/// The planar twist with these angular and linear parts.
 #[inline]
 pub(crate) fn angular_and_linear(omega: f64, v: Complex<f64>) -> LocalTwist {
     LocalTwist::new(omega, v.re, v.im)
 }
 
-/// A vector of the plane, a quarter turn ahead.
+/// A vector of the plane rotated by +π/2.
 #[inline]
 pub(crate) fn quarter(z: Complex<f64>) -> Complex<f64> {
     Complex::new(-z.im, z.re)
@@ -178,26 +180,27 @@ impl Subgroup for Planar {
         g.translation.norm()
     }
 
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> PlanarMotion {
-        if rotation {
-            PlanarMotion::Turn
-        } else {
-            PlanarMotion::Slide(Complex::new(direction.x, direction.y))
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> PlanarMotion {
+        match motion {
+            MotionType::Rotation => PlanarMotion::Rotation,
+            MotionType::Translation => {
+                PlanarMotion::Translation(Complex::new(direction.x, direction.y))
+            }
         }
     }
 
     #[inline]
     fn unit_twist(motion: &PlanarMotion) -> LocalTwist {
         match motion {
-            PlanarMotion::Turn => LocalTwist::x(),
-            PlanarMotion::Slide(along) => angular_and_linear(0.0, *along),
+            PlanarMotion::Rotation => LocalTwist::x(),
+            PlanarMotion::Translation(along) => angular_and_linear(0.0, *along),
         }
     }
 
     fn complement(motion: &PlanarMotion) -> Vec<LocalTwist> {
         match motion {
-            PlanarMotion::Turn => vec![LocalTwist::y(), LocalTwist::z()],
-            PlanarMotion::Slide(along) => {
+            PlanarMotion::Rotation => vec![LocalTwist::y(), LocalTwist::z()],
+            PlanarMotion::Translation(along) => {
                 vec![LocalTwist::x(), angular_and_linear(0.0, quarter(*along))]
             }
         }
@@ -210,11 +213,11 @@ impl Subgroup for Planar {
         tau: JointDisplacement,
     ) -> PlanarDisplacement {
         match motion {
-            PlanarMotion::Turn => PlanarDisplacement {
+            PlanarMotion::Rotation => PlanarDisplacement {
                 rotation: v.rotation * tau.unit_direction(),
                 translation: v.translation,
             },
-            PlanarMotion::Slide(along) => PlanarDisplacement {
+            PlanarMotion::Translation(along) => PlanarDisplacement {
                 rotation: v.rotation,
                 translation: v.translation + v.rotation * along * tau.value(),
             },
@@ -228,11 +231,11 @@ impl Subgroup for Planar {
         tau: JointDisplacement,
     ) -> PlanarDisplacement {
         match motion {
-            PlanarMotion::Turn => {
+            PlanarMotion::Rotation => {
                 let e = tau.unit_direction();
                 PlanarDisplacement { rotation: e * b.rotation, translation: e * b.translation }
             }
-            PlanarMotion::Slide(along) => PlanarDisplacement {
+            PlanarMotion::Translation(along) => PlanarDisplacement {
                 rotation: b.rotation,
                 translation: b.translation + along * tau.value(),
             },
@@ -241,8 +244,8 @@ impl Subgroup for Planar {
 
     fn path(motion: &PlanarMotion, b: &PlanarDisplacement) -> Path {
         Path::Planar(match motion {
-            PlanarMotion::Turn => PlanarPath::Turn { start: *b },
-            PlanarMotion::Slide(along) => PlanarPath::Slide { start: *b, rate: *along },
+            PlanarMotion::Rotation => PlanarPath::Rotation { start: *b },
+            PlanarMotion::Translation(along) => PlanarPath::Translation { start: *b, rate: *along },
         })
     }
 }

@@ -7,6 +7,20 @@ use nalgebra::{Isometry3, Point3, Quaternion, Unit, UnitQuaternion, Vector3, Vec
 
 /// A twist `(ω; v)` in base coordinates: radians and metres per unit of the joint's coordinate
 /// (a radian or a metre).
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use opm_core::group::screw::Screw;
+/// use std::f64::consts::PI;
+///
+/// // Half a revolution about the vertical line through (1, 0, 0) takes the origin to (2, 0, 0).
+/// let hinge = Screw::rotation(Vector3::z_axis(), Point3::new(1.0, 0.0, 0.0));
+/// let moved = hinge.exp(PI) * Point3::origin();
+/// assert!((moved - Point3::new(2.0, 0.0, 0.0)).norm() < 1e-15);
+/// // Axes that meet are reciprocal: neither moves against a force along the other.
+/// let meets = Screw::rotation(Vector3::y_axis(), Point3::new(1.0, 0.0, 0.0));
+/// assert_eq!(hinge.reciprocal(&meets), 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screw {
     /// The angular part `ω`.
@@ -69,12 +83,13 @@ impl Screw {
         Self { angular, linear }
     }
 
-    /// The displacement `exp(self · amount)`: motion along the screw by `amount` of its coordinate.
-    pub fn exp(&self, amount: f64) -> Isometry3<f64> {
-        let (angular, linear) = (self.angular * amount, self.linear * amount);
+    /// The displacement `exp(self · coordinate)`: motion along the screw by a value of its joint
+    /// coordinate, in radians or metres.
+    pub fn exp(&self, coordinate: f64) -> Isometry3<f64> {
+        let (angular, linear) = (self.angular * coordinate, self.linear * coordinate);
         let angle = angular.norm();
         // The coefficients sin θ / θ, (1 − cos θ) / θ², (θ − sin θ) / θ³ and sin(θ/2) / θ. The
-        // cancellation in the third one does no harm: it is multiplied by θ² again.
+        // cancellation in the third one does no harm, because it is multiplied by θ² again.
         let (sin, cos) = (0.5 * angle).sin_cos();
         let [first, second, third, half] = if angle < SMALL_ANGLE {
             [1.0, 0.5, 1.0 / 6.0, 0.5]
@@ -146,15 +161,15 @@ mod tests {
 
     proptest! {
         #[test]
-        fn exponential_is_the_series(s in screw(), amount in -2.0..2.0) {
-            let x = hat(&s) * amount;
+        fn exponential_is_the_series(s in screw(), coordinate in -2.0..2.0) {
+            let x = hat(&s) * coordinate;
             let (mut term, mut sum) = (Matrix4::identity(), Matrix4::identity());
             // ‖x‖ < 8: the terms have fallen below rounding well before the sixtieth.
             for k in 1..60 {
                 term = term * x / f64::from(k);
                 sum += term;
             }
-            prop_assert!((s.exp(amount).to_homogeneous() - sum).amax() < 1e-11);
+            prop_assert!((s.exp(coordinate).to_homogeneous() - sum).amax() < 1e-11);
         }
 
         #[test]

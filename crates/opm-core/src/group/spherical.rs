@@ -1,41 +1,44 @@
-//! `SO(3)`: rotations about a centre, as matrices. A twist is the angular velocity.
+//! The spherical subgroup, `SO(3)`: rotations about a centre, as matrices. A twist is the angular velocity.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use crate::numeric::angle::atan2;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
-/// The subgroup.
+/// The spherical subgroup.
 pub(crate) struct Spherical;
 
-/// A one-parameter motion about the centre that another subspace may share.
+/// A one-parameter spherical motion that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SphericalMotion {
     /// Rotation about the frame's third direction.
-    Turn,
+    Rotation,
 }
 
-/// The rotation about an axis by the angle that a unit vector points at.
-pub(crate) fn rotation_about(axis: &Vector3<f64>, turn: Complex<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (turn.re, turn.im);
+/// The rotation about a unit axis by an angle, which is given as the unit complex number `e(angle)`
+/// (Rodrigues' formula).
+pub(crate) fn rotation_about(axis: &Vector3<f64>, angle: Complex<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (angle.re, angle.im);
     Matrix3::from_diagonal_element(cos)
         + axis.cross_matrix() * sin
         + axis * axis.transpose() * (1.0 - cos)
 }
 
-/// `exp(axis q) v`, with `q` as a unit vector.
+/// The vector `v` rotated about a unit axis by an angle, which is given as the unit complex number
+/// `e(angle)`.
 #[inline]
-pub(crate) fn rotated(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
-    v * q.re + axis.cross(v) * q.im + axis * (axis.dot(v) * (1.0 - q.re))
+pub(crate) fn rotated(axis: &Vector3<f64>, angle: Complex<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    v * angle.re + axis.cross(v) * angle.im + axis * (axis.dot(v) * (1.0 - angle.re))
 }
 
-/// The rotation vector of `r`, at most half a turn, by its quaternion: of the four multiples of it that
-/// the entries of `r` give, the longest one.
+/// The rotation vector of `r`, whose angle is at most π. The entries of `r` give four multiples of its
+/// quaternion, of which the longest is used.
 #[inline(always)]
 pub(crate) fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
     let [xx, yy, zz] = [r[(0, 0)], r[(1, 1)], r[(2, 2)]];
-    // Four times the products of two components, w being the scalar one, and their squares.
+    // Four times the products of two components of the quaternion (w, x, y, z), and four times their
+    // squares.
     let (wx, wy, wz) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
     let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
     let (ww, xx, yy, zz) =
@@ -119,29 +122,31 @@ impl Subgroup for Spherical {
         0.0
     }
 
-    fn motion(_: &Vector3<f64>, rotation: bool) -> SphericalMotion {
-        assert!(rotation, "a spherical subspace holds no translation");
-        SphericalMotion::Turn
+    fn motion(_: &Vector3<f64>, motion: MotionType) -> SphericalMotion {
+        match motion {
+            MotionType::Rotation => SphericalMotion::Rotation,
+            MotionType::Translation => panic!("a spherical subspace contains no translation"),
+        }
     }
 
     #[inline]
     fn unit_twist(motion: &SphericalMotion) -> LocalTwist {
         match motion {
-            SphericalMotion::Turn => LocalTwist::z(),
+            SphericalMotion::Rotation => LocalTwist::z(),
         }
     }
 
     fn complement(motion: &SphericalMotion) -> Vec<LocalTwist> {
         match motion {
-            SphericalMotion::Turn => vec![LocalTwist::x(), LocalTwist::y()],
+            SphericalMotion::Rotation => vec![LocalTwist::x(), LocalTwist::y()],
         }
     }
 
     #[inline(always)]
     fn after(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
         match motion {
-            SphericalMotion::Turn => {
-                // Columns one and two of R turn; the third, the axis of I, stays.
+            SphericalMotion::Rotation => {
+                // The first two columns of R rotate; the third, the axis of I, stays.
                 let e = tau.unit_direction();
                 let (x, y, z) = (r.column(0), r.column(1), r.column(2));
                 Matrix3::from_columns(&[x * e.re + y * e.im, y * e.re - x * e.im, z.into_owned()])
@@ -152,7 +157,7 @@ impl Subgroup for Spherical {
     #[inline(always)]
     fn before(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
         match motion {
-            SphericalMotion::Turn => {
+            SphericalMotion::Rotation => {
                 let e = tau.unit_direction();
                 let (x, y, z) = (r.row(0), r.row(1), r.row(2));
                 Matrix3::from_rows(&[x * e.re - y * e.im, x * e.im + y * e.re, z.into_owned()])
@@ -162,7 +167,7 @@ impl Subgroup for Spherical {
 
     fn path(motion: &SphericalMotion, b: &Matrix3<f64>) -> Path {
         match motion {
-            SphericalMotion::Turn => Path::Spherical { start: *b, axis: Vector3::z() },
+            SphericalMotion::Rotation => Path::Spherical { start: *b, axis: Vector3::z() },
         }
     }
 }

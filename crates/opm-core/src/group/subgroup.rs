@@ -1,99 +1,101 @@
-//! What every subgroup has to say of itself.
+//! The operations that every subgroup implements.
 
 use super::path::Path;
-use super::{JointDisplacement, SubspaceKind};
+use super::{JointDisplacement, MotionType, SubspaceKind};
 use nalgebra::{Rotation3, Vector3};
 
-/// A twist in the frame of its subspace: as many numbers as the subspace has dimensions, the rest zeros.
+/// A twist in the frame of its subspace: as many components as the subspace has dimensions, padded with
+/// zeros to three.
 pub(crate) type LocalTwist = Vector3<f64>;
 
-/// The algebra of one subgroup, in its own frame. The displacements are those that chains compute with.
+/// The algebra of one subgroup, in its own frame. Chains compute with the type [`Subgroup::Displacement`].
 pub(crate) trait Subgroup {
     /// One displacement of the subgroup.
     type Displacement: Copy;
     /// A one-parameter motion inside the subgroup that two subspaces may share.
     type Intersection: Copy;
 
-    /// Which subgroup it is.
+    /// The kind of subspace that the subgroup is.
     const KIND: SubspaceKind;
-    /// Number of freedoms.
+    /// The dimension of the subgroup: its number of degrees of freedom.
     const DIMENSION: usize;
-    /// Whether its displacements commute. Then they add up: the logarithm of a product is the sum of the
-    /// logarithms.
+    /// Whether its displacements commute. The logarithm of a product is then the sum of the logarithms.
     const COMMUTES: bool;
-    /// The displacement that leaves everything where it is.
+    /// The identity displacement.
     const IDENTITY: Self::Displacement;
 
-    /// First `second`, then `first`: `first · second`.
+    /// The product `first · second`: `second` is applied to points first.
     fn product(first: &Self::Displacement, second: &Self::Displacement) -> Self::Displacement;
 
-    /// The displacement back.
+    /// The inverse displacement.
     fn inverse(g: &Self::Displacement) -> Self::Displacement;
 
-    /// The displacement that a constant twist makes in unit time.
+    /// The exponential: the displacement after moving with a constant twist for unit time.
     fn exponential(twist: &LocalTwist) -> Self::Displacement;
 
-    /// The shortest twist whose exponential is `g`: rotations by at most half a turn, unless the subgroup
-    /// counts whole turns.
+    /// The shortest twist whose exponential is `g`. Its angle is at most π, unless the subgroup counts full
+    /// revolutions.
     fn logarithm(g: &Self::Displacement) -> LocalTwist;
 
-    /// A displacement that agrees with the exponential to first order: what a step of Newton's method
-    /// needs.
+    /// A displacement that agrees with the exponential to first order. It is cheaper, and good enough for
+    /// a step of Newton's method.
     fn first_order(twist: &LocalTwist) -> Self::Displacement {
         Self::exponential(twist)
     }
 
-    /// Adjoint action: the twist as it is after the displacement, `g ξ g⁻¹`.
+    /// The adjoint action `g ξ g⁻¹`: the twist displaced by `g`.
     fn adjoint(g: &Self::Displacement, twist: &LocalTwist) -> LocalTwist;
 
     /// The adjoint action of the inverse, `g⁻¹ ξ g`.
     fn adjoint_of_inverse(g: &Self::Displacement, twist: &LocalTwist) -> LocalTwist;
 
-    /// Lie bracket: how the second twist changes when it is carried along by the first.
+    /// The Lie bracket `[a, b]`: the rate of change of `b` when it moves with `a`.
     fn bracket(a: &LocalTwist, b: &LocalTwist) -> LocalTwist;
 
-    /// Action: where a point of the frame goes.
+    /// The image of a point, which is given in the subspace's frame.
     fn act(g: &Self::Displacement, point: &Vector3<f64>) -> Vector3<f64>;
 
-    /// The displacement as a rotation about the frame's origin, then a translation.
+    /// The displacement as a rotation about the frame's origin, followed by a translation.
     fn rotation_and_translation(g: &Self::Displacement) -> (Rotation3<f64>, Vector3<f64>);
 
-    /// A twist as an angular velocity and the velocity of the point at the frame's origin.
+    /// A twist as two vectors in the frame: the angular velocity, and the velocity of the point at the
+    /// frame's origin.
     fn embed(twist: &LocalTwist) -> [Vector3<f64>; 2];
 
-    /// Whether a twist, which is not zero, is a translation.
+    /// Whether a twist is a translation. The twist must not be zero.
     fn is_translation(twist: &LocalTwist) -> bool;
 
-    /// The largest number of a displacement, radians or metres; zero where rotations are all it is.
+    /// The largest component of a displacement that can grow without bound: a counted angle in radians or
+    /// a length in metres. It is zero for a subgroup of rotations modulo 2π.
     fn size(g: &Self::Displacement) -> f64;
 
-    /// The intersection motion with this direction in the frame: a rotation about it through the frame's
-    /// origin, or a translation along it.
+    /// The intersection motion with a given direction in the frame: a rotation about that direction through
+    /// the frame's origin, or a translation along it.
     ///
     /// # Panics
-    /// If the subgroup does not hold such a motion.
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> Self::Intersection;
+    /// If the subgroup does not contain such a motion.
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> Self::Intersection;
 
-    /// The unit twist of a motion.
+    /// The unit twist of an intersection motion.
     fn unit_twist(motion: &Self::Intersection) -> LocalTwist;
 
-    /// The subgroup's directions beside a motion: with its unit twist they are a basis of the twists.
+    /// Twists that complete the unit twist of an intersection motion to a basis of the subgroup's twists.
     fn complement(motion: &Self::Intersection) -> Vec<LocalTwist>;
 
-    /// `v · exp(I τ)`.
+    /// The product `v · exp(I τ)`.
     fn after(
         motion: &Self::Intersection,
         v: &Self::Displacement,
         tau: JointDisplacement,
     ) -> Self::Displacement;
 
-    /// `exp(I τ) · b`.
+    /// The product `exp(I τ) · b`.
     fn before(
         motion: &Self::Intersection,
         b: &Self::Displacement,
         tau: JointDisplacement,
     ) -> Self::Displacement;
 
-    /// `exp(I τ) · b` for every τ.
+    /// The products `exp(I τ) · b` for all τ, as a path.
     fn path(motion: &Self::Intersection, b: &Self::Displacement) -> Path;
 }

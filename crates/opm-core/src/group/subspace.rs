@@ -25,6 +25,27 @@ pub const TOLERANCE: f64 = 1e-4;
 
 /// The span of a set of screws, stored as an orthonormal basis in a normalised frame: the origin is
 /// in the middle of the mechanism, and lengths are divided by the mechanism's size.
+///
+/// ```
+/// use nalgebra::{Point3, Unit, Vector3};
+/// use opm_core::group::screw::Screw;
+/// use opm_core::group::subspace::{Frame, MotionSubspace, SubspaceClass};
+///
+/// // Three revolute axes through one point, of different directions.
+/// let centre = Point3::new(0.1, 0.2, 0.3);
+/// let axes = [Vector3::x(), Vector3::y(), Vector3::new(1.0, 1.0, 1.0)];
+/// let screws = axes.map(|axis| Screw::rotation(Unit::new_normalize(axis), centre));
+/// let frame = Frame::of(&screws.map(|screw| (screw, centre)));
+/// let subspace = MotionSubspace::span(frame, &screws);
+/// assert_eq!(subspace.dimension(), 3);
+/// let Some(SubspaceClass::Spherical { centre: found }) = subspace.class() else { panic!() };
+/// assert!((found - centre).norm() < 1e-12);
+///
+/// // Two of them only do not form a group: their bracket is the third rotation.
+/// let pair = MotionSubspace::span(frame, &screws[..2]);
+/// assert!(pair.class().is_none());
+/// assert_eq!(pair.closure().dimension(), 3);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSubspace {
     frame: Frame,

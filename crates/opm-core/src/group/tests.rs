@@ -1,5 +1,5 @@
-//! The algebra of every subgroup, held against the group axioms, against SE(3) and against itself: on
-//! random elements, and on the structured ones where closed forms have their seams.
+//! The algebra of every subgroup is compared with the group axioms, with SE(3) and with itself: on random
+//! elements, and on special ones at which closed forms change from one case to another.
 
 use super::screw::Screw;
 use super::*;
@@ -21,7 +21,7 @@ fn kind() -> impl Strategy<Value = SubspaceKind> {
     prop::sample::select(KINDS.to_vec())
 }
 
-/// A number of a twist: zeros, quarter and half turns, small and ordinary ones.
+/// A component of a twist: zero, multiples of π/2, small numbers and ordinary ones.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => -3.0..3.0_f64,
@@ -39,7 +39,7 @@ fn twist(kind: SubspaceKind) -> impl Strategy<Value = LocalTwist> {
     [number(), number(), number()].prop_map(move |numbers| twist_of(kind, numbers))
 }
 
-/// The rotations that take the axes to axes: quarter and half turns, and thirds about the diagonals.
+/// The rotations of a cube: by multiples of π/2 about the axes, and by π and 2π/3 about diagonals.
 fn cube_rotations() -> Vec<Matrix3<f64>> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|a| [a, -a]).concat();
     let mut found = Vec::new();
@@ -51,17 +51,17 @@ fn cube_rotations() -> Vec<Matrix3<f64>> {
     found
 }
 
-/// A rotation of the plane by a whole number of quarter turns, exactly.
+/// An exact rotation of the plane by a multiple of π/2.
 fn quarters() -> impl Strategy<Value = Complex<f64>> {
     prop::sample::select(vec![(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
         .prop_map(|(re, im)| Complex::new(re, im))
 }
 
-/// Displacements without rounding in them.
+/// Displacements without rounding.
 fn structured(kind: SubspaceKind) -> BoxedStrategy<Displacement> {
-    let place = || [number(), number()].prop_map(|[x, y]| Complex::new(x, y));
+    let translation = || [number(), number()].prop_map(|[x, y]| Complex::new(x, y));
     match kind {
-        SubspaceKind::Planar => (quarters(), place())
+        SubspaceKind::Planar => (quarters(), translation())
             .prop_map(|(rotation, translation)| PlanarDisplacement { rotation, translation }.into())
             .boxed(),
         SubspaceKind::Spherical => {
@@ -70,7 +70,7 @@ fn structured(kind: SubspaceKind) -> BoxedStrategy<Displacement> {
         SubspaceKind::Cylindrical => [number(), number()]
             .prop_map(|[angle, advance]| CylindricalDisplacement { angle, advance }.into())
             .boxed(),
-        SubspaceKind::TranslationalPlane => place().prop_map(Displacement::from).boxed(),
+        SubspaceKind::TranslationalPlane => translation().prop_map(Displacement::from).boxed(),
     }
 }
 
@@ -91,23 +91,24 @@ fn with_twist() -> impl Strategy<Value = (Displacement, LocalTwist)> {
     kind().prop_flat_map(|kind| (displacement(kind), twist(kind)))
 }
 
-/// Every intersection motion of a kind: turns, and slides in directions along the axes and askew.
+/// Every intersection motion of a kind: rotations, and translations along the axes and in other directions.
 fn motion(kind: SubspaceKind) -> BoxedStrategy<IntersectionMotion> {
-    let slide = prop_oneof![Just(0.0), Just(FRAC_PI_2), -3.0..3.0_f64]
+    let direction = prop_oneof![Just(0.0), Just(FRAC_PI_2), -3.0..3.0_f64]
         .prop_map(|angle| Vector3::new(angle.cos(), angle.sin(), 0.0));
-    let turn = IntersectionMotion::new;
+    use MotionType::{Rotation, Translation};
+    let new = IntersectionMotion::new;
     match kind {
         SubspaceKind::Planar => prop_oneof![
-            Just(turn(kind, &Vector3::z(), true)),
-            slide.prop_map(move |along| IntersectionMotion::new(kind, &along, false)),
+            Just(new(kind, &Vector3::z(), Rotation)),
+            direction.prop_map(move |along| new(kind, &along, Translation)),
         ]
         .boxed(),
-        SubspaceKind::Spherical => Just(turn(kind, &Vector3::z(), true)).boxed(),
-        SubspaceKind::Cylindrical => any::<bool>()
-            .prop_map(move |rotation| IntersectionMotion::new(kind, &Vector3::z(), rotation))
+        SubspaceKind::Spherical => Just(new(kind, &Vector3::z(), Rotation)).boxed(),
+        SubspaceKind::Cylindrical => prop::sample::select(vec![Rotation, Translation])
+            .prop_map(move |motion| new(kind, &Vector3::z(), motion))
             .boxed(),
         SubspaceKind::TranslationalPlane => {
-            slide.prop_map(move |along| IntersectionMotion::new(kind, &along, false)).boxed()
+            direction.prop_map(move |along| new(kind, &along, Translation)).boxed()
         }
     }
 }
@@ -116,11 +117,11 @@ fn with_motion() -> impl Strategy<Value = (Displacement, IntersectionMotion)> {
     kind().prop_flat_map(|kind| (displacement(kind), motion(kind)))
 }
 
-/// A frame in the base: random, or the base's own.
+/// A random frame, or that of the base.
 fn frame(kind: SubspaceKind) -> impl Strategy<Value = Subspace> {
     let own = Just((Matrix3::identity(), Point3::origin()));
     let other = ([number(), number(), number()], [number(), number(), number()]).prop_map(
-        |(turn, origin)| (Rotation3::new(turn.into()).into_inner(), Point3::from(origin)),
+        |(vector, origin)| (Rotation3::new(vector.into()).into_inner(), Point3::from(origin)),
     );
     prop_oneof![1 => own, 3 => other].prop_map(move |(axes, origin)| Subspace {
         kind,
@@ -130,7 +131,7 @@ fn frame(kind: SubspaceKind) -> impl Strategy<Value = Subspace> {
     })
 }
 
-/// The largest difference of two displacements' numbers.
+/// The largest difference of the components of two displacements.
 fn apart(a: &Displacement, b: &Displacement) -> f64 {
     match a {
         Displacement::Planar(a) => {
@@ -150,8 +151,8 @@ fn isometries_apart(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.to_homogeneous() - b.to_homogeneous()).amax()
 }
 
-/// The part of a twist that turns by at most half a turn about the axes, or about one.
-fn turning(kind: SubspaceKind, twist: &LocalTwist) -> f64 {
+/// The angle of a twist if it counts modulo 2π; zero if it counts full revolutions.
+fn wrapped_angle(kind: SubspaceKind, twist: &LocalTwist) -> f64 {
     match kind {
         SubspaceKind::Planar => twist.x.abs(),
         SubspaceKind::Spherical => twist.norm(),
@@ -175,24 +176,24 @@ proptest! {
         }
     }
 
-    /// Half turns too, where a logarithm has two values.
+    /// This includes rotations by π, at which a logarithm has two values.
     #[test]
     fn the_exponential_undoes_the_logarithm([g] in displacements()) {
         let kind = g.kind();
         let logarithm = g.logarithm();
-        prop_assert!(turning(kind, &logarithm) <= PI + ROUNDING);
+        prop_assert!(wrapped_angle(kind, &logarithm) <= PI + ROUNDING);
         prop_assert!(apart(&kind.exponential(&logarithm), &g) < ROUNDING, "{:?}", logarithm);
     }
 
     #[test]
     fn the_logarithm_undoes_the_exponential((g, twist) in with_twist()) {
         let kind = g.kind();
-        // Near half a turn the two values of a logarithm are near each other's places.
-        prop_assume!(turning(kind, &twist) < 3.1);
+        // Near π, rounding decides between the two values of a logarithm.
+        prop_assume!(wrapped_angle(kind, &twist) < 3.1);
         prop_assert!((kind.exponential(&twist).logarithm() - twist).amax() < 1e-10);
     }
 
-    /// What is first order is right to first order.
+    /// The first-order displacement has an error of second order.
     #[test]
     fn steps_are_exponentials_of_small_twists((g, twist) in with_twist()) {
         const SMALL: f64 = 1e-4;
@@ -201,7 +202,7 @@ proptest! {
         prop_assert!(off <= step.norm_squared() + 1e-15, "{}", off);
     }
 
-    /// In a frame anywhere, a subgroup is one of SE(3).
+    /// In any frame, a subgroup is a subgroup of SE(3).
     #[test]
     fn products_are_those_of_isometries(
         ([a, b], frame) in kind().prop_flat_map(|kind| ([displacement(kind), displacement(kind)], frame(kind)))
@@ -224,7 +225,7 @@ proptest! {
         prop_assert!((moved - frame.isometry(&g) * point).amax() < 10.0 * ROUNDING);
     }
 
-    /// Twists in the base are those of the base's screws.
+    /// The exponential of a twist is that of its screw in base coordinates.
     #[test]
     fn exponentials_are_those_of_screws(
         (twist, frame) in kind().prop_flat_map(|kind| (twist(kind), frame(kind)))
@@ -241,7 +242,7 @@ proptest! {
         let kind = g.kind();
         let carried = g.adjoint(&twist);
         let expected = g.after(&kind.exponential(&twist)).after(&g.inverse());
-        // Cylindrical angles add up with their whole turns, and so agree as numbers.
+        // Cylindrical angles count full revolutions, so that they agree as numbers.
         prop_assert!(apart(&kind.exponential(&carried), &expected) < 20.0 * ROUNDING);
         prop_assert!((g.adjoint_of_inverse(&carried) - twist).amax() < 10.0 * ROUNDING);
         prop_assert!((g.inverse().adjoint(&carried) - twist).amax() < 10.0 * ROUNDING);
@@ -258,7 +259,8 @@ proptest! {
         prop_assert!((difference - kind.bracket(&a, &b)).amax() < 1e-5);
     }
 
-    /// Steps along the intersection motion are products with its exponential, however they are held.
+    /// Steps along the intersection motion are products with its exponential, for both forms of a joint
+    /// displacement.
     #[test]
     fn steps_along_a_motion_are_products((g, motion) in with_motion(), t in number()) {
         let kind = g.kind();
@@ -269,7 +271,7 @@ proptest! {
         prop_assert!(apart(&motion.after(&g, value), &g.after(&step)) < ROUNDING);
         prop_assert!(apart(&motion.before(&g, value), &step.after(&g)) < ROUNDING);
         if motion.is_rotation() && !kind.commutes() {
-            // A direction of any length.
+            // A direction may have any length.
             let direction = JointDisplacement::Direction(value.unit_direction() * 7.0);
             prop_assert!(apart(&motion.after(&g, direction), &g.after(&step)) < ROUNDING);
             prop_assert!(apart(&motion.before(&g, direction), &step.after(&g)) < ROUNDING);
@@ -281,10 +283,10 @@ proptest! {
     #[test]
     fn paths_are_steps_along_a_motion((g, motion) in with_motion(), t in -3.0..3.0_f64) {
         let at: Displacement = match motion.path(&g) {
-            Path::Planar(PlanarPath::Slide { start, rate }) => {
+            Path::Planar(PlanarPath::Translation { start, rate }) => {
                 PlanarDisplacement { translation: start.translation + rate * t, ..start }.into()
             }
-            Path::Planar(PlanarPath::Turn { start }) => {
+            Path::Planar(PlanarPath::Rotation { start }) => {
                 PlanarDisplacement::about(Complex::new(0.0, 0.0), Complex::from_polar(1.0, t))
                     .after(&start)
                     .into()
@@ -300,7 +302,7 @@ proptest! {
         prop_assert!(apart(&at, &motion.before(&g, JointDisplacement::Value(t))) < ROUNDING);
     }
 
-    /// A motion and the directions beside it are a basis.
+    /// A motion and its complement are a basis.
     #[test]
     fn a_motion_has_a_complement((g, motion) in with_motion()) {
         let mut basis = motion.complement();
@@ -313,7 +315,7 @@ proptest! {
         prop_assert_eq!(translation, !motion.is_rotation());
     }
 
-    /// A revolute or a slider is its screw's exponential.
+    /// The displacement of a revolute or prismatic joint is the exponential of its screw.
     #[test]
     fn joints_are_exponentials_of_screws(
         [x, y, q] in [number(), number(), number()],
@@ -329,31 +331,33 @@ proptest! {
         let expected = Planar::exponential(&(screw * q));
         prop_assert!(apart(&found.into(), &expected.into()) < 10.0 * ROUNDING);
         let axis = Vector3::new(x, y, 1.0).normalize();
-        let turn = JointDisplacement::Value(q).unit_direction();
-        let matrix = rotation_about(&axis, turn);
+        let angle = JointDisplacement::Value(q).unit_direction();
+        let matrix = rotation_about(&axis, angle);
         prop_assert!((matrix - Spherical::exponential(&(axis * q))).amax() < ROUNDING);
         let v = Vector3::new(y, q, x);
-        prop_assert!((rotated(&axis, turn, &v) - matrix * v).amax() < 10.0 * ROUNDING);
+        prop_assert!((rotated(&axis, angle, &v) - matrix * v).amax() < 10.0 * ROUNDING);
     }
 }
 
-/// Exact half turns about every axis of a cube, and the identity: where a rotation vector has its seams.
+/// Rotations by exactly π have two rotation vectors, and the identity has none of a definite direction.
 #[test]
-fn rotation_vectors_of_half_and_quarter_turns_are_exact() {
+fn rotation_vectors_of_cube_rotations_are_exact() {
     let rotations = cube_rotations();
     assert_eq!(rotations.len(), 24);
     for r in rotations {
         let vector = rotation_vector(&r);
         let rotation = UnitQuaternion::from_scaled_axis(vector).to_rotation_matrix();
         assert!((rotation.into_inner() - r).amax() < ROUNDING, "{r} {vector}");
-        let turns = vector.norm() / (PI / 6.0);
-        assert!((turns - turns.round()).abs() < ROUNDING, "{vector}");
+        let multiple = vector.norm() / (PI / 6.0);
+        assert!((multiple - multiple.round()).abs() < ROUNDING, "{vector}");
     }
     assert_eq!(rotation_vector(&Matrix3::identity()), Vector3::zeros());
 }
 
 #[test]
-#[should_panic(expected = "a spherical subspace stands where a planar one is needed")]
+#[should_panic(
+    expected = "expected an object of a planar subspace, found one of a spherical subspace"
+)]
 fn displacements_of_two_subgroups_do_not_multiply() {
     let _ = SubspaceKind::Planar.identity().after(&SubspaceKind::Spherical.identity());
 }

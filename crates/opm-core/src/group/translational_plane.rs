@@ -1,19 +1,19 @@
-//! Translations in a plane, the frame's first two directions, as complex numbers. A twist is
-//! `(vx, vy, 0)`.
+//! The translational plane: translations along the frame's first two directions, as complex numbers in
+//! metres. A twist is `(vx, vy, 0)`.
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, SubspaceKind, quarter};
+use super::{JointDisplacement, MotionType, SubspaceKind, quarter};
 use nalgebra::{Complex, Rotation3, Vector3};
 
-/// The subgroup.
+/// The subgroup of the translations in a plane.
 pub(crate) struct TranslationalPlane;
 
-/// A one-parameter motion in the plane that another subspace may share.
+/// A one-parameter translation in the plane that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TranslationalMotion {
-    /// Translation in this direction, a unit vector.
-    Slide(Complex<f64>),
+    /// Translation along a direction of the plane, which is a unit complex number.
+    Translation(Complex<f64>),
 }
 
 impl Subgroup for TranslationalPlane {
@@ -77,21 +77,25 @@ impl Subgroup for TranslationalPlane {
         t.norm()
     }
 
-    fn motion(direction: &Vector3<f64>, rotation: bool) -> TranslationalMotion {
-        assert!(!rotation, "a translational plane holds no rotation");
-        TranslationalMotion::Slide(Complex::new(direction.x, direction.y))
+    fn motion(direction: &Vector3<f64>, motion: MotionType) -> TranslationalMotion {
+        match motion {
+            MotionType::Rotation => panic!("a translational plane contains no rotation"),
+            MotionType::Translation => {
+                TranslationalMotion::Translation(Complex::new(direction.x, direction.y))
+            }
+        }
     }
 
     #[inline]
     fn unit_twist(motion: &TranslationalMotion) -> LocalTwist {
         match motion {
-            TranslationalMotion::Slide(along) => LocalTwist::new(along.re, along.im, 0.0),
+            TranslationalMotion::Translation(along) => LocalTwist::new(along.re, along.im, 0.0),
         }
     }
 
     fn complement(motion: &TranslationalMotion) -> Vec<LocalTwist> {
         match motion {
-            TranslationalMotion::Slide(along) => {
+            TranslationalMotion::Translation(along) => {
                 let across = quarter(*along);
                 vec![LocalTwist::new(across.re, across.im, 0.0)]
             }
@@ -105,11 +109,11 @@ impl Subgroup for TranslationalPlane {
         tau: JointDisplacement,
     ) -> Complex<f64> {
         match motion {
-            TranslationalMotion::Slide(along) => v + along * tau.value(),
+            TranslationalMotion::Translation(along) => v + along * tau.value(),
         }
     }
 
-    /// The same: translations commute.
+    /// The same as `after`, because translations commute.
     #[inline(always)]
     fn before(
         motion: &TranslationalMotion,
@@ -121,7 +125,9 @@ impl Subgroup for TranslationalPlane {
 
     fn path(motion: &TranslationalMotion, b: &Complex<f64>) -> Path {
         match motion {
-            TranslationalMotion::Slide(along) => Path::Translational { start: *b, rate: *along },
+            TranslationalMotion::Translation(along) => {
+                Path::Translational { start: *b, rate: *along }
+            }
         }
     }
 }

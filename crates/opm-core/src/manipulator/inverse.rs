@@ -127,8 +127,8 @@ impl Clone for Solution {
         Self {
             joints: self.joints.clone(),
             imaginary: self.imaginary.clone(),
-            cuts: self.cuts.clone(),
-            place: self.place.clone(),
+            taus: self.taus.clone(),
+            solved: self.solved.clone(),
             legs: self.legs.clone(),
             within_limits: self.within_limits,
             unreachable: self.unreachable.clone(),

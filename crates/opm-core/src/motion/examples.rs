@@ -7,7 +7,7 @@ pub struct MotionExample {
     pub name: &'static str,
     /// The example mechanism that the motion was made for.
     pub mechanism: &'static str,
-    /// A description on one line.
+    /// A description of one line.
     pub description: &'static str,
     /// The text of the file.
     pub text: &'static str,

@@ -1,13 +1,12 @@
-//! PlatformMotion files: TOML text is read into a [`PlatformMotion`], or every problem is reported with its
-//! location.
+//! Motion files: TOML text is read into a [`PlatformMotion`], or every problem is reported with its location.
 //!
 //! ```toml
 //! format = 1
 //! name = "figure-of-eight"
 //! units = { length = "mm", angle = "deg" }   # as in mechanism files
 //! duration = 10                              # seconds
-//! rate = 100                                 # samples a second
-//! mode = "++ ++ ++ +"                        # optional; default: home's
+//! rate = 100                                 # samples per second
+//! mode = "++ ++ ++ +"                        # optional; the default is the mode of home
 //!
 //! [coordinates]                              # absolute task coordinates; the others stay at home
 //! x = { amplitude = 30, frequency = 0.2 }
@@ -54,7 +53,7 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Platform
         None
     };
     let duration = positive("duration", "a number of seconds");
-    let rate = positive("rate", "a number of samples a second");
+    let rate = positive("rate", "a number of samples per second");
     let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
     let coordinates = root
         .require("coordinates", "a table [coordinates] of the coordinates that move")

@@ -1,24 +1,40 @@
 //! Natural cubic splines through a table of values, several columns on common knots.
 //!
 //! The value and its first two derivatives are continuous, and the second derivative is zero at both
-//! ends. The second derivatives `m` at the knots, which are `h[i]` apart, obey
+//! ends. The second derivatives `m[i]` at the knots, which are `h[i]` apart, satisfy
 //!
 //! ```text
 //! h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1]),   d[i] = (y[i+1] - y[i]) / h[i]
 //! ```
 //!
-//! a tridiagonal system whose diagonal dominates, so that elimination needs no pivots (J. Stoer, R.
+//! This is a tridiagonal system with a dominant diagonal, so that elimination needs no pivots (J. Stoer, R.
 //! Bulirsch, *Introduction to Numerical Analysis*, section 2.4). The values and slopes at the knots are
-//! kept: between two knots there is only one cubic that has them.
+//! stored. They determine the cubic between two knots.
 
 use super::Instant;
 
-/// Fewest knots of a natural cubic spline.
+/// The smallest number of knots of a natural cubic spline.
 pub const FEWEST: usize = 3;
 
 /// Natural cubic splines on common knots, one for each coordinate.
+///
+/// ```
+/// use opm_core::motion::{Instant, Spline};
+///
+/// // Values on a straight line: the natural cubic spline through them is that line.
+/// let times = vec![0.0, 0.5, 2.0];
+/// let values = times.iter().map(|t| 1.0 + 3.0 * t).collect();
+/// let spline = Spline::new(times, vec![values])?;
+/// let mut instant = Instant::new(1);
+/// spline.at(1.2, &mut instant);
+/// assert!((instant.pose[0] - 4.6).abs() < 1e-14);
+/// assert!((instant.velocity[0] - 3.0).abs() < 1e-14);
+/// assert!(instant.acceleration[0].abs() < 1e-13);
+/// # Ok::<(), opm_core::motion::SplineError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
+    /// The knots, seconds, ascending.
     times: Vec<f64>,
     columns: Vec<Column>,
 }
@@ -30,30 +46,31 @@ struct Column {
     slopes: Vec<f64>,
 }
 
-/// Why no spline goes through a table.
+/// Why there is no spline through given values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
     /// There are too few knots.
-    #[error("{0} times, expected at least {FEWEST}")]
+    #[error("{0} times given, expected at least {FEWEST}")]
     TooFew(usize),
     /// The times do not increase.
     #[error("the times do not increase")]
     NotIncreasing,
     /// A column does not have one value for each time.
-    #[error("not as many values as times")]
+    #[error("a column does not have one value for each time")]
     Length,
     /// The times are so close together that derivatives overflow.
-    #[error("times are too close together")]
+    #[error("the times are so close together that the derivatives overflow")]
     TooClose,
 }
 
 impl Spline {
-    /// The splines through the values of each column at these times, seconds, which increase.
+    /// The splines through the values of each column at increasing times, in seconds. Every column has
+    /// one value for each time.
     ///
     /// # Errors
-    /// Fewer than three times, times that do not increase or are too close together, or a column of
-    /// another length.
+    /// If there are fewer than three times, if the times do not increase or are too close together, or
+    /// if a column does not have as many values as there are times.
     pub fn new(times: Vec<f64>, columns: Vec<Vec<f64>>) -> Result<Self, SplineError> {
         if times.len() < FEWEST {
             return Err(SplineError::TooFew(times.len()));
@@ -78,12 +95,15 @@ impl Spline {
         &self.times
     }
 
-    /// Values and derivatives at time `t`, which is brought back between the ends.
-    ///
-    /// # Panics
-    /// `out` is for another number of columns.
+    /// The number of columns: one for each coordinate.
+    pub fn column_count(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Writes the values and their derivatives at time `t`, in seconds, into `out`. A time beyond the
+    /// ends counts as the nearer end. `out` is resized if it was made for another number of columns.
     pub fn at(&self, t: f64, out: &mut Instant) {
-        assert_eq!(self.columns.len(), out.pose.len(), "columns of the spline");
+        out.resize(self.columns.len());
         let last = self.times.len() - 1;
         let t = t.clamp(self.times[0], self.times[last]);
         let i = self.times.partition_point(|&knot| knot <= t).clamp(1, last) - 1;
@@ -92,7 +112,8 @@ impl Spline {
         for (number, Column { values, slopes }) in self.columns.iter().enumerate() {
             let (value, slope) = (values[i], slopes[i]);
             let mean = (values[i + 1] - value) / width;
-            // value + slope s + half s² + sixth s³ has the value and slope of the next knot there.
+            // The cubic value + slope s + half s² + sixth s³ has the value and the slope of the next knot at
+            // s = width.
             let half = (3.0 * mean - 2.0 * slope - slopes[i + 1]) / width;
             let sixth = (slope + slopes[i + 1] - 2.0 * mean) / (width * width);
             out.pose[number] = value + s * (slope + s * (half + s * sixth));
@@ -131,7 +152,7 @@ fn slopes(times: &[f64], values: &[f64], second: &[f64]) -> Vec<f64> {
             mean - width * (2.0 * second[i] + second[i + 1]) / 6.0
         })
         .collect();
-    // The cubic's derivative at the far end of the last piece.
+    // The last slope is the derivative of the last cubic at its end.
     let i = times.len() - 2;
     let width = times[i + 1] - times[i];
     let sixth = (second[i + 1] - second[i]) / (6.0 * width);
@@ -152,7 +173,7 @@ mod tests {
     /// The natural spline through four points at 0, 1, 2, 3 with values 0, 1, 0, 1, by hand: the
     /// second derivatives at the inner knots obey `4 m₁ + m₂ = -12`, `m₁ + 4 m₂ = 12`.
     #[test]
-    fn a_spline_that_was_solved_by_hand() {
+    fn a_spline_agrees_with_its_solution_by_hand() {
         let spline = Spline::new(vec![0.0, 1.0, 2.0, 3.0], vec![vec![0.0, 1.0, 0.0, 1.0]]).unwrap();
         for (t, second) in [(0.0, 0.0), (1.0, -4.0), (2.0, 4.0), (3.0, 0.0), (1.5, 0.0)] {
             assert!((at(&spline, t)[2] - second).abs() < 1e-13, "{t}");
@@ -165,7 +186,7 @@ mod tests {
         assert_eq!(at(&spline, 9.0), at(&spline, 3.0));
     }
 
-    /// Uneven knots: it passes through the values, and two derivatives are continuous.
+    /// With uneven knots, a spline passes through the values, and two derivatives are continuous.
     #[test]
     fn a_spline_is_smooth_at_its_knots() {
         let times: Vec<f64> = (0..20).map(|i| f64::from(i) + 0.4 * f64::from(i * i % 3)).collect();
@@ -219,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_spline_is_refused() {
+    fn values_without_a_spline_are_refused() {
         let new = |times: &[f64], values: &[f64]| Spline::new(times.into(), vec![values.into()]);
         assert_eq!(new(&[0.0, 1.0], &[0.0, 1.0]), Err(SplineError::TooFew(2)));
         assert_eq!(new(&[0.0, 1.0, 1.0], &[0.0; 3]), Err(SplineError::NotIncreasing));

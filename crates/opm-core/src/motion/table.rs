@@ -42,9 +42,12 @@ pub fn read(
     }
 }
 
+/// The problems of a table that were found so far.
 #[derive(Default)]
 struct Problems {
+    /// The first problems, up to [`MOST_PROBLEMS`].
     list: Vec<Problem>,
+    /// The number of further problems.
     more: usize,
 }
 

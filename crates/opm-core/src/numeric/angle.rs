@@ -1,27 +1,27 @@
-//! Angles from vectors, and vectors from angles.
+//! Angles of vectors ([`atan2`]), and sines and cosines of angles ([`sin_cos`]).
 //!
-//! Plain arithmetic without branches or tables, so that a loop over many angles is vectorised; and none
-//! of it fused, so that one angle and many, on this processor and on that, give the same to the bit. The
-//! standard library's functions do neither.
+//! These functions are plain arithmetic without branches or tables, so that a loop over many angles is
+//! vectorised. No operations are fused, so that results are equal to the bit for one angle and for many,
+//! and on every processor. The standard library's functions guarantee neither.
 //!
-//! Against extended precision, on 10⁷ random arguments of all signs and sizes and near the quarters of a
-//! turn, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
+//! Against extended precision, on 10⁷ random arguments of all signs and sizes and near the multiples of
+//! π/2, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
 
 use nalgebra::Complex;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, TAU};
 
-/// Angles up to this size are reduced by quarter turns exactly; larger ones, more than a hundred
-/// thousand turns, are left to the standard library.
+/// Angles up to this size, in radians, are reduced exactly by multiples of π/2. Larger ones, of more than a
+/// hundred thousand revolutions, are left to the standard library.
 pub(crate) const MOST_REDUCED: f64 = 1e6;
 
-/// What an eighth of a turn has beyond `FRAC_PI_4`, whose multiples up to four are exact.
+/// The difference between π/4 and `FRAC_PI_4`. Multiples of either by up to four are exact.
 const EIGHTH_TAIL: f64 = 3.061616997868383e-17;
 
-/// A quarter turn in three parts, the first two of 32 bits: their multiples up to 2²¹ are exact.
+/// π/2 as a sum of three parts. The first two have 32 bits, so that their multiples by up to 2²¹ are exact.
 const QUARTER: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 
-/// Added and taken away again, it rounds what is smaller than 2⁵¹ to a whole number, which stands in the
-/// last bits of the sum.
+/// A number smaller than 2⁵¹ is rounded to an integer by adding this constant and subtracting it again. The
+/// last bits of the sum hold the integer.
 const ROUND: f64 = 6755399441055744.0;
 
 /// `(atan t / t - 1) / t²` in powers of `t²`, lowest first: minimax for `t <= 1/2`, `atan t` to 1e-18.
@@ -41,7 +41,8 @@ const ATAN: [f64; 13] = [
     -0.009215792047089858,
 ];
 
-/// `(sin t / t - 1) / t²` and `(cos t - 1 + t²/2) / t⁴` in powers of `t²`, lowest first: those of fdlibm.
+/// `(sin t / t - 1) / t²` and `(cos t - 1 + t²/2) / t⁴` in powers of `t²`, lowest first: the coefficients of
+/// fdlibm.
 const SIN: [f64; 6] = [
     -0.16666666666666632,
     0.00833333333332249,
@@ -59,21 +60,21 @@ const COS: [f64; 6] = [
     -1.1359647557788195e-11,
 ];
 
-/// The angle of the vector `(x, y)`, in `[-π, π]`, with the signs of zeros as the standard library's;
-/// for finite numbers whose sum does not overflow.
+/// The angle of the vector `(x, y)`, in `[-π, π]`. Signs of zeros count as in the standard library. The
+/// numbers must be finite, and their sum must not overflow.
 #[inline(always)]
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     let (width, height) = (x.abs(), y.abs());
     let (steep, backwards) = (height > width, x.is_sign_negative());
     let (short, long) = if steep { (width, height) } else { (height, width) };
-    // Beyond 27 degrees, counted from 45 degrees.
+    // Angles beyond 27 degrees are measured from 45 degrees.
     let wide = short > 0.5 * long;
     let above = if wide { short - long } else { short };
     let below = if wide { short + long } else { long };
     let t = above / if below == 0.0 { 1.0 } else { below };
     let z = t * t;
     let atan = t + t * (z * polynomial(&ATAN, z));
-    // From the nearest of: 0, 45, 90, 135 and 180 degrees.
+    // Add the nearest multiple of 45 degrees, from 0 to 180.
     let wide_eighths = if backwards { 3.0 } else { 1.0 };
     let flat_eighths = if backwards { 4.0 } else { 0.0 };
     let eighths = if steep { 2.0 } else { flat_eighths };
@@ -82,13 +83,13 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     (eighths * FRAC_PI_4 + (eighths * EIGHTH_TAIL + atan)).copysign(y)
 }
 
-/// Sine and cosine.
+/// The sine and the cosine of an angle.
 #[inline]
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     if angle.abs() <= MOST_REDUCED { sin_cos_reduced(angle) } else { angle.sin_cos() }
 }
 
-/// Sine and cosine of an angle of at most [`MOST_REDUCED`].
+/// The sine and the cosine of an angle of at most [`MOST_REDUCED`] in size.
 #[inline(always)]
 pub(crate) fn sin_cos_reduced(angle: f64) -> (f64, f64) {
     // angle = quarters · π/2 + t + tail: the first two steps are exact.
@@ -117,8 +118,8 @@ pub(crate) fn sin_cos_reduced(angle: f64) -> (f64, f64) {
     (negate(sine, bits), negate(cosine, bits.wrapping_add(1)))
 }
 
-/// A polynomial in `z`, lowest coefficient first, its even and odd powers apart: half as long a chain of
-/// operations that wait for each other.
+/// A polynomial in `z`, with the lowest coefficient first. Even and odd powers are summed separately, which
+/// halves the chain of dependent operations.
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
     let square = z * z;
@@ -131,24 +132,24 @@ fn polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
     sums[0] + z * sums[1]
 }
 
-/// `e(angle)`, the unit vector at an angle.
+/// The unit complex number `e(angle) = cos(angle) + i sin(angle)`.
 #[inline]
 pub(crate) fn unit(angle: f64) -> Complex<f64> {
     let (sin, cos) = sin_cos(angle);
     Complex::new(cos, sin)
 }
 
-/// `sin x / x`, one at zero.
+/// The function `sin x / x`, which is 1 at zero.
 #[inline]
 pub(crate) fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { sin_cos(x).0 / x }
 }
 
-/// How many whole turns an angle is from the one within half a turn. Exactly half a turn is as near as its opposite:
-/// it stays what it is.
+/// The number of full revolutions to subtract from an angle to bring it to within π of zero. It is zero for
+/// an angle of exactly ±π, which stays as it is.
 pub(crate) fn whole_turns(angle: f64) -> f64 {
-    let turns = angle / TAU;
-    if turns.abs() <= 0.5 { 0.0 } else { turns.round() }
+    let revolutions = angle / TAU;
+    if revolutions.abs() <= 0.5 { 0.0 } else { revolutions.round() }
 }
 
 #[cfg(test)]
@@ -157,7 +158,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// How many numbers apart two numbers are; zeros of both signs are two.
+    /// How many representable numbers lie between two numbers; the zeros of both signs count as two.
     fn apart(a: f64, b: f64) -> u64 {
         let order = |x: f64| {
             let bits = x.to_bits() as i64;
@@ -166,7 +167,7 @@ mod tests {
         order(a).abs_diff(order(b))
     }
 
-    /// All signs, sizes from 1e-150 to 1e150, half of them about one.
+    /// Numbers of both signs and of sizes from 1e-150 to 1e150; half of them are near one.
     fn number() -> impl Strategy<Value = f64> {
         let of_size = |size: std::ops::Range<f64>| {
             (size, any::<bool>())
@@ -178,11 +179,11 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200_000))]
 
-        /// The standard library's is right to 0.6 units in the last place.
+        /// The standard library's function is right to 0.6 units in the last place.
         #[test]
         fn angles_are_those_of_the_standard_library(y in number(), x in number()) {
             prop_assert!(apart(atan2(y, x), y.atan2(x)) <= 2, "{y:e} {x:e}");
-            // Where the quotient is about the one that decides how the angle is counted.
+            // Near the quotient 1/2, at which the angle begins to be measured from 45 degrees.
             prop_assert!(apart(atan2(y, 2.0 * y), y.atan2(2.0 * y)) <= 2, "{y:e}");
         }
 

@@ -1,9 +1,9 @@
 //! Formatting of numbers in messages.
 
-/// From this size on, the digits before the decimal point are too many to count at a glance.
+/// From this size on, a number is written with an exponent.
 const LARGE: f64 = 1e15;
 
-/// Formats a number, with an exponent if it would otherwise be a long row of digits.
+/// Formats a number for a message, with an exponent if it would otherwise be a long row of digits.
 pub fn readable(value: f64) -> String {
     if value.abs() < LARGE { value.to_string() } else { format!("{value:e}") }
 }

@@ -1,11 +1,11 @@
-//! What a coordinate measures.
+//! The physical quantity that a coordinate measures.
 
 /// Whether a coordinate is an angle or a length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
-    /// Radians.
+    /// An angle, in radians.
     Angle,
-    /// Metres.
+    /// A length, in metres.
     Length,
 }
 

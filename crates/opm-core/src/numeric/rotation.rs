@@ -1,58 +1,59 @@
-//! Rotation matrices from outside: the nearest rotation to what rounding has left of one.
+//! Rotation matrices from the user: the rotation that is nearest to a rounded matrix.
 //!
-//! nalgebra's `Rotation3::from_matrix` is an iteration that stalls at half turns. Here the matrix must be a
-//! rotation to about six digits. Then two steps of Newton and Schulz' iteration for the polar decomposition,
+//! nalgebra's `Rotation3::from_matrix` is an iteration that stalls at rotations by π. Here the matrix must be
+//! a rotation to about six digits. Then two steps of Newton and Schulz' iteration for the polar decomposition,
 //! `X ← X (3 − XᵀX) / 2`, give the nearest rotation to full precision: each step squares the error (N. J. Higham,
-//! "Functions of Matrices", SIAM 2008, section 8.3). No step looks at how far the rotation turns.
+//! "Functions of Matrices", SIAM 2008, section 8.3). The angle of the rotation does not matter.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-/// The largest entry of `RRᵀ − 1` that a rotation matrix may have: what printing six digits leaves.
+/// The largest entry of `RRᵀ − 1` that a rotation matrix may have: the error of one printed with six digits.
 pub const WRITTEN: f64 = 1e-5;
 
-/// Why a matrix is no rotation.
+/// Why a matrix is not a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotRotation {
     /// An entry is infinite or not a number.
-    #[error("row {row}, column {column} is {value:?}, expected a number")]
+    #[error("row {row}, column {column} is {value:?}, expected a finite number")]
     NotFinite {
-        /// Counted from zero.
+        /// The row of the entry, counted from zero.
         row: usize,
-        /// Counted from zero.
+        /// The column of the entry, counted from zero.
         column: usize,
-        /// What was given.
+        /// The entry.
         value: f64,
     },
     /// The columns do not have unit length, or are not perpendicular.
     #[error(
-        "it is no rotation: R Rᵀ is off the identity by {off:.3e}, expected at most {WRITTEN:e}"
+        "not a rotation: R Rᵀ differs from the identity by {off:.3e}, expected at most {WRITTEN:e}"
     )]
     NotOrthogonal {
         /// The largest entry of `RRᵀ − 1`.
         off: f64,
     },
     /// The columns are a left-handed frame.
-    #[error("it is a reflection: its determinant is {determinant:.6}, expected 1")]
+    #[error("a reflection, not a rotation: the determinant is {determinant:.6}, expected 1")]
     Reflection {
-        /// About −1.
+        /// The determinant of the matrix, which is about −1.
         determinant: f64,
     },
 }
 
-/// The nearest rotation to a matrix that is one but for rounding.
+/// The rotation that is nearest to a matrix, which must be a rotation up to rounding.
 ///
 /// ```
 /// use nalgebra::Matrix3;
 /// use opm_core::numeric::rotation::nearest;
 ///
-/// let half_turn = nearest(&Matrix3::from_diagonal(&[-1.0, 1.0, -1.0].into()))?;
-/// assert_eq!(half_turn.coords.as_slice(), [0.0, 1.0, 0.0, 0.0]); // x y z, then the scalar
+/// let half_revolution = nearest(&Matrix3::from_diagonal(&[-1.0, 1.0, -1.0].into()))?;
+/// assert_eq!(half_revolution.coords.as_slice(), [0.0, 1.0, 0.0, 0.0]); // x y z, then the scalar
 /// # Ok::<(), opm_core::numeric::rotation::NotRotation>(())
 /// ```
 ///
 /// # Errors
-/// A matrix that is off a rotation by more than [`WRITTEN`], a reflection, or one with an entry that is no number.
+/// If the matrix differs from a rotation by more than [`WRITTEN`], is a reflection, or has an entry that is
+/// infinite or not a number.
 pub fn nearest(matrix: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, NotRotation> {
     for row in 0..3 {
         for column in 0..3 {
@@ -63,7 +64,7 @@ pub fn nearest(matrix: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, NotRotation
         }
     }
     let off = (matrix * matrix.transpose() - Matrix3::identity()).abs();
-    // Entries near the largest number overflow to NaN, which a maximum would pass over.
+    // Entries near the largest number overflow to NaN, which `f64::max` would ignore.
     let off = off.iter().fold(0.0, |most: f64, &o| if o <= most { most } else { o });
     if off.is_nan() || off > WRITTEN {
         let off = if off.is_nan() { f64::INFINITY } else { off };
@@ -74,15 +75,15 @@ pub fn nearest(matrix: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, NotRotation
         return Err(NotRotation::Reflection { determinant });
     }
     let polar = nearer(&nearer(matrix));
-    // The quaternion by the largest of its components, which no axis makes small.
+    // The conversion starts from the largest component of the quaternion, which is never near zero.
     let quaternion = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(polar));
     Ok(UnitQuaternion::new_normalize(quaternion.into_inner()))
 }
 
-/// One step towards the polar factor: from an error of `e` to about `e²`.
+/// One step towards the polar factor, which reduces an error of `e` to about `e²`.
 fn nearer(x: &Matrix3<f64>) -> Matrix3<f64> {
-    let beyond = x.tr_mul(x) - Matrix3::identity();
-    x - x * beyond * 0.5
+    let error = x.tr_mul(x) - Matrix3::identity();
+    x - x * error * 0.5
 }
 
 #[cfg(test)]
@@ -116,9 +117,9 @@ mod tests {
         assert!(apart < tolerance, "{given}{found} {expected:?}: {apart:e}");
     }
 
-    /// Every quaternion with components from a set of special ones, normalised: half and quarter turns,
-    /// thirds of a turn about diagonals, turns close to none, to a half and to a whole, about axes close to
-    /// coordinate ones. Some three million matrices, exact and with errors.
+    /// Every quaternion with components from a set of special numbers, normalised: rotations by π, π/2 and,
+    /// about diagonals, 2π/3; rotations close to 0, to π and to 2π; axes close to the coordinate axes. These
+    /// are some three million matrices, exact and with errors.
     #[test]
     fn structured_rotations_come_back() {
         let parts: Vec<f64> = [0.0, 1.0, 1e-300, 1e-17, 1e-16, 1e-12, 1e-8, 1e-4, 0.5, 0.6, 0.8]
@@ -153,9 +154,9 @@ mod tests {
         assert!(count > 1_200_000, "{count}");
     }
 
-    /// The polar factor, by another way: of `R (1 + S)` with `S` symmetric and small it is `R`.
+    /// The polar factor of `R (1 + S)`, with `S` symmetric and small, is `R`.
     #[test]
-    fn what_a_matrix_is_stretched_by_is_taken_off() {
+    fn the_stretch_of_a_matrix_is_removed() {
         let half = 0.5_f64.sqrt();
         for q in [
             [1.0, 0.0, 0.0, 0.0],
@@ -197,27 +198,27 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rotation_is_told() {
-        let told = |matrix: Matrix3<f64>| nearest(&matrix).unwrap_err().to_string();
+    fn a_matrix_that_is_not_a_rotation_is_reported() {
+        let message = |matrix: Matrix3<f64>| nearest(&matrix).unwrap_err().to_string();
         assert_eq!(
-            told(Matrix3::identity() * 1.001),
-            "it is no rotation: R Rᵀ is off the identity by 2.001e-3, expected at most 1e-5"
+            message(Matrix3::identity() * 1.001),
+            "not a rotation: R Rᵀ differs from the identity by 2.001e-3, expected at most 1e-5"
         );
         assert_eq!(
-            told(Matrix3::zeros()),
-            "it is no rotation: R Rᵀ is off the identity by 1.000e0, expected at most 1e-5"
+            message(Matrix3::zeros()),
+            "not a rotation: R Rᵀ differs from the identity by 1.000e0, expected at most 1e-5"
         );
         assert_eq!(
-            told(-Matrix3::identity()),
-            "it is a reflection: its determinant is -1.000000, expected 1"
+            message(-Matrix3::identity()),
+            "a reflection, not a rotation: the determinant is -1.000000, expected 1"
         );
         let mut given = Matrix3::identity();
         given[(1, 2)] = f64::NAN;
-        assert_eq!(told(given), "row 1, column 2 is NaN, expected a number");
+        assert_eq!(message(given), "row 1, column 2 is NaN, expected a finite number");
         given[(1, 2)] = f64::MAX;
         given[(1, 1)] = -f64::MAX;
-        assert!(told(given).contains("off the identity by inf"), "{}", told(given));
+        assert!(message(given).contains("from the identity by inf"), "{}", message(given));
         given[(1, 2)] = f64::INFINITY;
-        assert_eq!(told(given), "row 1, column 2 is inf, expected a number");
+        assert_eq!(message(given), "row 1, column 2 is inf, expected a finite number");
     }
 }

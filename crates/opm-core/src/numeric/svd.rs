@@ -1,25 +1,26 @@
 //! Singular values by one-sided Jacobi rotations.
 //!
 //! Every decision on rank in this crate rests on singular values, and every fitted axis on a singular
-//! vector, of matrices that are rank deficient as a rule: coaxial joints are equal columns. There
+//! vector. The matrices are rank deficient as a rule: coaxial joints are equal columns. For such matrices
 //! nalgebra's decomposition returns wrong values together with vectors (its issue 1172; with 0.35.0,
 //! in 0.7 percent of random small matrices with equal columns), and no kernel where there are more
-//! columns than rows. One-sided Jacobi finds both to full accuracy, always terminates, and for the
-//! sizes met here (a few dozen columns) is quick enough. Demmel and Veselić, "Jacobi's method is more
+//! columns than rows. One-sided Jacobi finds both to full accuracy, always terminates, and is quick
+//! enough for the sizes met here, a few dozen columns. Demmel and Veselić, "Jacobi's method is more
 //! accurate than QR", SIAM J. Matrix Anal. Appl. 13 (1992).
 
 use nalgebra::DMatrix;
 
-/// The rotations stop after so many sweeps in any case; regular matrices need about eight.
+/// The largest number of sweeps over all pairs of columns. Regular matrices need about eight.
 const MAX_SWEEPS: usize = 40;
 
-/// `A V = U Σ` of an m × n matrix, with one singular value a column (zeros where n > m).
+/// The decomposition `A V = U Σ` of an m × n matrix. Every column has a singular value, so that some are
+/// zero if n > m.
 pub(crate) struct Svd {
     /// The n singular values, largest first.
     pub values: Vec<f64>,
-    /// `V`: orthogonal, n × n; its last columns span the kernel.
+    /// The orthogonal n × n matrix `V`, whose last columns span the kernel.
     pub right: DMatrix<f64>,
-    /// `U Σ`: m × n, orthogonal columns of the lengths in `values`.
+    /// The m × n matrix `U Σ`, whose columns are orthogonal and have the lengths in `values`.
     pub image: DMatrix<f64>,
 }
 
@@ -39,7 +40,7 @@ impl Svd {
         }
     }
 
-    /// Number of singular values above `tolerance` times the largest.
+    /// The rank: the number of singular values above `tolerance` times the largest.
     pub fn rank(&self, tolerance: f64) -> usize {
         count_above(&self.values, tolerance)
     }
@@ -51,9 +52,10 @@ impl Svd {
     }
 }
 
-/// The singular values alone, in no order, without those that are zero for want of rows. This is quicker
-/// than [`Svd::new`]: the rows of a triangular factor with pivots are nearly orthogonal already (Z. Drmač and K. Veselić, "New fast
-/// and accurate Jacobi SVD algorithm", SIAM J. Matrix Anal. Appl. 29, 2008).
+/// The singular values alone, in no particular order, and only as many as the smaller of the matrix's two
+/// sizes. This is quicker than [`Svd::new`], because the rows of a triangular factor with pivots are nearly
+/// orthogonal already (Z. Drmač and K. Veselić, "New fast and accurate Jacobi SVD algorithm", SIAM J. Matrix
+/// Anal. Appl. 29, 2008).
 pub(crate) fn singular_values(matrix: DMatrix<f64>) -> Vec<f64> {
     if matrix.is_empty() {
         return vec![];
@@ -63,7 +65,7 @@ pub(crate) fn singular_values(matrix: DMatrix<f64>) -> Vec<f64> {
     image.column_iter().map(|column| column.norm()).collect()
 }
 
-/// Number of singular values above `tolerance` times the largest.
+/// The rank of a matrix: the number of singular values above `tolerance` times the largest.
 pub(crate) fn rank(matrix: DMatrix<f64>, tolerance: f64) -> usize {
     count_above(&singular_values(matrix), tolerance)
 }
@@ -108,7 +110,7 @@ pub(crate) struct Rotation {
 }
 
 impl Rotation {
-    /// Rotates columns `p < q` of a matrix with so many rows, whose columns follow each other.
+    /// Rotates columns `p < q` of a matrix with `rows` rows, which is stored by columns.
     #[inline(always)]
     fn apply(self, matrix: &mut [f64], rows: usize, p: usize, q: usize) {
         let Self { cos, sin } = self;
@@ -119,11 +121,11 @@ impl Rotation {
     }
 }
 
-/// One-sided Jacobi rotations: the columns of a matrix, which follow each other in `matrix`, are rotated
-/// pair by pair until all are `orthogonal`. Nothing is allocated.
+/// One-sided Jacobi rotations: the columns of a matrix, which is stored by columns, are rotated pair by pair
+/// until every pair is `orthogonal`. Nothing is allocated.
 ///
-/// `secant` is the square root of `1 + tan²`; every rotation is shown to `rotated` with the numbers of
-/// its columns.
+/// `secant` computes the square root of `1 + tan²`. `rotated` is called after every rotation, with the
+/// numbers of the two columns.
 #[inline(always)]
 pub(crate) fn jacobi(
     matrix: &mut [f64],
@@ -162,7 +164,7 @@ pub(crate) fn jacobi(
     }
 }
 
-/// Two columns, `p < q`, as slices.
+/// Two columns `p < q` of a matrix that is stored by columns, as slices.
 #[inline(always)]
 fn pair(matrix: &mut [f64], rows: usize, p: usize, q: usize) -> (&mut [f64], &mut [f64]) {
     let (before, after) = matrix.split_at_mut(q * rows);
@@ -223,9 +225,9 @@ mod tests {
         }
     }
 
-    /// What nalgebra 0.35.0 answers, given vectors too: 4.54 where it is sqrt(15).
+    /// With singular vectors, nalgebra 0.35.0 gives a singular value of 4.54 here instead of sqrt(15).
     #[test]
-    fn equal_columns_are_no_difficulty() {
+    fn equal_columns_are_decomposed() {
         for (m, n) in [(3, 5), (5, 3), (6, 21), (24, 26)] {
             let svd = Svd::new(DMatrix::from_element(m, n, 1.0));
             assert!((svd.values[0] - ((m * n) as f64).sqrt()).abs() < 1e-12);
@@ -234,7 +236,8 @@ mod tests {
         }
     }
 
-    /// Small whole numbers, many zeros, columns that are equal or opposite, by both ways.
+    /// Matrices of small integers with many zeros and with equal or opposite columns, with and without
+    /// singular vectors.
     #[test]
     fn structured_matrices_are_decomposed() {
         let mut seed = 7_u64;
@@ -253,8 +256,8 @@ mod tests {
             assert!((svd.right.tr_mul(&svd.right) - DMatrix::identity(n, n)).amax() < ROUNDING);
             assert!((&svd.image * svd.right.transpose() - &a).amax() < ROUNDING, "{a}");
             let gram = svd.image.tr_mul(&svd.image);
-            let off = |i: usize, j: usize| if i == j { svd.values[i].powi(2) } else { 0.0 };
-            assert!((gram - DMatrix::from_fn(n, n, off)).amax() < ROUNDING, "{a}");
+            let expected = |i: usize, j: usize| if i == j { svd.values[i].powi(2) } else { 0.0 };
+            assert!((gram - DMatrix::from_fn(n, n, expected)).amax() < ROUNDING, "{a}");
             let mut alone = singular_values(a.clone());
             alone.sort_by(|x, y| y.total_cmp(x));
             alone.resize(n, 0.0);

@@ -121,16 +121,18 @@ impl Task {
     fn shared_translation(&self, b: &Displacement) -> JointDisplacement {
         let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
         JointDisplacement::Value(match self.upper_intersection {
-            IntersectionMotion::Planar(PlanarMotion::Slide(along)) => {
+            IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
                 component(b.planar().translation, along)
             }
-            IntersectionMotion::Translational(TranslationalMotion::Slide(along)) => {
+            IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
                 component(*b.translational(), along)
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => b.cylindrical().advance,
-            IntersectionMotion::Planar(PlanarMotion::Turn)
-            | IntersectionMotion::Spherical(SphericalMotion::Turn)
-            | IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => 0.0,
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
+                b.cylindrical().advance
+            }
+            IntersectionMotion::Planar(PlanarMotion::Rotation)
+            | IntersectionMotion::Spherical(SphericalMotion::Rotation)
+            | IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => 0.0,
         })
     }
 }

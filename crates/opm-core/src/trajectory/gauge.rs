@@ -1,4 +1,4 @@
-//! What is watched along a motion, and the violations that are found.
+//! The gauges that are computed along a motion, and the violations that are found.
 
 use crate::manipulator::{Manipulator, Section};
 use crate::numeric::Quantity;
@@ -6,68 +6,70 @@ use crate::numeric::Quantity;
 /// One end of a joint's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bound {
-    /// The lowest value allowed.
+    /// The lower limit.
     Lowest,
-    /// The highest value allowed.
+    /// The upper limit.
     Highest,
 }
 
 /// A continuous function of time that is positive where the motion can be followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Gauge {
-    /// How far a leg is from the end of its reach. In reach this is the smaller of its sections' serial
-    /// singularity measures. Out of reach it is minus the gap: an angle in radians, or a length divided
+    /// The distance of a leg from its boundary of reach. In reach this is the smaller of its sections' serial
+    /// singularity measures. Out of reach it is minus the deficit: an angle in radians, or a length divided
     /// by the characteristic length.
     Reach {
         /// The number of the leg.
         leg: usize,
     },
-    /// How far a joint coordinate is from one of its limits, radians or metres.
+    /// The distance of a joint coordinate from one of its limits, radians or metres.
     Limit {
         /// The number of the joint coordinate.
         coordinate: usize,
-        /// Which of the two limits.
+        /// The limit: the lower or the upper one.
         bound: Bound,
     },
-    /// A parallel singularity measure: either sign is good, zero is not.
+    /// A parallel singularity measure. It may have either sign, but it must not be zero.
     Parallel {
         /// The part of the mechanism that is measured.
         part: Part,
     },
 }
 
-/// What has a parallel singularity measure.
+/// A part of the mechanism that has a parallel singularity measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
     /// One section.
     Section(Section),
-    /// The whole mechanism, which is watched where one of the sections has no measure.
+    /// The whole mechanism. Its measure is used if one of the sections has none.
     Whole,
 }
 
-/// A part of a motion that the mechanism cannot follow, or a singularity on its way.
+/// A part of a motion that the mechanism cannot follow, or a singularity that the motion passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// What is violated: a leg's reach, a joint's limit or a section's regularity. A leg's reach with
-    /// `end` equal to `start` and no gap is a serial singularity that the leg touches.
+    /// What is violated: the reach of a leg, the limit of a joint or the regularity of a section. A violation
+    /// of a leg's reach without a quantity, whose `end` equals `start`, is a serial singularity that the leg
+    /// touches.
     pub gauge: Gauge,
-    /// The time when it begins, seconds.
+    /// The time when the violation begins, seconds.
     pub start: f64,
-    /// The time when it ends, seconds. A singularity that is passed through ends when it begins.
+    /// The time when the violation ends, seconds. A singularity that the motion passes through ends when it
+    /// begins.
     pub end: f64,
-    /// The time when it is worst, seconds.
+    /// The time when the violation is worst, seconds.
     pub worst: f64,
-    /// How bad it is at worst, in the unit of `quantity`: how far out of reach or past the limit; for a
-    /// singularity what is left of its measure. It is never negative.
+    /// The amount of the violation at its worst, in the unit of `quantity`: how far out of reach or beyond the
+    /// limit. For a singularity it is the absolute value of the measure. It is never negative.
     pub amount: f64,
-    /// What the amount is, an angle or a length; `None` for a singularity measure, which has no unit.
+    /// Whether the amount is an angle or a length; `None` for a singularity measure, which has no unit.
     pub quantity: Option<Quantity>,
     /// The section that is out of reach or singular; `None` for a joint limit.
     pub section: Option<Section>,
 }
 
 impl Violation {
-    /// Whether it is a singularity, and not a stretch of time.
+    /// Whether the violation is a singularity, which has no duration.
     pub fn is_singularity(&self) -> bool {
         self.quantity.is_none()
     }

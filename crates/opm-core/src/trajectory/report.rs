@@ -11,13 +11,13 @@ pub struct ViolationReport<'a> {
     pub violation: &'a Violation,
     /// The kind of violation: `reach`, `limit` or `singularity`.
     pub kind: &'static str,
-    /// The leg that is out of reach or singular, or has the joint that is past a limit.
+    /// The name of the leg that is out of reach or singular, or whose joint is beyond a limit.
     pub leg: Option<&'a str>,
-    /// The joint coordinate that is past a limit.
+    /// The name of the joint coordinate that is beyond a limit.
     pub joint: Option<&'a str>,
     /// The section that is out of reach or singular.
     pub section: Option<Section>,
-    /// The limit that a joint is past.
+    /// The limit that a joint is beyond.
     pub bound: Option<Bound>,
 }
 
@@ -61,13 +61,13 @@ impl<'a> ViolationReport<'a> {
         self.violation.quantity.map_or("1", Quantity::unit)
     }
 
-    /// The kind of singularity, `serial` or `parallel`; `None` of other violations.
+    /// The kind of singularity, `serial` or `parallel`; `None` for other violations.
     pub fn singularity(&self) -> Option<&'static str> {
         let serial = matches!(self.violation.gauge, Gauge::Reach { .. });
         (self.kind == "singularity").then_some(if serial { "serial" } else { "parallel" })
     }
 
-    /// What is wrong, in words: for instance `leg1: out of reach in its lower section`.
+    /// A description in words, for instance `leg1: out of reach in its lower section`.
     pub fn what(&self) -> String {
         let section = self.section.map_or_else(String::new, |section| format!("{section} "));
         let leg = self.leg.unwrap_or_default();

@@ -1,18 +1,20 @@
-//! The times between two samples at which a gauge crosses zero, or is lowest.
+//! The times between two samples at which a gauge crosses zero or is lowest.
 
-use super::{RESOLUTION, Sample, Trajectory, TrajectoryError, Turns};
+use super::{NearestTo, RESOLUTION, Sample, Trajectory, TrajectoryError};
 
-/// Steps of a golden-section search: the interval shrinks to 1e-8 of itself, where the lowest value
-/// of a smooth function is known to rounding.
-const SEARCH: usize = 39;
-/// The golden section.
+/// The number of steps of a golden-section search. They shrink the interval to 1e-8 of its length, where the
+/// lowest value of a smooth function is known to rounding.
+const STEPS: usize = 39;
+/// The golden section, `(√5 − 1) / 2`.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// A gauge over a stretch of time in which nothing else changes.
+/// A gauge between two samples that the same legs reach.
 pub(super) struct Stretch<'s> {
     /// The number of the gauge.
     pub number: usize,
+    /// The sample at the start.
     pub from: &'s Sample,
+    /// The sample at the end.
     pub to: &'s Sample,
 }
 
@@ -30,7 +32,8 @@ impl Stretch<'_> {
 }
 
 impl Trajectory<'_> {
-    /// The last sample on the one side of a crossing and the first on the other, by bisection.
+    /// The last sample before a crossing and the first after it, by bisection. `side` maps a level of the
+    /// gauge to the side of the crossing that it is on.
     pub(super) fn crossing(
         &mut self,
         stretch: &Stretch<'_>,
@@ -45,7 +48,7 @@ impl Trajectory<'_> {
                 break;
             }
             let here = middle.levels[number].map(&side);
-            // As near as can be to a pole, in the few roundings' width where there is no answer.
+            // The gauge has no level here: within rounding of a pole.
             if here.is_none() {
                 break;
             }
@@ -65,7 +68,7 @@ impl Trajectory<'_> {
         let [mut low, mut high] = [0.0, 1.0];
         let mut left = self.between(from, to, 1.0 - GOLDEN)?;
         let mut right = self.between(from, to, GOLDEN)?;
-        for _ in 0..SEARCH {
+        for _ in 0..STEPS {
             if height(&left) < height(&right) {
                 high = low + GOLDEN * (high - low);
                 right = left;
@@ -79,7 +82,7 @@ impl Trajectory<'_> {
         Ok(if height(&left) < height(&right) { left } else { right })
     }
 
-    /// The joints and the gauges, not the rates, at a share of the way from one sample to another.
+    /// The joints and the gauges, without the rates, at a share of the time from one sample to another.
     pub(super) fn between(
         &mut self,
         from: &Sample,
@@ -88,7 +91,7 @@ impl Trajectory<'_> {
     ) -> Result<Sample, TrajectoryError> {
         let mut sample = from.clone();
         let time = from.time + share * (to.time - from.time);
-        self.solver.solve(time, Turns::Held, &mut sample)?;
+        self.solver.solve(time, NearestTo::Last, &mut sample)?;
         sample.slopes.fill(None);
         Ok(sample)
     }

@@ -1,4 +1,4 @@
-//! The record of violations: when they begin and end, and how bad they are at worst.
+//! The record of violations: when they begin and end, and how large they are at worst.
 
 use super::{Gauge, Part, Sample, Trajectory, Violation};
 use crate::velocity::SINGULAR;
@@ -6,8 +6,8 @@ use crate::velocity::SINGULAR;
 /// A violation begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
-    /// The violation begins. Its end and its worst time are not known yet. A singularity ends when it
-    /// begins.
+    /// The violation begins. Its end and its worst time are not known yet, except for a singularity, which
+    /// ends when it begins.
     Begins(Violation),
     /// The violation has ended.
     Ends(Violation),
@@ -34,7 +34,7 @@ impl Trajectory<'_> {
         }
     }
 
-    /// Whether a singularity measure is zero as far as it can be known.
+    /// Whether a gauge is a singularity measure that is zero up to rounding.
     pub(super) fn is_zero(&self, number: usize, sample: &Sample) -> bool {
         match self.solver.gauges[number] {
             Gauge::Limit { .. } => false,
@@ -69,15 +69,15 @@ impl Trajectory<'_> {
         }
     }
 
-    /// Records a singularity, which begins and ends at once.
-    pub(super) fn touches(&mut self, number: usize, sample: &Sample) {
+    /// Records a singularity, which begins and ends at one time.
+    pub(super) fn record_singularity(&mut self, number: usize, sample: &Sample) {
         let violation = self.violation(number, sample);
         self.changes.push(Change::Begins(violation));
         self.changes.push(Change::Ends(violation));
     }
 
-    /// Brings the open violations up to the last sample.
-    pub(super) fn worsen(&mut self) {
+    /// Extends the open violations to the present sample.
+    pub(super) fn extend_open(&mut self) {
         if self.open.iter().all(Option::is_none) {
             return;
         }
@@ -85,13 +85,13 @@ impl Trajectory<'_> {
         for number in 0..self.solver.gauges.len() {
             if let Some(violation) = &mut self.open[number] {
                 violation.end = sample.time;
-                self.worse(number, &sample);
+                self.update_worst(number, &sample);
             }
         }
     }
 
-    /// Brings an open violation up to a sample in it, which may be its worst so far.
-    pub(super) fn worse(&mut self, number: usize, sample: &Sample) {
+    /// Updates the worst time and the amount of an open violation, if it is worse at this sample.
+    pub(super) fn update_worst(&mut self, number: usize, sample: &Sample) {
         let now = self.violation(number, sample);
         if let Some(open) = &mut self.open[number]
             && now.amount > open.amount

@@ -1,53 +1,53 @@
-//! Between two samples: where gauges cross zero.
+//! The events between two samples: gauges that cross zero.
 
 use super::search::Stretch;
-use super::{Gauge, Look, RESOLUTION, Sample, Trajectory, TrajectoryError, Turns};
+use super::{Gauge, NearestTo, RESOLUTION, Sample, SlopeSide, Trajectory, TrajectoryError};
 
-/// Around a singularity, this share of the step before and after it is left out: a hundred times the
-/// error of the time that was found.
-const ASIDE: f64 = 1e-6;
+/// This share of the step is left out before and after a singularity: a hundred times the error of the time
+/// that was found.
+const MARGIN: f64 = 1e-6;
 
-/// What is left to do between two samples, in the order of time.
+/// A remaining step of the search between two samples. Steps are in the order of time.
 enum Step {
-    /// Everything from where the search has come to this sample.
+    /// Search everything from the present sample to this one.
     WatchTo(Sample),
-    /// The gauge of this number is lowest where the search has come.
+    /// Record that the gauge of this number is lowest at the present sample.
     Lowest(usize),
-    /// The legs are the same up to this sample: only limits and parallel singularities are left.
+    /// Search limits and parallel singularities up to this sample, which the same legs reach.
     StretchTo(Sample),
 }
 
 impl Trajectory<'_> {
-    /// At the first sample: what is violated there has begun.
+    /// Opens the violations at the first sample, and records singularities there.
     pub(super) fn begin(&mut self) {
         let sample = self.current.clone();
         for number in 0..self.solver.gauges.len() {
             if self.violated(number, &sample) {
                 self.begins(number, sample.time, &sample);
             } else if self.is_zero(number, &sample) {
-                self.touches(number, &sample);
+                self.record_singularity(number, &sample);
             }
         }
     }
 
-    /// At the last sample: a parallel singularity that the motion was about to pass through.
+    /// Records a parallel singularity that the motion reaches at the last sample.
     pub(super) fn end(&mut self) {
         let sample = self.current.clone();
         for number in 0..self.solver.gauges.len() {
             let parallel = matches!(self.solver.gauges[number], Gauge::Parallel { .. });
-            if parallel && self.is_zero(number, &sample) && self.nears(number, &sample) {
-                self.touches(number, &sample);
+            if parallel && self.is_zero(number, &sample) && self.approaches_zero(number, &sample) {
+                self.record_singularity(number, &sample);
             }
         }
     }
 
-    /// Whether a gauge goes towards zero.
-    fn nears(&self, number: usize, sample: &Sample) -> bool {
+    /// Whether a gauge approaches zero at a sample.
+    fn approaches_zero(&self, number: usize, sample: &Sample) -> bool {
         matches!((sample.levels[number], sample.slopes[number]), (Some(a), Some(b)) if a * b < 0.0)
     }
 
-    /// Whether anything may have happened between the last two samples. Mostly nothing has.
-    pub(super) fn eventful(&self) -> bool {
+    /// Whether there may be an event between the last two samples. Mostly there is none.
+    pub(super) fn may_have_events(&self) -> bool {
         let (from, to) = (&self.previous, &self.current);
         let differ = |a: Option<f64>, b: Option<f64>| {
             a.is_some() != b.is_some() || matches!((a, b), (Some(a), Some(b)) if a * b <= 0.0)
@@ -59,16 +59,16 @@ impl Trajectory<'_> {
         })
     }
 
-    /// Finds what happens from one sample to the next. The last sample is given back: a leg that comes
-    /// back into reach in between goes on from where it came back, not from where it was lost.
+    /// Finds the events from one sample to the next, and returns the last sample. That may differ from `to`:
+    /// the angles of a leg that returns into reach in between continue from there.
     pub(super) fn watch(&mut self, from: Sample, to: Sample) -> Result<Sample, TrajectoryError> {
-        // Where the search has come, and what is left to do, the next step last.
+        // The sample up to which events are found, and the remaining steps, the next one last.
         let mut here = from;
         let mut left = vec![Step::WatchTo(to)];
         while let Some(step) = left.pop() {
             here = match step {
                 Step::Lowest(number) => {
-                    self.worse(number, &here);
+                    self.update_worst(number, &here);
                     here
                 }
                 Step::StretchTo(to) => {
@@ -89,8 +89,8 @@ impl Trajectory<'_> {
         Ok(here)
     }
 
-    /// Goes over the first time between two samples at which a leg comes to the end of its reach. Returns
-    /// the first sample after it, and the second of the two samples, unless that is the same one.
+    /// Finds the first time between two samples at which a leg crosses its boundary of reach. Returns the
+    /// first sample after it, and the second of the two samples unless both are the same.
     fn cross_reach(
         &mut self,
         from: &Sample,
@@ -104,29 +104,29 @@ impl Trajectory<'_> {
             }
             if self.same_legs(from, &middle) { before = middle } else { after = middle }
         }
-        self.solver.slope(&mut before, Look::Back, &mut self.probe)?;
-        self.solver.slope(&mut after, Look::Ahead, &mut self.probe)?;
+        self.solver.slope(&mut before, SlopeSide::Before, &mut self.probe)?;
+        self.solver.slope(&mut after, SlopeSide::After, &mut self.probe)?;
         if before.time > from.time {
             self.stretch(from, &before)?;
         }
         for number in 0..self.solver.gauges.len() {
-            self.worse(number, &before);
+            self.update_worst(number, &before);
             self.switch(number, &before, &after);
         }
         if after.time >= to.time {
             return Ok((to, None));
         }
         to.solution.clone_from(&after.solution);
-        self.solver.solve(to.time, Turns::Held, &mut to)?;
+        self.solver.solve(to.time, NearestTo::Last, &mut to)?;
         self.solver.rates(&mut to)?;
         let last = to.time >= self.solver.motion.end();
-        let look = if last { Look::Back } else { Look::Ahead };
-        self.solver.slope(&mut to, look, &mut self.probe)?;
+        let side = if last { SlopeSide::Before } else { SlopeSide::After };
+        self.solver.slope(&mut to, side, &mut self.probe)?;
         Ok((after, Some(to)))
     }
 
-    /// Divides the time between two samples that the same legs reach: where a leg goes out of reach and
-    /// comes back, and at a serial singularity that a leg touches. What is left to do is added to `left`.
+    /// Divides the time between two samples that the same legs reach: where a leg leaves its reach and
+    /// returns, and at a serial singularity that a leg touches. The remaining steps are added to `left`.
     fn divide(
         &mut self,
         from: &Sample,
@@ -149,14 +149,14 @@ impl Trajectory<'_> {
                 return Ok(());
             }
             if self.is_zero(number, &lowest) {
-                self.touches(number, &lowest);
-                // A joint may go through infinity there: its gauges are continuous on either side.
+                self.record_singularity(number, &lowest);
+                // A joint coordinate may have a pole there. Its gauges are continuous on either side.
                 let share = (lowest.time - from.time) / step;
-                if share > ASIDE && share < 1.0 - ASIDE {
-                    let mut before = self.between(from, &to, share - ASIDE)?;
-                    let mut after = self.between(from, &to, share + ASIDE)?;
-                    self.solver.slope(&mut before, Look::Back, &mut self.probe)?;
-                    self.solver.slope(&mut after, Look::Ahead, &mut self.probe)?;
+                if share > MARGIN && share < 1.0 - MARGIN {
+                    let mut before = self.between(from, &to, share - MARGIN)?;
+                    let mut after = self.between(from, &to, share + MARGIN)?;
+                    self.solver.slope(&mut before, SlopeSide::Before, &mut self.probe)?;
+                    self.solver.slope(&mut after, SlopeSide::After, &mut self.probe)?;
                     left.extend([Step::WatchTo(to), Step::StretchTo(after), Step::WatchTo(before)]);
                     return Ok(());
                 }
@@ -166,7 +166,7 @@ impl Trajectory<'_> {
         Ok(())
     }
 
-    /// Limits and parallel singularities, where the same legs reach from one sample to the other.
+    /// Finds limits and parallel singularities between two samples that the same legs reach.
     fn stretch(&mut self, from: &Sample, to: &Sample) -> Result<(), TrajectoryError> {
         for number in 0..self.solver.gauges.len() {
             let stretch = Stretch { number, from, to };
@@ -175,7 +175,7 @@ impl Trajectory<'_> {
                 Gauge::Reach { .. } => {
                     if levels.iter().all(|&level| level < 0.0) && stretch.dips(1.0) {
                         let worst = self.extreme(&stretch, |level| level)?;
-                        self.worse(number, &worst);
+                        self.update_worst(number, &worst);
                     }
                 }
                 Gauge::Limit { .. } => self.watch_limit(&stretch, levels)?,
@@ -185,7 +185,7 @@ impl Trajectory<'_> {
         Ok(())
     }
 
-    /// Finds where a joint passes its limit.
+    /// Finds where a joint crosses a limit.
     fn watch_limit(
         &mut self,
         stretch: &Stretch<'_>,
@@ -195,19 +195,19 @@ impl Trajectory<'_> {
         if out[0] != out[1] {
             return self.switch_once(stretch, out[0]);
         }
-        // Past the limit and back, or, from past it, within it for a while.
+        // The joint may exceed the limit for a while or, if it is beyond the limit, be within it for a while.
         let sign = if out[0] { -1.0 } else { 1.0 };
         if stretch.dips(sign) {
             let turning = self.extreme(stretch, |level| sign * level)?;
             self.switch_twice(stretch, &turning)?;
         } else if out[0] && stretch.dips(1.0) {
             let worst = self.extreme(stretch, |level| level)?;
-            self.worse(stretch.number, &worst);
+            self.update_worst(stretch.number, &worst);
         }
         Ok(())
     }
 
-    /// Finds where a parallel singularity is passed through, or touched.
+    /// Finds where the motion passes through a parallel singularity, or touches one.
     fn watch_parallel(
         &mut self,
         stretch: &Stretch<'_>,
@@ -216,7 +216,7 @@ impl Trajectory<'_> {
         let Stretch { number, from, to } = *stretch;
         if levels[0] * levels[1] < 0.0 {
             let [_, after] = self.crossing(stretch, |level| level < 0.0)?;
-            self.touches(number, &after);
+            self.record_singularity(number, &after);
         } else if stretch.dips(levels[0].signum()) {
             let sign = levels[0].signum();
             let nearest = self.extreme(stretch, |level| sign * level)?;
@@ -225,35 +225,35 @@ impl Trajectory<'_> {
                 for (from, to) in [(from, &nearest), (&nearest, to)] {
                     let part = Stretch { number, from, to };
                     let [_, after] = self.crossing(&part, |level| level < 0.0)?;
-                    self.touches(number, &after);
+                    self.record_singularity(number, &after);
                 }
             } else if self.is_zero(number, &nearest) {
-                self.touches(number, &nearest);
+                self.record_singularity(number, &nearest);
             }
         } else if self.is_zero(number, to) && !self.is_zero(number, from) {
-            // A gauge on its way to zero is there in a later stretch, or where the motion ends.
-            if !self.nears(number, to) {
-                self.touches(number, to);
+            // A gauge that still approaches zero reaches it in a later stretch, or where the motion ends.
+            if !self.approaches_zero(number, to) {
+                self.record_singularity(number, to);
             }
         }
         Ok(())
     }
 
-    /// A limit is passed between two samples, outwards or, from `out`, inwards; on the way the joint may
-    /// be farther out than at either.
+    /// Records that a joint crosses a limit once between two samples: inwards if it is `out` at the first,
+    /// else outwards. In between, the joint may be farther beyond the limit than at either sample.
     fn switch_once(&mut self, stretch: &Stretch<'_>, out: bool) -> Result<(), TrajectoryError> {
         let number = stretch.number;
         let deeper = stretch.dips(1.0);
         let worst = if deeper { Some(self.extreme(stretch, |level| level)?) } else { None };
         let [before, after] = self.crossing(stretch, |level| level < 0.0)?;
-        // Where a slider would have to be infinitely long, it comes from there and not from its limit.
+        // A slider with a pole comes from infinity and not from its limit.
         let edge = if out { &before } else { &after };
         if !out {
             self.switch(number, &before, &after);
         }
-        self.worse(number, edge);
+        self.update_worst(number, edge);
         if let Some(worst) = worst {
-            self.worse(number, &worst);
+            self.update_worst(number, &worst);
         }
         if out {
             self.switch(number, &before, &after);
@@ -261,7 +261,8 @@ impl Trajectory<'_> {
         Ok(())
     }
 
-    /// A limit may be passed twice, before and after the turning point `at` between two samples.
+    /// Records that a joint crosses a limit twice, before and after the turning point `at` between two
+    /// samples, if it does.
     fn switch_twice(&mut self, stretch: &Stretch<'_>, at: &Sample) -> Result<(), TrajectoryError> {
         let number = stretch.number;
         let out = |sample: &Sample| sample.levels[number].map(|level| level < 0.0);
@@ -269,7 +270,7 @@ impl Trajectory<'_> {
             return Ok(());
         }
         for (from, to) in [(stretch.from, at), (at, stretch.to)] {
-            self.worse(number, at);
+            self.update_worst(number, at);
             let part = Stretch { number, from, to };
             let [before, after] = self.crossing(&part, |level| level < 0.0)?;
             self.switch(number, &before, &after);

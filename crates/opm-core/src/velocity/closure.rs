@@ -1,8 +1,8 @@
-//! The rows of a section's closure with its inputs locked, and what they are measured in.
+//! The rows of a section's closure equations with its inputs locked, and their units.
 //!
-//! Rows in a plane, on an axis and in a translational plane give velocities, in units of the characteristic
-//! length; in a sphere angular velocities. Columns have units of their own, so that every entry is a
-//! number, and a determinant too.
+//! Rows of a planar, a cylindrical or a translational section give velocities, in units of the
+//! characteristic length. Rows of a spherical section give angular velocities. Columns have units of their
+//! own, so that every entry, and a determinant too, is dimensionless.
 
 use super::section::Differential;
 use crate::chain::Chain;
@@ -12,11 +12,11 @@ use crate::group::{
 use crate::manipulator::{CompiledLeg, CompiledSection, Section};
 use nalgebra::DMatrix;
 
-/// Shorter than this share of the mechanism, a link is too short to measure by.
+/// A link shorter than this share of the characteristic length is not used as a unit of length.
 const SHORT: f64 = 1e-6;
 
-/// Which joints of a leg's section are inputs, that is held when it is locked: those that are actuated,
-/// and the cut where it is solved from there.
+/// Which joints of a leg's section are its inputs, which are held when the section is locked: the actuated
+/// joints, and the cut if the section takes it as an input.
 pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     let compiled = leg.section(section);
     let mut inputs =
@@ -31,8 +31,9 @@ pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     inputs
 }
 
-/// What a section's locked inputs hold: screws reciprocal to its passive joints, as many as there are
-/// inputs. In a plane and on an axis they give a velocity, in a sphere an angular velocity.
+/// The constraints of a section's locked inputs, and their number: screws that are reciprocal to the
+/// section's passive joints, as many as there are inputs. They give velocities, or angular velocities in a
+/// spherical section.
 pub(super) fn section_rows(
     leg: &CompiledLeg,
     section: Section,
@@ -54,38 +55,39 @@ pub(super) fn section_rows(
             rows[0] = differential.crosses[input] / unit;
         }
         2 => {
-            let [a, b] = square_to(kind, &moved[first(false)], length);
+            let [a, b] = constraints_of_passive(kind, &moved[first(false)], length);
             (rows[0], rows[1]) = (a, b);
         }
         _ => {
-            let turn = match kind {
+            let angular = match kind {
                 SubspaceKind::Planar => length,
                 SubspaceKind::Spherical
                 | SubspaceKind::Cylindrical
                 | SubspaceKind::TranslationalPlane => 1.0,
             };
-            rows = [LocalTwist::x() * turn, LocalTwist::y(), LocalTwist::z()];
+            rows = [LocalTwist::x() * angular, LocalTwist::y(), LocalTwist::z()];
         }
     }
     (rows, count)
 }
 
-/// What the cross product of the two screws beside `input` is measured in, so that it gives a
-/// velocity, or an angular velocity in a sphere.
+/// The unit of the cross product of the two screws other than that of `input`. Divided by it, the product
+/// gives a velocity, or an angular velocity in a spherical section.
 fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, length: f64) -> f64 {
     let [a, b] = [section.screws[(input + 1) % 3], section.screws[(input + 2) % 3]];
-    let turns = |screw: &LocalTwist| screw.x != 0.0;
+    let rotates = |screw: &LocalTwist| screw.x != 0.0;
     match kind {
         SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
-        // One of them only makes up the number: a slider holds an angle.
+        // One of the two screws is padding. If the other one is a slider, the locked input constrains the
+        // angle.
         SubspaceKind::Cylindrical => {
             let screw = if input == 0 { a } else { b };
-            if turns(&screw) { 1.0 } else { 1.0 / length }
+            if rotates(&screw) { 1.0 } else { 1.0 / length }
         }
-        SubspaceKind::Planar => match (turns(&a), turns(&b)) {
+        SubspaceKind::Planar => match (rotates(&a), rotates(&b)) {
             (true, true) => {
                 let link = (quarter(linear(&b)) * b.x - quarter(linear(&a)) * a.x).norm();
-                // Neighbours are on one link.
+                // Two joints that follow each other are at the ends of one link.
                 if input != 1 && link > SHORT * length { link } else { length }
             }
             (false, false) => 1.0 / length,
@@ -94,13 +96,18 @@ fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, lengt
     }
 }
 
-/// Two screws that one passive joint is reciprocal to, whose cross product is its screw.
-fn square_to(kind: SubspaceKind, passive: &LocalTwist, length: f64) -> [LocalTwist; 2] {
+/// Two screws that are reciprocal to the one passive joint of a section, and whose cross product is the
+/// screw of that joint.
+fn constraints_of_passive(
+    kind: SubspaceKind,
+    passive: &LocalTwist,
+    length: f64,
+) -> [LocalTwist; 2] {
     match kind {
-        // The velocity of its point.
+        // They give the velocity of the point on the joint's axis.
         SubspaceKind::Planar if passive.x != 0.0 => {
-            let at = quarter(linear(passive)) * passive.x;
-            let [a, b] = [LocalTwist::new(-at.im, 1.0, 0.0), LocalTwist::new(at.re, 0.0, 1.0)];
+            let p = quarter(linear(passive)) * passive.x;
+            let [a, b] = [LocalTwist::new(-p.im, 1.0, 0.0), LocalTwist::new(p.re, 0.0, 1.0)];
             if passive.x > 0.0 { [a, b] } else { [b, a] }
         }
         SubspaceKind::Planar => {
@@ -116,9 +123,9 @@ fn square_to(kind: SubspaceKind, passive: &LocalTwist, length: f64) -> [LocalTwi
     }
 }
 
-/// What a rate along the cut is measured in: radians or the characteristic length; where it swings
-/// the last link of a planar section, from the leg's last pivot to the axis, what that link makes of
-/// it.
+/// The unit of a rate along the cut: one radian or the characteristic length. If the cut swings the last link
+/// of a planar section, from the leg's last pivot to the axis, it is the angle by which the end of that link
+/// moves one characteristic length.
 pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f64) -> f64 {
     if !motion.is_rotation() {
         return length;
@@ -137,7 +144,7 @@ pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f6
     }
 }
 
-/// What a row is measured in: a velocity in the characteristic length, an angular one in radians.
+/// The unit of a row: the characteristic length for a velocity, one radian for an angular velocity.
 pub(super) fn row_unit(kind: SubspaceKind, length: f64) -> f64 {
     match kind {
         SubspaceKind::Spherical => 1.0,
@@ -147,7 +154,7 @@ pub(super) fn row_unit(kind: SubspaceKind, length: f64) -> f64 {
     }
 }
 
-/// What a component of a twist is measured in, over its row's unit.
+/// The unit of a component of a twist, divided by the unit of its row.
 pub(super) fn twist_unit(kind: SubspaceKind, twist: &LocalTwist, length: f64) -> f64 {
     match kind {
         SubspaceKind::Planar | SubspaceKind::Cylindrical => {
@@ -161,8 +168,8 @@ pub(super) fn twist_unit(kind: SubspaceKind, twist: &LocalTwist, length: f64) ->
     }
 }
 
-/// The determinant of a block; the volume of its columns where it has more rows than columns; `None`
-/// where it has fewer.
+/// The determinant of a block of a matrix, which is given by its ranges of rows and columns. It is the volume
+/// of the columns if there are more rows than columns, and `None` if there are fewer.
 pub(super) fn volume(
     matrix: &DMatrix<f64>,
     [top, bottom]: [usize; 2],
@@ -188,7 +195,7 @@ pub(super) fn volume(
     Some(if square { determinant } else { determinant.max(0.0).sqrt() })
 }
 
-/// By elimination with row pivoting, in place.
+/// The determinant of the first `n` rows and columns, by elimination with row pivoting, in place.
 fn determinant(m: &mut DMatrix<f64>, n: usize) -> f64 {
     let mut product = 1.0;
     for k in 0..n {

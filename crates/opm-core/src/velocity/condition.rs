@@ -1,4 +1,4 @@
-//! How far a pose is from singular: condition number and manipulability.
+//! How far a pose is from a singularity: condition number and manipulability.
 
 use super::{Jacobians, SingularCause, SingularLeg};
 use crate::manipulator::Manipulator;
@@ -6,17 +6,18 @@ use crate::numeric::Quantity;
 use crate::numeric::svd::{Products, jacobi};
 use nalgebra::SMatrix;
 
-/// Most freedoms of a platform: two subspaces of three dimensions that share one.
+/// The largest mobility of a platform: that of two subspaces of three dimensions that share one dimension.
 const MOST: usize = 5;
 
-/// A singular value below this share of the largest is zero: rounding of the few dozen operations that
-/// lead to it.
+/// A singular value below this share of the largest counts as zero: the rounding of the few dozen operations
+/// that lead to it.
 const RANK: f64 = 1e-13;
 
-/// Two columns whose cosine is at most this are orthogonal: what is left shows in no digit of a singular
-/// value.
+/// Two columns are orthogonal if the cosine of their angle is at most this. The rest does not change any
+/// digit of a singular value.
 const ORTHOGONAL: f64 = 1e-12;
 
+/// A matrix with room for the largest mobility; the first rows and columns are used.
 type Square = SMatrix<f64, MOST, MOST>;
 
 /// The conditioning of the actuated joints' Jacobian by the platform's twist.
@@ -24,11 +25,27 @@ type Square = SMatrix<f64, MOST, MOST>;
 /// The velocity of the platform's reference point and the rates of sliders are divided by the
 /// characteristic length. So both numbers have no unit. They do not depend on the coordinates that the
 /// pose is written in, on where the mechanism stands, nor on how large it is.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mut buffer, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
+/// // Home, where the Euler angles are singular: the conditioning does not depend on them.
+/// let pose = manipulator.pose([])?;
+/// let at = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+/// manipulator.differentiate(at.expect("home is in reach"), &mut jacobians)?;
+/// let length = manipulator.characteristic_length();
+/// let conditioning = manipulator.conditioning(&jacobians, length);
+/// assert!(conditioning.condition >= 1.0 && conditioning.condition.is_finite());
+/// assert!(conditioning.manipulability > 0.0 && conditioning.manipulability.is_finite());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditioning {
-    /// Largest over smallest singular value, at least one: how unevenly joint rates move the
-    /// platform. Infinite at a singularity, serial or parallel, and where fewer joints are actuated
-    /// than the platform has freedoms; of more, all count.
+    /// The largest over the smallest singular value, which is at least one: how unevenly joint rates move
+    /// the platform. It is infinite at a serial or parallel singularity, and if fewer joints are actuated
+    /// than the platform has degrees of freedom. If there are more, all of them count.
     pub condition: f64,
     /// The inverse of the product of the singular values: the volume of the platform's twists for unit
     /// rates of the actuated joints (Yoshikawa's measure). Zero at a serial singularity, infinite at a
@@ -37,7 +54,9 @@ pub struct Conditioning {
 }
 
 impl Conditioning {
+    /// The conditioning at a serial singularity.
     const SERIAL: Self = Self { condition: f64::INFINITY, manipulability: 0.0 };
+    /// The conditioning at a parallel singularity.
     const PARALLEL: Self = Self { condition: f64::INFINITY, manipulability: f64::INFINITY };
 }
 
@@ -47,11 +66,14 @@ impl Manipulator {
     /// allocated.
     ///
     /// # Panics
-    /// The length is not a positive number.
+    /// If the length is not a positive number.
     pub fn conditioning(&self, jacobians: &Jacobians, length: f64) -> Conditioning {
-        assert!(length > 0.0 && length.is_finite(), "characteristic length {length}");
-        // A spherical joint at a whole turn is measured badly, which is nothing to the platform unless
-        // the joint drives it.
+        assert!(
+            length > 0.0 && length.is_finite(),
+            "the characteristic length is {length} m, expected a positive number"
+        );
+        // The rotation vector of a spherical joint is singular after a full revolution. That does not matter
+        // to the platform unless the joint is actuated.
         let serial = |singular: &SingularLeg| {
             singular.cause == SingularCause::Serial
                 || self.rateless(singular).any(|c| self.actuated().contains(&c))
@@ -60,7 +82,7 @@ impl Manipulator {
             return Conditioning::SERIAL;
         }
         let n = jacobians.platform.ncols();
-        // With the metric `L Lᵀ` of the platform's twist, components times `Lᵀ` are orthonormal.
+        // With the metric `L Lᵀ` of the platform's twist, components multiplied by `Lᵀ` are orthonormal.
         let scale = length.recip();
         let mut joints = Square::zeros();
         let actuated = self.actuated();
@@ -78,7 +100,7 @@ impl Manipulator {
             if row < MOST {
                 (0..n).for_each(|column| joints[(row, column)] = next[column]);
             } else {
-                // More rows than fit: their triangle has the same singular values.
+                // There are more rows than fit. Their triangular factor has the same singular values.
                 if row == MOST {
                     joints = triangle(&joints, n);
                 }
@@ -93,7 +115,7 @@ impl Manipulator {
             smallest = smallest.min(value);
             product *= value;
         }
-        // Poses so far out that squares overflow.
+        // The pose is so far away that squares overflow.
         if !product.is_finite() || !largest.is_finite() {
             return Conditioning::SERIAL;
         }
@@ -104,8 +126,8 @@ impl Manipulator {
     }
 }
 
-/// The triangle `Lᵀ` of the metric of the platform's twist, by Cholesky: its columns are independent by
-/// far, so that the squares do no harm.
+/// The triangular factor `Lᵀ` of the metric of the platform's twist, by Cholesky's method. The columns are
+/// far from dependent, so that squaring them loses few digits.
 fn metric(jacobians: &Jacobians, scale: f64) -> Square {
     let n = jacobians.platform.ncols();
     let square = scale * scale;
@@ -132,7 +154,7 @@ fn metric(jacobians: &Jacobians, scale: f64) -> Square {
     r
 }
 
-/// The triangle `R` of a matrix's `Q R`.
+/// The triangular factor `R` of a matrix `Q R`.
 fn triangle(matrix: &Square, n: usize) -> Square {
     let mut r = Square::zeros();
     for row in matrix.row_iter() {
@@ -141,7 +163,7 @@ fn triangle(matrix: &Square, n: usize) -> Square {
     r
 }
 
-/// Adds a row to a triangle, by Givens rotations.
+/// Adds a row to a triangular factor, by Givens rotations.
 fn push_row(r: &mut Square, mut next: [f64; MOST], n: usize) {
     for i in 0..n {
         if next[i] == 0.0 {
@@ -157,7 +179,7 @@ fn push_row(r: &mut Square, mut next: [f64; MOST], n: usize) {
     }
 }
 
-/// `matrix R⁻¹`, from its first column on.
+/// Computes `matrix · R⁻¹` in place, column by column.
 fn divide(matrix: &mut Square, r: &Square, n: usize) {
     for j in 0..n {
         for k in 0..j {
@@ -173,8 +195,8 @@ fn divide(matrix: &mut Square, r: &Square, n: usize) {
     }
 }
 
-/// Singular values of the first `n` columns, by the rotations of [`crate::svd`]. Entries are near one, so
-/// that squares do not overflow.
+/// The singular values of the first `n` columns, by the rotations of [`crate::numeric::svd`]. Entries are
+/// near one, so that squares do not overflow.
 fn singular_values(mut m: Square, n: usize) -> [f64; MOST] {
     let orthogonal = |p: &Products| p.pq * p.pq <= ORTHOGONAL * ORTHOGONAL * p.pp * p.qq;
     let secant = |tan: f64| (1.0 + tan * tan).sqrt();

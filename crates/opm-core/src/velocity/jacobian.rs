@@ -1,4 +1,5 @@
-//! The Jacobians: of the upper section, of the lower one, of the whole, and of the pose.
+//! The Jacobians of the upper section, of the lower section, of the whole mechanism, and of the task
+//! coordinates.
 
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, Subspace};
@@ -6,10 +7,11 @@ use crate::manipulator::{Manipulator, Section, Solution};
 use crate::task::Task;
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 
-/// The Jacobians at one solved pose; made by [`Manipulator::jacobians`].
+/// The Jacobians at one solved pose. The buffer is made by [`Manipulator::jacobians`] and filled by
+/// [`Manipulator::differentiate`].
 ///
-/// Columns are components of the *section twist* `(upper; lower)`, whatever the coordinates of the
-/// pose are, so that the singularities of these are in [`Jacobians::pose`] alone:
+/// Columns are components of the *section twist* `(upper; lower)`. They do not depend on the task
+/// coordinates, so that the singularities of these are in [`Jacobians::pose`] alone:
 ///
 /// * `upper`: the twist `ḃ b⁻¹` of the upper section, in the frame of [`Task::upper`]: `ω` (x, y, z)
 ///   in a sphere; `ω` about the normal, `v` along the frame's x and y in a plane; `ω` about the axis,
@@ -20,57 +22,95 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 ///   component along it is left out. In a plane that is the velocity of the reference point.
 ///
 /// Rates are those of the coordinates as they are reported: rad/s and m/s.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mode, mut buffer) = (manipulator.home_mode(), manipulator.solution());
+/// let mut pose = manipulator.pose([("x", 0.01), ("xi", 15_f64.to_radians())])?;
+/// let at = manipulator.inverse(&pose, mode, &mut buffer)?.expect("a pose in reach");
+/// let mut jacobians = manipulator.jacobians();
+/// assert!(manipulator.differentiate(at, &mut jacobians)?);
+/// let rates = jacobians.joints_by_pose(); // a row for each joint, a column for each coordinate
+///
+/// // The first column is the derivative of all joints by x: compare a central difference.
+/// let (x, step) = (pose[0], 1e-5);
+/// let mut joints_at = |x: f64| {
+///     pose[0] = x;
+///     let solution = manipulator.inverse(&pose, mode, &mut buffer).unwrap();
+///     solution.expect("a pose in reach").joints().to_vec()
+/// };
+/// for (i, (after, before)) in joints_at(x + step).iter().zip(joints_at(x - step)).enumerate() {
+///     assert!(((after - before) / (2.0 * step) - rates[(i, 0)]).abs() < 1e-6);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Jacobians {
-    /// `J_s` (Eqs. 8-9): rates along the cuts from the upper section's twist. A row for every leg that
-    /// is cut in its upper section ([`Jacobians::bridged`]), with the sign of its imaginary joint
-    /// where it has one. They are relative to a lower section that does not move along the intersection
-    /// motion; where the coordinates of the pose make it do so (`mu nu` of a tilt, `w phi` of an upper
-    /// plane), the rate as it is reported, [`JointMotion::imaginary_rates`](super::JointMotion), has that in
-    /// it too.
+    /// `J_s` (Eqs. 8-9): rates along the cuts from the upper section's twist. It has a row for every leg
+    /// that is cut in its upper section ([`Jacobians::bridged`]), with the sign of the leg's imaginary joint
+    /// if it has one. These rates are relative to a lower section that does not move along the intersection
+    /// motion. Some task coordinates make it do so (`mu nu` of a tilt, `w phi` of an upper plane). The rate
+    /// that is reported, [`JointMotion::imaginary_rates`](super::JointMotion), then includes that motion.
     pub upper: DMatrix<f64>,
-    /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`])
-    /// from those along the cuts, in the order of the rows of [`Jacobians::upper`], and the lower
-    /// section's twist.
+    /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`]) from
+    /// the rates along the cuts, in the order of the rows of [`Jacobians::upper`], and the lower section's
+    /// twist.
     pub lower: DMatrix<f64>,
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
-    /// twist. For the actuated ones of the lower section `q̇ = J_p [J_s upper; lower]`.
+    /// twist. For the actuated joints of the lower section `q̇ = J_p [J_s upper; lower]`.
     pub joints: DMatrix<f64>,
-    /// The section twist from the rates of the task coordinates: square. Singular where the
-    /// coordinates are (Euler angles at `xi = 0`), whatever the mechanism.
+    /// The section twist from the rates of the task coordinates, a square matrix. It is singular where the
+    /// coordinates are (Euler angles at `xi = 0`), for every mechanism.
     pub pose: DMatrix<f64>,
-    /// The platform's twist `(ω; v)` from the section twist: `v` is the velocity of the platform's
-    /// reference point; axes are the base's as they have moved with `v`.
+    /// The platform's twist `(ω; v)` from the section twist. `v` is the velocity of the platform's reference
+    /// point. The axes are those of the base after the displacement `v` of the lower section.
     pub platform: Matrix6xX<f64>,
-    /// Legs with joints without rates: the rows of these are zeros that mean nothing.
+    /// The legs with joints that have no rates. The rows of these joints are zeros without a meaning.
     pub singular: Vec<SingularLeg>,
-    /// Numbers of the legs that are cut in their upper section: the rows of [`Jacobians::upper`].
+    /// The numbers of the legs that are cut in their upper section: the rows of [`Jacobians::upper`].
     pub bridged: Vec<usize>,
-    /// Numbers of the joint coordinates that are rows of [`Jacobians::lower`], ascending.
+    /// The numbers of the joint coordinates that are rows of [`Jacobians::lower`], ascending.
     pub lower_rows: Vec<usize>,
-    /// Every leg's number among the bridged ones.
+    /// For each leg, its row in [`Jacobians::upper`].
     bridges: Vec<Option<usize>>,
-    /// Every joint coordinate's row in [`Jacobians::lower`].
+    /// For each joint coordinate, its row in [`Jacobians::lower`].
     driven: Vec<Option<usize>>,
+    /// The components of the section twist.
     basis: Basis,
+    /// The differentials of every leg.
     pub(super) legs: Vec<LegDifferential>,
-    /// Where the lower section is.
+    /// The displacement of the lower section.
     pub(super) v: Displacement,
     /// Every leg's displacement along the intersection motion.
     pub(super) cuts: Vec<JointDisplacement>,
 }
 
-/// The directions that the section twist is measured along.
+/// The unit twists that are the components of the section twist.
 #[derive(Clone, Debug)]
 struct Basis {
+    /// Those of the upper section, in its frame.
     upper: [LocalTwist; 3],
+    /// Those of the lower section, in its frame.
     lower: [LocalTwist; 3],
-    /// How many there are of each; the rest are zeros.
+    /// The numbers of upper and of lower ones; the rest are zeros.
     counts: [usize; 2],
-    /// Each as a twist in base coordinates, upper first: angular part, velocity at a point.
-    twists: Vec<([Vector3<f64>; 2], Vector3<f64>)>,
-    /// The platform's reference point at home in the upper section's frame.
+    /// The same twists in base coordinates, upper ones first.
+    in_base: Vec<BaseTwist>,
+    /// The home position of the platform's reference point, in the upper section's frame.
     platform: Vector3<f64>,
+}
+
+/// A twist in base directions.
+#[derive(Clone, Debug)]
+struct BaseTwist {
+    /// The angular velocity.
+    angular: Vector3<f64>,
+    /// The velocity of the point at `origin`.
+    linear: Vector3<f64>,
+    /// A point, in base coordinates, metres.
+    origin: Vector3<f64>,
 }
 
 impl Basis {
@@ -79,11 +119,12 @@ impl Basis {
         let rotation = task.intersection_point.is_some();
         let upper = if rotation { kept } else { task.upper_intersection.complement() };
         let lower = if rotation { task.lower_intersection.complement() } else { rest };
-        let in_base = |subspace: &Subspace, twist: &LocalTwist| {
-            (subspace.embedded(twist), subspace.origin.coords)
+        let embedded = |subspace: &Subspace, twist: &LocalTwist| {
+            let [angular, linear] = subspace.embedded(twist);
+            BaseTwist { angular, linear, origin: subspace.origin.coords }
         };
-        let twists = (upper.iter().map(|twist| in_base(&task.upper, twist)))
-            .chain(lower.iter().map(|twist| in_base(&task.lower, twist)))
+        let in_base = (upper.iter().map(|twist| embedded(&task.upper, twist)))
+            .chain(lower.iter().map(|twist| embedded(&task.lower, twist)))
             .collect();
         let padded = |twists: &[LocalTwist]| {
             std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(LocalTwist::zeros))
@@ -92,27 +133,30 @@ impl Basis {
             counts: [upper.len(), lower.len()],
             upper: padded(&upper),
             lower: padded(&lower),
-            twists,
+            in_base,
             platform: task.upper.point(platform),
         }
     }
 }
 
-/// What has moved with `v`: the intersection motion, and the directions of the lower section.
+/// Twists of the lower section after its displacement `v`.
 struct Moved {
+    /// The unit twist of the intersection motion.
     along: LocalTwist,
+    /// The lower components of the section twist.
     lower: [LocalTwist; 3],
 }
 
 impl Jacobians {
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], for unit rates of
-    /// the task coordinates. Allocates the product.
+    /// the task coordinates: a row for each joint, a column for each task coordinate. The product is
+    /// allocated.
     pub fn joints_by_pose(&self) -> DMatrix<f64> {
         &self.joints * &self.pose
     }
 
-    /// The components of the section twist, in the order of the columns: what each does to the upper
-    /// section and to the lower one, twists in the sections' frames.
+    /// The components of the section twist, in the order of the columns: for each, the twists of the upper
+    /// and of the lower section, in the sections' frames.
     pub(crate) fn directions(&self) -> Vec<[LocalTwist; 2]> {
         let zero = LocalTwist::zeros();
         let [n_upper, n_lower] = self.basis.counts;
@@ -122,7 +166,7 @@ impl Jacobians {
 }
 
 impl Manipulator {
-    /// A buffer for [`Manipulator::differentiate`]. Its matrices are zeros before that.
+    /// A buffer for [`Manipulator::differentiate`]. Its matrices are zeros until then.
     pub fn jacobians(&self) -> Jacobians {
         let task = self.task();
         let basis = Basis::new(task, &self.mechanism().platform);
@@ -164,11 +208,11 @@ impl Manipulator {
         }
     }
 
-    /// The Jacobians at a solved pose; `false` where a joint has no rates: `out.singular` says in which
-    /// legs; the others have theirs. Nothing is allocated.
+    /// Computes the Jacobians at a solved pose. Returns `false` if some joints have no rates: `out.singular`
+    /// lists the legs. The rows of all other joints are valid in any case. Nothing is allocated.
     ///
     /// # Errors
-    /// A solution that is out of reach.
+    /// If the solution is out of reach.
     pub fn differentiate(&self, at: &Solution, out: &mut Jacobians) -> Result<bool, VelocityError> {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
@@ -194,6 +238,7 @@ impl Manipulator {
         Ok(out.singular.is_empty())
     }
 
+    /// Fills the rows of a leg with zeros.
     fn clear_rows(&self, number: usize, out: &mut Jacobians) {
         if let Some(bridge) = out.bridges[number] {
             out.upper.row_mut(bridge).fill(0.0);
@@ -207,12 +252,12 @@ impl Manipulator {
         }
     }
 
-    /// A leg's rows.
+    /// Computes the rows of a leg.
     #[inline]
     fn leg_rows(
         &self,
         number: usize,
-        LegDifferential { lower: low, upper: up }: &LegDifferential,
+        LegDifferential { lower, upper }: &LegDifferential,
         tau: JointDisplacement,
         moved: &Moved,
         out: &mut Jacobians,
@@ -221,14 +266,14 @@ impl Manipulator {
         let leg = &self.legs[number];
         let sign = leg.imaginary.map_or(1.0, |i| self.imaginary()[i].sign);
         let [n_upper, n_lower] = out.basis.counts;
-        // Rates along the cut from each component of the section twist, and what else follows from
-        // it in the section that is solved second.
+        // Rates along the cut for each component of the section twist. In the section that is solved second,
+        // they add to the twist: `carried` is the twist of a unit rate.
         let mut cut = [0.0; 6];
-        let (upper, carried) = match leg.split_section {
+        let (upper_twists, carried) = match leg.split_section {
             Section::Upper => {
                 let bridge = out.bridges[number].unwrap_or_default();
                 for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
-                    cut[i] = up.rate(0, twist);
+                    cut[i] = upper.rate(0, twist);
                     out.upper[(bridge, i)] = sign * cut[i];
                 }
                 (out.basis.upper, moved.along)
@@ -236,20 +281,20 @@ impl Manipulator {
             Section::Lower => {
                 let last = leg.lower.chain.freedoms() - 1;
                 for (i, twist) in moved.lower.iter().enumerate() {
-                    cut[n_upper + i] = low.rate(last, twist);
+                    cut[n_upper + i] = lower.rate(last, twist);
                 }
-                let amount = tau.inverse();
-                let carried = |twist: LocalTwist| task.upper_intersection.adjoint(amount, &twist);
+                let inverse = tau.inverse();
+                let carried = |twist: LocalTwist| task.upper_intersection.adjoint(inverse, &twist);
                 (out.basis.upper.map(carried), task.upper_intersection.unit_twist())
             }
         };
         let (n, bridges, joints) = (n_upper + n_lower, out.bridged.len(), out.joints.nrows());
         let rows = out.lower.nrows();
         for (section, compiled, differential) in
-            [(Section::Upper, &leg.upper, up), (Section::Lower, &leg.lower, low)]
+            [(Section::Upper, &leg.upper, upper), (Section::Lower, &leg.lower, lower)]
         {
             let (own, start) = match section {
-                Section::Upper => (&upper, 0),
+                Section::Upper => (&upper_twists, 0),
                 Section::Lower => (&moved.lower, n_upper),
             };
             for (slot, joint) in compiled.coordinates.iter().zip(0..) {
@@ -264,7 +309,7 @@ impl Manipulator {
                 for (i, twist) in own.iter().enumerate() {
                     rates[start + i] += differential.rate(joint, twist);
                 }
-                // Matrices are stored by columns.
+                // The matrices are stored by columns.
                 let entries = out.joints.as_mut_slice();
                 for (i, rate) in rates[..n].iter().enumerate() {
                     entries[i * joints + row] = *rate;
@@ -277,15 +322,15 @@ impl Manipulator {
                 }
                 let entries = &mut out.lower.as_mut_slice()[bridges * rows..];
                 for i in 0..n - n_upper {
-                    // Of a leg with its cut above, what comes by the cut has a column of its own; its cut
-                    // does not move with the lower section.
+                    // For a leg that is cut in its upper section, the rate along the cut has a column of its
+                    // own, and does not depend on the lower section's twist.
                     entries[i * rows + row] = rates[n_upper + i];
                 }
             }
         }
     }
 
-    /// The section twist for a unit rate of each task coordinate.
+    /// Computes the section twist for a unit rate of each task coordinate.
     fn pose_columns(&self, at: &Solution, out: &mut Jacobians) {
         let task = self.task();
         let pose = &at.solved.pose;
@@ -295,15 +340,15 @@ impl Manipulator {
         let rotation = task.intersection_point.is_some();
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
-        let (of_v, of_b) = (task.lower_screws(pose), task.upper_screws(pose));
+        let (v_screws, b_screws) = (task.lower_screws(pose), task.upper_screws(pose));
         for column in 0..n {
             let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
             if column < task.lower_count {
-                lower = v.adjoint_of_inverse(&of_v.moved[column]);
+                lower = v.adjoint_of_inverse(&v_screws.moved[column]);
             } else {
-                upper = of_b.moved[column - task.lower_count];
+                upper = b_screws.moved[column - task.lower_count];
             }
-            // What is along the intersection motion may be given to either section: it goes to the one
+            // A rate along the intersection motion may belong to either section. It is moved to the section
             // that has a component for it.
             if rotation {
                 upper += upper_along * lower.dot(&lower_along);
@@ -320,12 +365,12 @@ impl Manipulator {
         }
     }
 
-    /// The platform's twist for each component of the section twist.
+    /// Computes the platform's twist for each component of the section twist.
     fn platform_columns(&self, at: &Solution, out: &mut Jacobians) {
-        // In a frame that moves with v, the platform's point is b's image of it.
+        // In a frame that moves with v, the reference point is displaced by b.
         let upper = &self.task().upper;
         let point = upper.restored(&at.solved.b.act(&out.basis.platform)).coords;
-        for (i, ([angular, linear], origin)) in out.basis.twists.iter().enumerate() {
+        for (i, BaseTwist { angular, linear, origin }) in out.basis.in_base.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
             let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];
             column[..3].copy_from_slice(angular.as_slice());

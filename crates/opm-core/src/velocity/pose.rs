@@ -1,8 +1,9 @@
-//! Twists of `v` and `b` from the rates of the task coordinates.
+//! The twists of `v` and `b` from the rates of the task coordinates.
 //!
-//! Both are products of exponentials of their coordinates about home, in the order of the table in
-//! [`crate::task`]: `(x, y, theta)` two translations and a rotation, `(zeta, xi, psi)` rotations
-//! about z, y and z, `(mu, nu)` about x and y. Their derivatives are those of [`Screws`].
+//! Both displacements are products of exponentials of their coordinates, relative to home, in the order of
+//! the table in [`crate::task`]: `(x, y, theta)` are two translations and a rotation, `(zeta, xi, psi)` are
+//! rotations about z, y and z, and `(mu, nu)` are rotations about x and y. [`Screws`] gives their
+//! derivatives.
 
 use super::screws::Screws;
 use crate::group::{
@@ -12,48 +13,49 @@ use crate::numeric::angle::unit;
 use crate::task::Task;
 
 impl Task {
-    /// The screws of `v`'s coordinates at a pose, as they have moved.
+    /// The screws of the coordinates of `v` at a pose, in the frame of the lower section.
     pub(crate) fn lower_screws(&self, pose: &[f64]) -> Screws {
         let q = |i: usize| pose[i] - self.coordinates[i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.lower_intersection {
-            IntersectionMotion::Planar(PlanarMotion::Turn) => {
+            IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 [LocalTwist::y(), LocalTwist::z(), zero]
             }
-            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => planar(q(0), q(1)),
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => planar(q(0), q(1)),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 let e = unit(q(0));
                 [LocalTwist::x(), LocalTwist::new(0.0, e.re, e.im), zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 [LocalTwist::y(), zero, zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance)
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation)
             | IntersectionMotion::Translational(_) => [LocalTwist::x(), LocalTwist::y(), zero],
         };
         Screws { kind: self.lower.kind, moved }
     }
 
-    /// The screws of `b`'s coordinates at a pose, whole, as they have moved.
+    /// The screws of the coordinates of `b` at a pose (the task coordinates of both sections), in the frame
+    /// of the upper section.
     pub(crate) fn upper_screws(&self, pose: &[f64]) -> Screws {
         let at = |i: usize| pose[self.lower_count + i];
         let q = |i: usize| at(i) - self.coordinates[self.lower_count + i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.upper_intersection {
-            IntersectionMotion::Spherical(SphericalMotion::Turn) => {
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
                 let (zeta, xi) = (unit(at(0)), unit(at(1)));
                 let third = LocalTwist::new(zeta.re * xi.im, zeta.im * xi.im, xi.re);
                 [LocalTwist::z(), LocalTwist::new(-zeta.im, zeta.re, 0.0), third]
             }
-            IntersectionMotion::Planar(PlanarMotion::Turn) => planar(q(0), q(1)),
-            IntersectionMotion::Planar(PlanarMotion::Slide(_)) => {
+            IntersectionMotion::Planar(PlanarMotion::Rotation) => planar(q(0), q(1)),
+            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
                 let [_, second, third] = planar(0.0, q(0));
                 [second, third, zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Turn) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 [LocalTwist::x(), LocalTwist::y(), zero]
             }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Advance) => {
+            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 [LocalTwist::x(), zero, zero]
             }
             IntersectionMotion::Translational(_) => [LocalTwist::y(), zero, zero],
@@ -62,7 +64,8 @@ impl Task {
     }
 }
 
-/// Along the plane's directions, then about the point that was moved there.
+/// The screws of two translations along the directions of the plane, followed by a rotation about the point
+/// that they have moved to.
 fn planar(x: f64, y: f64) -> [LocalTwist; 3] {
     [LocalTwist::y(), LocalTwist::z(), LocalTwist::new(1.0, y, -x)]
 }

@@ -1,27 +1,29 @@
-//! Derivatives of a rotation vector, which is how a spherical joint is measured.
+//! Derivatives of a rotation vector, which is the coordinate of a spherical joint.
 //!
 //! With `r` the vector, `θ = |r|`, and `ω` the angular velocity of `exp(r)` in the fixed frame,
 //! `ṙ = ω − ½ r × ω + c(θ) r × (r × ω)`, `c = (1 − (θ/2) cot(θ/2)) / θ²` (Bullo and Murray,
-//! "Proportional derivative control on the Euclidean group", ECC 1995). At a whole turn other than none
-//! there is no such derivative: the axis of a full turn is any axis.
+//! "Proportional derivative control on the Euclidean group", ECC 1995). At a full
+//! revolution, `θ = 2π`, there is no such derivative, because a rotation by 2π about any axis is the same.
 
 use super::SINGULAR;
 use crate::group::LocalTwist;
 use nalgebra::Matrix3;
 
-/// A rotation vector, with what its derivatives need.
+/// A rotation vector, with the coefficients of its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RotationVector {
+    /// The rotation vector `r`.
     vector: LocalTwist,
-    /// `c(θ)`.
+    /// The coefficient `c(θ)`.
     second: f64,
-    /// `c′(θ) / θ`.
+    /// The coefficient `c′(θ) / θ`.
     slope: f64,
+    /// Whether the rotation is by full revolutions.
     singular: bool,
 }
 
-/// Below it the series is as good as double precision; above it the closed form loses less than three
-/// digits to its difference.
+/// Below this angle the series is exact to double precision. Above it the closed form loses less than three
+/// digits to cancellation.
 const SMALL: f64 = 0.5;
 
 impl RotationVector {
@@ -46,13 +48,13 @@ impl RotationVector {
         Self { vector, second, slope, singular: false }
     }
 
-    /// At a whole turn, where it has no derivative.
+    /// Whether the rotation is by full revolutions, where the vector has no derivative.
     pub fn is_singular(&self) -> bool {
         self.singular
     }
 
-    /// The matrix that gives `ṙ` from `ω`.
-    pub fn rates_of_spin(&self) -> Matrix3<f64> {
+    /// The matrix that maps `ω` to `ṙ`.
+    pub fn angular_velocity_to_rates(&self) -> Matrix3<f64> {
         let r = &self.vector;
         // r × (r × ω) = r (r · ω) − θ² ω.
         let (along, across) = (r * self.second, 1.0 - self.second * r.norm_squared());
@@ -70,17 +72,17 @@ impl RotationVector {
         )
     }
 
-    /// `r̈` at constant `ω`, that is the derivative of that matrix times `ω`.
-    pub fn bias(&self, rates: &LocalTwist, spin: &LocalTwist) -> LocalTwist {
+    /// `r̈` at constant `ω`: the derivative of that matrix, multiplied by `ω`. `rates` is `ṙ`.
+    pub fn bias(&self, rates: &LocalTwist, omega: &LocalTwist) -> LocalTwist {
         let r = &self.vector;
-        let turned = r.cross(spin);
-        let squared = rates.cross(&turned) + r.cross(&rates.cross(spin));
-        r.cross(&turned) * (self.slope * r.dot(rates)) + squared * self.second
-            - rates.cross(spin) * 0.5
+        let crossed = r.cross(omega);
+        let squared = rates.cross(&crossed) + r.cross(&rates.cross(omega));
+        r.cross(&crossed) * (self.slope * r.dot(rates)) + squared * self.second
+            - rates.cross(omega) * 0.5
     }
 }
 
-/// `c` in powers of `θ²`: the series of `x cot x`, with Bernoulli numbers.
+/// The series of `c` in powers of `θ²`, which follows from that of `x cot x` with Bernoulli numbers.
 const SECOND: [f64; 7] = [
     1.0 / 12.0,
     1.0 / 720.0,
@@ -91,7 +93,7 @@ const SECOND: [f64; 7] = [
     1.0 / 74_724_249_600.0,
 ];
 
-/// `c′ / θ` in powers of `θ²`: the derivative of that.
+/// The series of `c′ / θ` in powers of `θ²`, from the derivative of that series.
 const SLOPE: [f64; 6] = [
     2.0 / 720.0,
     4.0 / 30_240.0,
@@ -101,6 +103,7 @@ const SLOPE: [f64; 6] = [
     12.0 / 74_724_249_600.0,
 ];
 
+/// The value of a power series in `x`, with the lowest coefficient first.
 fn series(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
@@ -112,7 +115,7 @@ mod tests {
     use std::f64::consts::PI;
 
     proptest! {
-        /// Both forms, where they meet.
+        /// The series and the closed form agree near the angle at which one takes over from the other.
         #[test]
         fn series_and_closed_form_agree(angle in 0.45..0.5_f64) {
             let (sin, cos) = (0.5 * angle).sin_cos();
@@ -126,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_turn_has_no_derivative_but_half_a_turn_has() {
+    fn a_full_revolution_has_no_derivative_but_half_of_one_has() {
         assert!(RotationVector::new(LocalTwist::z() * (2.0 * PI)).is_singular());
         assert!(!RotationVector::new(LocalTwist::z() * PI).is_singular());
         assert!(!RotationVector::new(LocalTwist::zeros()).is_singular());

@@ -1,4 +1,4 @@
-//! One section of a leg at one configuration: from the twist of its outer link to its joints' rates.
+//! The differential kinematics of one section of a leg: joint rates from the twist of its outer link.
 
 use super::rotation_vector::RotationVector;
 use super::screws::Screws;
@@ -8,34 +8,37 @@ use crate::group::{JointDisplacement, LocalTwist, SubspaceKind};
 use crate::manipulator::CompiledSection;
 use nalgebra::Matrix3;
 
-/// A section's screws as they have moved, and the reciprocal ones.
+/// The displaced screws of a section at one configuration, and the reciprocal screws.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Differential {
+    /// The displaced screws.
     pub screws: Screws,
-    /// The reciprocal screws times the determinant: as regular as the screws.
+    /// The reciprocal screws times the determinant, which are defined at singularities too.
     pub crosses: [LocalTwist; 3],
-    /// Rows that give the rates; zeros where there are none.
+    /// The reciprocal screws, which give the joint rates; zeros at a singularity.
     pub reciprocal: [LocalTwist; 3],
-    /// The determinant over what it is measured in: dimensionless.
+    /// The serial measure: the determinant over its unit, dimensionless.
     pub measure: f64,
-    /// Where the section is a spherical joint: it has no screws, but three coordinates.
+    /// The rotation vector of a section that is a spherical joint, which has three coordinates but no joint
+    /// screws.
     ball: Option<RotationVector>,
 }
 
 impl Differential {
-    /// Of a section that is at `amounts`; a spherical joint at the rotation vector `vector` from home,
-    /// whole turns counted, in base coordinates.
+    /// The differential of a section, whose joints have these displacements. For a spherical joint, `vector`
+    /// gives its rotation vector from home in base coordinates, by the number of its first coordinate; full
+    /// revolutions count.
     #[inline]
     pub fn new(
         kind: SubspaceKind,
         section: &CompiledSection,
-        amounts: &[JointDisplacement; 3],
+        displacements: &[JointDisplacement; 3],
         vector: impl FnOnce(usize) -> LocalTwist,
     ) -> Self {
         if let Chain::Ball(ball) = &section.chain {
             let first = section.coordinates[0].map_or(0, |slot| slot.number);
             let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
-            let rows = ball.axes * vector.rates_of_spin();
+            let rows = ball.axes * vector.angular_velocity_to_rates();
             let reciprocal = if vector.is_singular() {
                 [LocalTwist::zeros(); 3]
             } else {
@@ -49,7 +52,7 @@ impl Differential {
                 ball: Some(vector),
             };
         }
-        let screws = Screws::new(kind, &section.screws, amounts);
+        let screws = Screws::new(kind, &section.screws, displacements);
         let (crosses, determinant) = screws.reciprocal();
         let measure = determinant / section.scale;
         let reciprocal = if measure.abs() < SINGULAR {
@@ -61,30 +64,30 @@ impl Differential {
         Self { screws, crosses, reciprocal, measure, ball: None }
     }
 
-    /// Why there are no rates for a twist, if there are none.
+    /// Why the joints have no rates; `None` if they have.
     #[inline]
     pub fn singular(&self) -> Option<SingularCause> {
         if self.measure.abs() < SINGULAR {
             return Some(SingularCause::Serial);
         }
-        let whole_turn = self.ball.is_some_and(|vector| vector.is_singular());
-        whole_turn.then_some(SingularCause::RotationVector)
+        let full_revolution = self.ball.is_some_and(|vector| vector.is_singular());
+        full_revolution.then_some(SingularCause::RotationVector)
     }
 
-    /// The rates of its joints, base first, for a twist of its outer link.
+    /// The rates of the section's joints, from the base on, for a twist of its outer link.
     #[inline]
     pub fn rates(&self, twist: &LocalTwist) -> LocalTwist {
         LocalTwist::from_fn(|joint, _| self.rate(joint, twist))
     }
 
-    /// The rate of one joint.
+    /// The rate of one joint for a twist of the section's outer link.
     #[inline]
     pub fn rate(&self, joint: usize, twist: &LocalTwist) -> f64 {
         self.reciprocal[joint].dot(twist)
     }
 
-    /// The accelerations of its joints for a twist of its outer link, that twist's derivative, and the
-    /// rates that go with them.
+    /// The accelerations of the section's joints, for a twist of its outer link, the derivative of the twist,
+    /// and the joint rates.
     #[inline]
     pub fn accelerations(
         &self,

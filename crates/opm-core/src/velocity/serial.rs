@@ -1,9 +1,10 @@
-//! How far a leg is from a serial singularity, whether or not the others reach.
+//! How far a leg is from a serial singularity. The other legs may be out of reach.
 
 use crate::manipulator::{Manipulator, Section, Solution};
 
 impl Manipulator {
-    /// Of a leg that reaches: the smaller of its two sections' measures, without its sign, and whose.
+    /// The smaller of the serial measures of a leg's two sections, without its sign, and that section. The
+    /// leg must be in reach.
     pub(crate) fn serial(&self, at: &Solution, leg: usize) -> (f64, Section) {
         let differential = self.leg_differential(at, leg);
         let [lower, upper] = [&differential.lower, &differential.upper].map(|d| d.measure.abs());

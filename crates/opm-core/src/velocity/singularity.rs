@@ -1,24 +1,24 @@
 //! Singularities, by section.
 //!
-//! Each section is a parallel mechanism of its own. The upper one moves the platform against a frame
-//! that follows `v`; its inputs are the imaginary joints (and what is actuated in it). The lower
-//! one is driven by the actuated joints; its outputs are the imaginary joints and `v`. Whether the
-//! whole is singular is decided by both, `q̇ = J_p [J_s ω; Ṗ]`.
+//! Each section is a parallel mechanism of its own. The upper section moves the platform relative to a
+//! frame that follows `v`. Its inputs are the imaginary joints, and its actuated joints if it has any. The
+//! lower section is driven by the actuated joints, and its outputs are the imaginary joints and `v`. Both
+//! decide whether the whole mechanism is singular, `q̇ = J_p [J_s ω; Ṗ]`.
 //!
-//! *Serial*: the screws of a leg's section are dependent, `det S = 0`, and the platform cannot go every
-//! way. With the paper's first manipulator, `u · (v × w)` of a leg in the upper section, `V · n(α)` of
-//! a slider leg and `sin φ₂₄` of the arm in the lower one.
+//! *Serial singularity*: the screws of a leg's section are dependent, `det S = 0`, and the platform cannot
+//! move in every direction. In the paper's first manipulator the measures are `u · (v × w)` of a leg in the
+//! upper section, and `V · n(α)` of a slider leg and `sin φ₂₄` of the arm in the lower section.
 //!
-//! *Parallel*: with all inputs locked the section can still move. What a leg's locked inputs forbid is
-//! read from the closure by the screws reciprocal to its passive joints, which leaves
-//! `J_x ẋ = J_q q̇` with one row an input, no poles and no inverse (Eqs. 7 and 23); the measure is
-//! `det J_x`. With that manipulator, the determinant of the three `v × w`, and the product of the
+//! *Parallel singularity*: the section can move while all its inputs are locked. The screws reciprocal to
+//! the passive joints of a leg give the constraints of its locked inputs. They turn the closure into
+//! `J_x ẋ = J_q q̇`, which has one row for each input, no poles and no inverse (Eqs. 7 and 23). The measure is
+//! `det J_x`. In the same manipulator it is the determinant of the three `v × w`, and the product of the
 //! three `V · n(θ)`.
 //!
-//! All measures are continuous, have no dimension, vanish at the singularity and change sign
-//! across it, within one working mode as well as from one to the next. Lengths are over lengths of the
-//! mechanism that do not change: a link, or the characteristic length. A sign means nothing by itself,
-//! only its change does: signs turn with the directions of the sections' frames.
+//! All measures are continuous and dimensionless. They vanish at the singularity and change sign across it,
+//! within one working mode as well as from one mode to the next. Lengths are divided by constant lengths of
+//! the mechanism: that of a link, or the characteristic length. Only a change of sign has a meaning; the
+//! signs themselves depend on the directions of the sections' frames.
 
 use super::Jacobians;
 use super::closure::{cut_unit, inputs, row_unit, section_rows, twist_unit, volume};
@@ -27,16 +27,18 @@ use crate::manipulator::{Manipulator, Section};
 use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
 
-/// The share of the largest component that a leg needs to count as a cause of a parallel singularity.
+/// A leg counts as a cause of a parallel singularity if its component is more than this share of the
+/// largest.
 const INVOLVED: f64 = 0.1;
 
-/// A section's two measures.
+/// The two measures of singularity of a section, or of the whole mechanism; dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// Product over the legs: zero where one of them is stretched, folded or flat.
+    /// The serial measure: a product over the legs, which is zero if a leg is stretched, folded or flat.
     pub serial: f64,
-    /// Determinant of `J_x`; the volume of its columns, which has no sign, where there are more inputs
-    /// than motions. `None` where there are fewer: locking them all never holds the section.
+    /// The parallel measure: the determinant of `J_x`. If there are more inputs than degrees of freedom, it
+    /// is the volume of the columns, which has no sign. It is `None` if there are fewer, because locked
+    /// inputs then never hold the section.
     pub parallel: Option<f64>,
 }
 
@@ -46,47 +48,78 @@ impl Default for Measures {
     }
 }
 
-/// The measures of singularity at one pose; made by [`Manipulator::singularities`].
+/// The measures of singularity at one pose. The buffer is made by [`Manipulator::singularities`] and
+/// filled by [`Manipulator::measure_singularities`].
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mut buffer, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
+/// let mut measured = manipulator.singularities();
+/// for xi in [0.0, 15_f64.to_radians()] {
+///     let pose = manipulator.pose([("xi", xi)])?;
+///     let at = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+///     manipulator.differentiate(at.expect("a pose in reach"), &mut jacobians)?;
+///     manipulator.measure_singularities(&jacobians, &mut measured);
+///     // The Euler angles zeta, xi, psi are singular at xi = 0, where their determinant sin xi
+///     // vanishes. The mechanism is not.
+///     assert!((measured.coordinates.abs() - xi.sin()).abs() < 1e-12);
+///     assert!(measured.whole.serial.abs() > 1e-3);
+///     // The serial measure of the whole is the product of the two sections' measures.
+///     let product = measured.upper.serial * measured.lower.serial;
+///     assert!((measured.whole.serial - product).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Singularities {
-    /// Of the upper section.
+    /// The measures of the upper section.
     pub upper: Measures,
-    /// Of the lower section.
+    /// The measures of the lower section.
     pub lower: Measures,
-    /// Of the mechanism: its serial measure is the product of the sections'; its parallel one is the
-    /// determinant of both closures together, which is the product where each is square.
+    /// The measures of the whole mechanism. The serial measure is the product of those of the sections. The
+    /// parallel measure is the determinant of both closures together, which is the product of the sections'
+    /// determinants if both closures are square.
     pub whole: Measures,
-    /// Every leg's serial measures, lower section first.
+    /// The serial measures of every leg, the lower section's first.
     pub legs: Vec<[f64; 2]>,
-    /// Determinant of [`Jacobians::pose`]: zero where the *coordinates* of the pose are singular
-    /// (`sin xi` of Euler angles, `cos nu` of a tilt), which is nothing to the mechanism.
+    /// The determinant of [`Jacobians::pose`], which is zero where the *task coordinates* are singular
+    /// (`sin xi` for Euler angles, `cos nu` for a tilt). The mechanism is not singular there.
     pub coordinates: f64,
-    /// Closures of both sections with the inputs locked: a row an input, the lower section's first;
-    /// columns are the cuts, the lower section's twist, the upper section's.
+    /// The closure of both sections with the inputs locked. It has a row for each input, those of the lower
+    /// section first. The columns are the rates along the cuts, then the components of the lower section's
+    /// twist, then those of the upper section's.
     closure: DMatrix<f64>,
+    /// The rows and columns of the closure.
     layout: Layout,
+    /// Working memory for determinants.
     work: DMatrix<f64>,
 }
 
-/// What locks a section, or does not.
+/// A section of a leg that causes a singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// Number of the leg.
+    /// The number of the leg, counted from zero.
     pub leg: usize,
-    /// Which of its sections.
+    /// The section of the leg.
     pub section: Section,
 }
 
 /// The rows and columns of the closure.
 #[derive(Clone, Debug)]
 struct Layout {
-    /// Every leg's column for the rate along its cut, where that is a motion of the sections.
+    /// For each leg, the column of the rate along its cut; `None` if the sections do not move along it.
     cuts: Vec<Option<usize>>,
+    /// The number of columns for the cuts.
     cut_count: usize,
+    /// The components of the lower section's twist, in its frame.
     lower_basis: Vec<LocalTwist>,
+    /// The components of the upper section's twist, in its frame.
     upper_basis: Vec<LocalTwist>,
-    /// Leg and section of every row.
+    /// The leg and the section of every row.
     rows: Vec<Cause>,
+    /// The number of rows of the lower section, which come first.
     lower_rows: usize,
 }
 
@@ -100,7 +133,7 @@ impl Layout {
             .map(|leg| {
                 let moves = match leg.split_section {
                     Section::Upper => leg.imaginary.is_some(),
-                    // What the lower section passes on to an upper one that something drives.
+                    // The lower section passes the cut on to an upper section that has an actuated joint.
                     Section::Lower => leg.upper.driven,
                 };
                 moves.then(|| {
@@ -109,7 +142,7 @@ impl Layout {
                 })
             })
             .collect();
-        // Where some leg is fixed to it, the frame between the sections moves along I as well.
+        // If a leg is fixed to the frame between the sections, this frame moves along I as well.
         let fixed =
             legs.iter().any(|leg| leg.split_section == Section::Upper && leg.imaginary.is_none());
         let lower_basis =
@@ -126,7 +159,7 @@ impl Layout {
         Self { cuts, cut_count, lower_basis, upper_basis, rows, lower_rows }
     }
 
-    /// Columns of the lower section: all but the upper one's twist.
+    /// The number of columns of the lower section: the cuts and the section's own twist.
     fn lower_columns(&self) -> usize {
         self.cut_count + self.lower_basis.len()
     }
@@ -150,7 +183,7 @@ impl Manipulator {
         }
     }
 
-    /// The measures of singularity at the pose of `jacobians`. Nothing is allocated.
+    /// Computes the measures of singularity at the pose of `jacobians`. Nothing is allocated.
     pub fn measure_singularities(&self, jacobians: &Jacobians, out: &mut Singularities) {
         let (mut lower, mut upper) = (1.0, 1.0);
         for (measures, leg) in out.legs.iter_mut().zip(&jacobians.legs) {
@@ -158,7 +191,7 @@ impl Manipulator {
             lower *= measures[0];
             upper *= measures[1];
         }
-        self.close(jacobians, out);
+        self.fill_closure(jacobians, out);
         let Singularities { closure, layout, work, .. } = &mut *out;
         let (rows, columns) = closure.shape();
         let (middle, lower_columns) = (layout.lower_rows, layout.lower_columns());
@@ -173,8 +206,8 @@ impl Manipulator {
         out.coordinates = coordinates.unwrap_or(0.0);
     }
 
-    /// The leg and section whose serial measure is the smallest: what causes a serial singularity where
-    /// there is one, what comes nearest to it elsewhere.
+    /// The leg whose section has the smallest serial measure: the cause of a serial singularity, or the leg
+    /// that is nearest to one.
     pub fn serial_cause(&self, measured: &Singularities, section: Section) -> Option<Cause> {
         let of = |measures: &[f64; 2]| match section {
             Section::Lower => measures[0].abs(),
@@ -185,9 +218,10 @@ impl Manipulator {
         Some(Cause { leg, section })
     }
 
-    /// The legs that cause a parallel singularity of a section, or come nearest to one: those whose
-    /// imaginary joints move by themselves with the inputs locked; where the platform moves with
-    /// them, those whose inputs hold the same motion. None where it has no measure.
+    /// The legs that cause a parallel singularity of a section, or that are nearest to one. If only imaginary
+    /// joints can move while the inputs are locked, these are the legs of those joints. Otherwise they are
+    /// the legs whose inputs constrain the same motion. The list is empty if the section has no parallel
+    /// measure.
     pub fn parallel_causes(&self, measured: &Singularities, section: Section) -> Vec<Cause> {
         let Singularities { closure, layout, .. } = measured;
         let (rows, columns) = closure.shape();
@@ -212,8 +246,8 @@ impl Manipulator {
             numbers.map(|(number, _)| number).collect::<Vec<_>>()
         };
         let moving = involved(weakest(block.into_owned()).as_slice());
-        let by_itself = |column: &usize| section == Section::Lower && *column < layout.cut_count;
-        let mut causes: Vec<Cause> = if moving.iter().all(by_itself) {
+        let is_cut = |column: &usize| section == Section::Lower && *column < layout.cut_count;
+        let mut causes: Vec<Cause> = if moving.iter().all(is_cut) {
             let of = |column: &usize| layout.cuts.iter().position(|cut| *cut == Some(*column));
             moving.iter().filter_map(of).map(|leg| Cause { leg, section }).collect()
         } else if block.nrows() == block.ncols() {
@@ -226,8 +260,8 @@ impl Manipulator {
         causes
     }
 
-    /// Fills the closure.
-    fn close(&self, Jacobians { legs, v, cuts, .. }: &Jacobians, out: &mut Singularities) {
+    /// Computes the closure.
+    fn fill_closure(&self, Jacobians { legs, v, cuts, .. }: &Jacobians, out: &mut Singularities) {
         let Singularities { closure, layout, .. } = out;
         closure.fill(0.0);
         let task = self.task();
@@ -272,8 +306,8 @@ impl Manipulator {
                     let carried = match leg.split_section {
                         Section::Upper => *twist,
                         Section::Lower => {
-                            let amount = cuts[number].inverse();
-                            task.upper_intersection.adjoint(amount, twist)
+                            let inverse = cuts[number].inverse();
+                            task.upper_intersection.adjoint(inverse, twist)
                         }
                     };
                     closure[(row, split + i)] = w.dot(&carried) * twist_unit(kind, twist, length);

@@ -13,6 +13,7 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
+    /// The basis of the zero subspace.
     pub const EMPTY: Self =
         Self { vectors: [Vector6::new(0., 0., 0., 0., 0., 0.); 6], dimension: 0 };
 
@@ -28,10 +29,12 @@ impl Basis {
         basis
     }
 
+    /// The orthonormal vectors, as many as the dimension.
     pub fn vectors(&self) -> &[Vector6<f64>] {
         &self.vectors[..self.dimension]
     }
 
+    /// The number of vectors, 0 to 6.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
@@ -56,12 +59,13 @@ impl Basis {
         grows
     }
 
-    /// The length of the largest component, outside the span, of a Lie bracket of two basis
-    /// vectors.
+    /// How far the span is from closed under the Lie bracket: the largest distance from the span of a
+    /// bracket of two basis vectors.
     pub fn bracket_excess(&self) -> f64 {
         self.brackets().map(|v| self.residual(&v).norm()).fold(0.0, f64::max)
     }
 
+    /// The Lie brackets of all pairs of basis vectors.
     fn brackets(&self) -> impl Iterator<Item = Vector6<f64>> {
         let screws = self.vectors().iter().map(Screw::from_vector);
         screws.clone().enumerate().flat_map(move |(i, a)| {

@@ -10,6 +10,20 @@ use std::fmt;
 ///
 /// An axis or a normal points up (see [`UP`]). The point of an axis is its point nearest to the
 /// base's origin.
+///
+/// ```
+/// use opm_core::Manipulator;
+/// use opm_core::group::subspace::SubspaceClass;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let decomposition = manipulator.decomposition();
+/// assert!(matches!(decomposition.lower, SubspaceClass::Planar { .. }));
+/// assert!(matches!(decomposition.upper, SubspaceClass::Spherical { .. }));
+/// // SE(2) and SO(3) have three dimensions each. They share the rotations about one normal.
+/// assert_eq!(decomposition.lower.dimension(), 3);
+/// assert_eq!(decomposition.intersection.name(), "rotation");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SubspaceClass {
     /// The trivial group: no motion.
@@ -120,7 +134,9 @@ impl SubspaceClass {
             Self::Rotation { axis, point } => vec![Screw::rotation(axis, point)],
             Self::Translation { axis } => vec![Screw::translation(axis)],
             Self::Helical { axis, point, pitch } => vec![Screw::helical(axis, point, pitch)],
-            Self::TranslationalPlane { normal } => across(normal).map(Screw::translation).to_vec(),
+            Self::TranslationalPlane { normal } => {
+                perpendiculars(normal).map(Screw::translation).to_vec()
+            }
             Self::Cylindrical { axis, point } => {
                 vec![Screw::rotation(axis, point), Screw::translation(axis)]
             }
@@ -128,7 +144,7 @@ impl SubspaceClass {
             Self::Planar { normal } => Self::PlanarHelical { axis: normal, pitch: 0.0 }.screws(),
             Self::Spherical { centre } => [x, y, z].map(|a| Screw::rotation(a, centre)).to_vec(),
             Self::PlanarHelical { axis, pitch } => {
-                let [u, v] = across(axis).map(Screw::translation);
+                let [u, v] = perpendiculars(axis).map(Screw::translation);
                 vec![Screw::helical(axis, origin, pitch), u, v]
             }
             Self::Schoenflies { axis } => {
@@ -146,22 +162,22 @@ impl SubspaceClass {
     /// pointing up.
     pub(crate) fn restored(&self, frame: &Frame) -> Self {
         let metres = |pitch: f64| pitch * frame.length;
-        let place = |axis, point: &Point3<f64>| nearest_origin(axis, frame.restored_point(point));
+        let on_axis = |axis, point: &Point3<f64>| nearest_origin(axis, frame.restored_point(point));
         match *self {
             Self::Rotation { axis, point } => {
-                Self::Rotation { axis: upward(axis), point: place(axis, &point) }
+                Self::Rotation { axis: upward(axis), point: on_axis(axis, &point) }
             }
             Self::Translation { axis } => Self::Translation { axis: upward(axis) },
             Self::Helical { axis, point, pitch } => Self::Helical {
                 axis: upward(axis),
-                point: place(axis, &point),
+                point: on_axis(axis, &point),
                 pitch: metres(pitch),
             },
             Self::TranslationalPlane { normal } => {
                 Self::TranslationalPlane { normal: upward(normal) }
             }
             Self::Cylindrical { axis, point } => {
-                Self::Cylindrical { axis: upward(axis), point: place(axis, &point) }
+                Self::Cylindrical { axis: upward(axis), point: on_axis(axis, &point) }
             }
             Self::Planar { normal } => Self::Planar { normal: upward(normal) },
             Self::Spherical { centre } => Self::Spherical { centre: frame.restored_point(&centre) },
@@ -175,7 +191,7 @@ impl SubspaceClass {
 }
 
 impl SubspaceClass {
-    /// The same one-parameter motion, with its axis on the side of `hint`.
+    /// The same one-parameter motion, with its axis reversed if it points away from `hint`.
     pub(crate) fn towards(self, hint: &Vector3<f64>) -> Self {
         let oriented = |axis: Unit<Vector3<f64>>| if axis.dot(hint) < 0.0 { -axis } else { axis };
         match self {
@@ -220,13 +236,14 @@ impl fmt::Display for SubspaceClass {
 }
 
 /// Two unit vectors perpendicular to an axis and to each other.
-fn across(axis: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
-    let thin = axis.iamin();
-    let u = Unit::new_normalize(axis.cross(&Vector3::ith(thin, 1.0)));
+fn perpendiculars(axis: Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
+    let smallest = axis.iamin();
+    let u = Unit::new_normalize(axis.cross(&Vector3::ith(smallest, 1.0)));
     [u, Unit::new_normalize(axis.cross(&u))]
 }
 
-/// The vector that decides which of two opposite directions points up: the one on its side.
+/// The vector that decides which of two opposite directions points up: the one with a positive component
+/// along it.
 ///
 /// That is the direction with positive z; among nearly horizontal directions, the one with positive
 /// y; among those nearly along x, the one with positive x. "Nearly" keeps small rotations of a
@@ -254,10 +271,11 @@ fn nearest_origin(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Point3<f64> {
 /// A group fitted to screws, in the normalised frame of the screws.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
+    /// The group, with lengths over the characteristic length.
     pub class: SubspaceClass,
     /// Orthonormal basis of the group's Lie algebra.
     pub basis: Basis,
-    /// Largest distance of one of the screws from the algebra.
+    /// The largest distance of one of the screws from the algebra.
     pub deviation: f64,
 }
 
@@ -277,7 +295,7 @@ enum RotationAxes {
 /// The rank and the directions of rotation leave only one candidate class. Its geometry is fitted
 /// to the given screws by least squares. The span is closed exactly if every screw then lies in the
 /// group's algebra. (Brackets of a computed basis would decide the same for exact screws. For
-/// rounded screws they amplify the rounding by the inverse of the smallest angle between the
+/// rounded screws they would amplify the rounding by the inverse of the smallest angle between the
 /// screws.)
 pub(crate) fn fit(screws: &[Vector6<f64>]) -> Option<Fit> {
     let angular: Vec<Vector3<f64>> = screws.iter().map(|s| s.fixed_rows::<3>(0).into()).collect();
@@ -316,6 +334,8 @@ pub(crate) fn fit(screws: &[Vector6<f64>]) -> Option<Fit> {
     (deviation <= TOLERANCE).then_some(Fit { class, basis, deviation })
 }
 
+/// Whether unit normalised screws with these angular parts are translations, or rotate about axes of one
+/// or of several directions.
 fn rotation_axes(angular: &[Vector3<f64>]) -> RotationAxes {
     if angular.iter().all(|w| w.norm() <= TOLERANCE) {
         return RotationAxes::None;
@@ -328,14 +348,14 @@ fn rotation_axes(angular: &[Vector3<f64>]) -> RotationAxes {
     }
 }
 
-/// A principal direction of a set of vectors: 0 is the direction of largest extent, 2 of smallest.
+/// A principal direction of a set of vectors, by its number: 0 is the direction of the largest extent, 2
+/// that of the smallest.
 fn principal(vectors: &[Vector3<f64>], which: usize) -> Unit<Vector3<f64>> {
     let svd = Svd::new(DMatrix::from_fn(vectors.len(), 3, |i, j| vectors[i][j]));
     Unit::new_normalize(svd.right.fixed_view::<3, 1>(0, which).into_owned())
 }
 
-/// The point `p`, nearest to the origin, on the common axis of parallel rotations `(ω; p × ω + h
-/// ω)`.
+/// The point `p`, nearest to the origin, on the common axis of parallel rotations `(ω; p × ω + h ω)`.
 fn line_point(angular: &[Vector3<f64>], linear: &[Vector3<f64>]) -> Point3<f64> {
     let weight: f64 = angular.iter().map(Vector3::norm_squared).sum();
     let moment: Vector3<f64> = angular.iter().zip(linear).map(|(w, v)| w.cross(v)).sum();
@@ -353,7 +373,7 @@ fn pitch(angular: &[Vector3<f64>], linear: &[Vector3<f64>], axis: Unit<Vector3<f
     if pitch.abs() <= TOLERANCE { 0.0 } else { pitch }
 }
 
-/// The common point `p` of rotations `(ω; p × ω)`.
+/// The common point `p` of rotations `(ω; p × ω)`, by least squares; `None` if their axes are parallel.
 fn centre(angular: &[Vector3<f64>], linear: &[Vector3<f64>]) -> Option<Point3<f64>> {
     let normal: Matrix3<f64> =
         angular.iter().map(|w| Matrix3::identity() * w.norm_squared() - w * w.transpose()).sum();

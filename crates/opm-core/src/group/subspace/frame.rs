@@ -1,15 +1,16 @@
-//! The frame in which ranks are decided: its origin is the mechanism's middle, its unit of length
-//! the mechanism's size.
+//! The frame in which ranks are decided: its origin is in the middle of the mechanism, and its unit of
+//! length is the mechanism's size.
 
 use super::TOLERANCE;
 use crate::group::screw::Screw;
 use nalgebra::{Matrix3, Point3, Vector3, Vector6};
 
-/// An eigenvalue below this share of the largest does not determine the middle in its direction
-/// (the axes are nearly parallel). The given points decide there.
+/// An eigenvalue below this share of the largest does not determine the origin along its eigenvector,
+/// because the axes are nearly parallel. The mean of the given points is used in that direction.
 const DETERMINED: f64 = 1e-2;
 
-/// A length below this share of the coordinates may be only their rounding: six digits, at worst.
+/// A length below this share of the coordinates may be nothing but their rounding, if they are written
+/// with six digits.
 const ROUNDING: f64 = 5e-6;
 
 /// A frame for normalised screws: its origin is in the middle of a set of axes, its unit of length is
@@ -45,11 +46,11 @@ impl Frame {
         }
         let count = lines.len() as f64;
         let mean = lines.iter().map(|(_, p, _)| p).sum::<Vector3<f64>>() / count;
-        let across = |axis: &Vector3<f64>, d: Vector3<f64>| d - axis * axis.dot(&d);
+        let perpendicular = |axis: &Vector3<f64>, d: Vector3<f64>| d - axis * axis.dot(&d);
 
         let normal: Matrix3<f64> =
             lines.iter().map(|(a, ..)| Matrix3::identity() - a * a.transpose()).sum();
-        let offset: Vector3<f64> = lines.iter().map(|(a, p, _)| across(a, p - mean)).sum();
+        let offset: Vector3<f64> = lines.iter().map(|(a, p, _)| perpendicular(a, p - mean)).sum();
         let eigen = normal.symmetric_eigen();
         let cutoff = DETERMINED * eigen.eigenvalues.max();
         let step: Vector3<f64> = (0..3)
@@ -61,13 +62,14 @@ impl Frame {
             .sum();
         let origin = mean + step;
 
-        let size = |squares: f64| (squares / count).sqrt();
-        let spread = size(lines.iter().map(|(_, p, _)| (p - mean).norm_squared()).sum());
-        let arms =
-            size(lines.iter().map(|(a, p, h)| across(a, p - origin).norm_squared() + h * h).sum());
+        let root_mean = |squares: f64| (squares / count).sqrt();
+        let spread = root_mean(lines.iter().map(|(_, p, _)| (p - mean).norm_squared()).sum());
+        let distance = root_mean(
+            lines.iter().map(|(a, p, h)| perpendicular(a, p - origin).norm_squared() + h * h).sum(),
+        );
         let farthest = lines.iter().map(|(_, p, _)| p.amax()).fold(0.0, f64::max);
         let least = (TOLERANCE * spread).max(ROUNDING * farthest);
-        let length = [arms, spread].into_iter().find(|&l| l > least).unwrap_or(1.0);
+        let length = [distance, spread].into_iter().find(|&l| l > least).unwrap_or(1.0);
         Self { origin: origin.into(), length }
     }
 

@@ -61,7 +61,7 @@ fn mixed(screws: &[Screw], weights: &[f64]) -> Vec<Screw> {
 
 type Geometry = (Option<Unit<Vector3<f64>>>, Option<Point3<f64>>, f64);
 
-/// Axis or normal, point and pitch of a class, as far as it has them.
+/// The axis or normal, the point and the pitch of a class, if it has them.
 fn geometry(class: &SubspaceClass) -> Geometry {
     use SubspaceClass::*;
     match *class {

@@ -173,32 +173,32 @@ pub fn shift(
         }};
     }
     match (motion, tau.are_directions) {
-        (IntersectionMotion::Planar(PlanarMotion::Turn), true) => {
-            each!(Planar, PlanarMotion::Turn, direction);
+        (IntersectionMotion::Planar(PlanarMotion::Rotation), true) => {
+            each!(Planar, PlanarMotion::Rotation, direction);
         }
-        (IntersectionMotion::Planar(PlanarMotion::Turn), false) => {
-            each!(Planar, PlanarMotion::Turn, value);
+        (IntersectionMotion::Planar(PlanarMotion::Rotation), false) => {
+            each!(Planar, PlanarMotion::Rotation, value);
         }
-        (IntersectionMotion::Planar(PlanarMotion::Slide(along)), _) => {
-            each!(Planar, PlanarMotion::Slide(along), value);
+        (IntersectionMotion::Planar(PlanarMotion::Translation(along)), _) => {
+            each!(Planar, PlanarMotion::Translation(along), value);
         }
-        (IntersectionMotion::Spherical(SphericalMotion::Turn), true) => {
-            each!(Spherical, SphericalMotion::Turn, direction);
+        (IntersectionMotion::Spherical(SphericalMotion::Rotation), true) => {
+            each!(Spherical, SphericalMotion::Rotation, direction);
         }
-        (IntersectionMotion::Spherical(SphericalMotion::Turn), false) => {
-            each!(Spherical, SphericalMotion::Turn, value);
+        (IntersectionMotion::Spherical(SphericalMotion::Rotation), false) => {
+            each!(Spherical, SphericalMotion::Rotation, value);
         }
-        (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), true) => {
-            each!(Cylindrical, CylindricalMotion::Turn, direction);
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Rotation), true) => {
+            each!(Cylindrical, CylindricalMotion::Rotation, direction);
         }
-        (IntersectionMotion::Cylindrical(CylindricalMotion::Turn), false) => {
-            each!(Cylindrical, CylindricalMotion::Turn, value);
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Rotation), false) => {
+            each!(Cylindrical, CylindricalMotion::Rotation, value);
         }
-        (IntersectionMotion::Cylindrical(CylindricalMotion::Advance), _) => {
-            each!(Cylindrical, CylindricalMotion::Advance, value);
+        (IntersectionMotion::Cylindrical(CylindricalMotion::Translation), _) => {
+            each!(Cylindrical, CylindricalMotion::Translation, value);
         }
-        (IntersectionMotion::Translational(TranslationalMotion::Slide(along)), _) => {
-            each!(TranslationalPlane, TranslationalMotion::Slide(along), value);
+        (IntersectionMotion::Translational(TranslationalMotion::Translation(along)), _) => {
+            each!(TranslationalPlane, TranslationalMotion::Translation(along), value);
         }
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::chain::Branch;
 
 mod fuzz;
 mod problems;
