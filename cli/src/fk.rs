@@ -59,7 +59,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
                             }
                         }))
                     }
-                    error => Failure::Work(format!("{}: {error}", loaded.label)),
+                    error => Failure::because(format!("{}: {error}", loaded.label), error),
                 })?;
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
         }

@@ -104,7 +104,7 @@ fn a_mechanism_that_cannot_be_had() {
     let empty = folder.write("empty.toml", "");
     opm(&["ik", &empty, "--pose", ""]).fails(1, &["empty.toml:1:1: `format`"]);
     opm(&["workspace", "bennett-double-spherical-6r"])
-        .fails_with_one_line(1, &["bennett-double-spherical-6r:21:1: leg leg1", "closed-form"]);
+        .fails_with_one_line(1, &["bennett-double-spherical-6r:22:1: leg leg1", "closed-form"]);
     opm(&["examples", "none"]).fails_with_one_line(2, &["\"none\"", PLANO]);
 }
 
@@ -207,7 +207,7 @@ fn legs_that_cannot_be_solved_are_named() {
     let extra = planar.replace("phi21", "extra").replace("point = [", "point = [1");
     let loose = shipped.replacen(&*planar, &format!("{planar}\n{extra}"), 1);
     let file = folder.write("loose.toml", loose);
-    opm(&["ik", &file, "--pose", ""]).fails_with_one_line(1, &["5 of mobility N = 6", "free: rot"]);
+    opm(&["ik", &file, "--pose", ""]).fails_with_one_line(1, &["5 of the 6 freedoms", "free: rot"]);
     let run = opm(&["ik", HELICAL, "--pose", "", "--mode", "+"]);
     run.fails_with_one_line(
         2,
