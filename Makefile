@@ -21,11 +21,14 @@ test: python lint test-rust test-python ## Check everything: format, lints, docu
 lint: ## Check format, lints and documentation, warnings being errors
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets -- -D warnings
+	$(CARGO) clippy -p opm-core --no-default-features -- -D warnings
+	$(CARGO) clippy -p opm-core --features serde --test serde -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps
 
 # A fixed seed, so that a check passes or fails for what was changed; plain cargo test draws anew.
 test-rust: ## Run the Rust tests, build the examples
 	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
+	$(CARGO) test -p opm-core --features serde --test serde
 
 # The module as the Rust tests are built: optimised, without the minutes that linking for release takes. A run for each
 # folder: pytest cannot collect two files of one name together.

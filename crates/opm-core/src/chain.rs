@@ -85,6 +85,7 @@ impl Branch {
 
 /// How far a target is out of a chain's reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ReachDeficit {
     /// The distance or angle by which the target is out of reach, metres or radians. It is positive and
     /// not NaN; it is infinite where it is unknown.

@@ -63,6 +63,7 @@ pub const RESIDUAL: f64 = 1e-12;
 /// One assembly of the mechanism for given actuated joints. See the example in the docs of
 /// [`forward`](crate::forward).
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Assembly {
     /// The task coordinates, in the order of [`Manipulator::task_coordinates`], metres and radians. Angles
     /// are within π of home.
@@ -86,6 +87,7 @@ pub struct Assembly {
 /// The assemblies for given actuated joints, or why there are none. See the example in the docs of
 /// [`forward`](crate::forward).
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Assemblies {
     /// All assemblies.
     pub list: Vec<Assembly>,
@@ -98,6 +100,7 @@ pub struct Assemblies {
 
 /// Why the mechanism cannot be assembled.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Unmet {
     /// A leg cannot reach what the others have fixed. The value has its smallest deficit.
     Leg(Unreachable),

@@ -20,6 +20,7 @@ use nalgebra::Point3;
 
 /// A parallel mechanism at an assembled home pose, in base coordinates: metres and radians.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Mechanism {
     /// The mechanism's name.
     pub name: String,

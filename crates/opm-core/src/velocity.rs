@@ -109,6 +109,7 @@ pub enum VelocityError {
 
 /// A leg with joints that have no rates; [`Manipulator::rateless`] lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SingularLeg {
     /// The number of the leg, counted from zero.
     pub leg: usize,
@@ -120,6 +121,7 @@ pub struct SingularLeg {
 
 /// Why joints have no rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum SingularCause {
     /// The screws of the section's joints are dependent: a serial singularity. The platform cannot move in
     /// every direction, and for the other directions the joints would have to be infinitely fast.
@@ -155,6 +157,7 @@ pub enum SingularCause {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct JointMotion {
     /// The rate of every joint coordinate, in the order of [`Manipulator::coordinates`]; rad/s and m/s.
     pub joint_rates: Vec<f64>,

@@ -22,6 +22,7 @@ use nalgebra::{Isometry3, Point3, Quaternion, Unit, UnitQuaternion, Vector3, Vec
 /// assert_eq!(hinge.reciprocal(&meets), 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Screw {
     /// The angular part `ω`.
     pub angular: Vector3<f64>,

@@ -48,6 +48,7 @@ pub enum PoseError {
 
 /// A leg that does not reach a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Unreachable {
     /// The number of the leg.
     pub leg: usize,
@@ -122,6 +123,20 @@ impl Solution {
     }
 }
 
+/// Its joints, imaginary joints, whether it is within limits, and the legs that are out of reach.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Solution {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let mut fields = serializer.serialize_struct("Solution", 4)?;
+        fields.serialize_field("joints", &self.joints)?;
+        fields.serialize_field("imaginary", &self.imaginary)?;
+        fields.serialize_field("within_limits", &self.within_limits)?;
+        fields.serialize_field("unreachable", &self.unreachable)?;
+        fields.end()
+    }
+}
+
 impl Clone for Solution {
     fn clone(&self) -> Self {
         Self {
@@ -151,6 +166,7 @@ impl Clone for Solution {
 /// The actuated and the imaginary joints in one working mode at one pose.
 /// [`Manipulator::actuated_joints`] makes a buffer of this type.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ActuatedJoints {
     actuated: Vec<f64>,
     imaginary: Vec<f64>,

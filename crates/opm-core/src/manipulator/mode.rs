@@ -5,6 +5,7 @@ use crate::chain::Branch;
 
 /// One sign for every two-valued choice of a manipulator, a set bit for a minus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Mode(pub(super) u64);
 
 /// A text that is not a working mode of the manipulator.

@@ -9,6 +9,7 @@ use std::fmt;
 /// What is not given follows from the geometry, by the rules in the docs of [`task`](crate::task).
 /// These docs also list what each subspace leaves free.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TaskHints {
     /// The intersection motion's positive direction is the one on the side of this vector.
     pub axis: Option<Vector3<f64>>,
@@ -23,6 +24,7 @@ pub struct TaskHints {
 
 /// Hints for the frame of one section, in base coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameHints {
     /// Direction of the coordinate `x`; in a spherical subspace, direction of the frame's first axis.
     pub x: Option<Vector3<f64>>,

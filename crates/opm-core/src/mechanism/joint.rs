@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// The kind of a joint: which relative motions of its two links it allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum JointKind {
     /// Rotation about the axis.
     Revolute,
@@ -30,6 +31,7 @@ pub enum JointKind {
 
 /// One scalar coordinate of a joint: its name, its home value and its limits.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct JointCoordinate {
     /// The joint's name, with a suffix if the joint has several coordinates (`s1.x`).
     pub name: String,
@@ -57,6 +59,7 @@ impl JointCoordinate {
 
 /// A joint at the assembled home pose, in base coordinates.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Joint {
     /// The joint's name, unique in its mechanism.
     pub name: String,

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// Name, origin and sign of a leg's imaginary joint, where the mechanism has a convention for them.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ImaginaryLabel {
     /// The joint's name, such as `theta11`.
     pub name: String,
@@ -18,6 +19,7 @@ pub struct ImaginaryLabel {
 
 /// A leg: joints in series from the base to the platform, at the assembled home pose.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Leg {
     /// The leg's name, unique in its mechanism.
     pub name: String,
@@ -70,6 +72,7 @@ impl Leg {
 
 /// One of the two sections into which a leg is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Section {
     /// The section on the base side, which moves in the group `A`.
     Lower,

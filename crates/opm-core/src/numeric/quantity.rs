@@ -2,6 +2,7 @@
 
 /// Whether a coordinate is an angle or a length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Quantity {
     /// An angle, in radians.
     Angle,
