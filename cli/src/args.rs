@@ -114,17 +114,17 @@ pub struct DecomposeArgs {
 
 /// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
 ///
-/// A task coordinate that is not given has its home value; `opm decompose` lists them. Out of reach
-/// is an answer (exit status 0): it names the legs and by how much.
+/// A task coordinate that is not given has its home value; `opm decompose` lists the coordinates. A pose
+/// out of reach is an answer (exit status 0): it names the legs that do not reach, and by how much.
 ///
-/// --transform takes the platform's place in SE(3) instead: the position of its reference point, and
-/// the quaternion of its orientation, both in base coordinates; at home it is not turned, or as home's
-/// Euler angles say. One outside the manipulator's motion is told by how much and in which
-/// direction (exit status 0). JSON has the place of every pose as `transform`.
+/// --transform takes the platform's pose in SE(3) instead: the position of its reference point and the
+/// quaternion of its orientation, both in base coordinates. The orientation at home is the identity, or
+/// that of the Euler angles at home. If the manipulator cannot move the platform there at all, the answer
+/// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
 ///
-/// CSV in: a header of task coordinates in any order, then one pose a row, in metres and radians. CSV
-/// out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
-/// the actuated joints. A pose out of reach keeps its row, its joint cells empty.
+/// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians.
+/// CSV out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
+/// the actuated joints. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -168,14 +168,15 @@ pub struct IkArgs {
 
 /// Velocities: the rates of every joint for rates of the task coordinates, at a pose
 ///
-/// Also the Jacobian of the actuated joints, and how near the pose is to a singularity of each section:
-/// signed measures that are zero at one, with the legs that come nearest. Serial: a leg is stretched,
-/// folded or flat, and its joints have no rates there (null). Parallel: the platform is loose with the
-/// inputs locked; null where the inputs are too few to hold the section at all.
+/// Also prints the Jacobian of the actuated joints, and how near the pose is to a singularity of each
+/// section: signed measures that are zero at a singularity, with the legs that come nearest to it. Serial:
+/// a leg is stretched, folded or flat, and its joints have no rates there (null). Parallel: the platform
+/// can move although the inputs are locked; null if there are too few inputs to hold the section at all.
 ///
-/// The condition number is that of the actuated joints by the platform's twist, lengths over --length;
-/// null is infinite: a singularity, or fewer actuators than freedoms. Singular Euler angles are none of
-/// it: `coordinates` is zero there. Out of reach is an answer (exit status 0).
+/// The condition number relates the actuated joints to the platform's twist, with lengths divided by
+/// --length. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
+/// Singularities of the Euler angles (xi = 0) are not counted; `coordinates` is 0 there. A pose out of
+/// reach is an answer (exit status 0).
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -202,14 +203,14 @@ pub struct VelocityArgs {
 
 /// Forward kinematics: every pose that given actuated joints allow
 ///
-/// In closed form where the mechanism's sections can be solved one after the other: then all assemblies
-/// are found, each with the working mode that it is in and how well its legs close (`residual`, radians
-/// and shares of the mechanism's size). Otherwise, or with --near, by Newton's method from a pose, which
-/// finds one assembly, in the working mode of --mode or home.
+/// If the mechanism's sections can be solved one after the other, the closed form finds all assemblies,
+/// each with its working mode and with how well its legs close (`residual`, radians and shares of the
+/// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
+/// in the working mode of --mode or home.
 ///
 /// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
-/// modulo a turn, unless a screw follows them: every turn is then an assembly of its own, an advance of
-/// the screw away, and `opm ik` does not tell which. The turns given in --joints decide.
+/// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
+/// own, one advance of the screw away. `opm ik` does not tell which; the angles given in --joints decide.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -232,17 +233,17 @@ pub struct FkArgs {
     pub mode: Option<String>,
 }
 
-/// Positions of a linkage: every joint for a value of its input, or for one turn of it
+/// Positions of a linkage: every joint for one value of its input, or for a revolution of it
 ///
-/// For single loops that decompose into two spherical four-bars which share an imaginary joint
-/// (Bennett's double spherical 6R). Any joint can be the input; without --input it is the actuated
-/// one, at home. Every branch is given, named by its signs, and the range of the input. An input out
+/// The linkage is a single loop that decomposes into two spherical four-bars which share an imaginary
+/// joint (Bennett's double spherical 6R). Any joint can be the input; without --input it is the actuated
+/// one, at home. The answer has every branch, named by its signs, and the range of the input. An input out
 /// of its range is an answer (exit status 0).
 ///
-/// --sweep follows the branch of home once round: one turn of an input that can make it; else to the
-/// end of its range, back in the branch that meets there, and so on until the linkage is home. CSV:
-/// all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in radians. MCAP: `/joints` and
-/// `/imaginary_joints`, ten seconds a round.
+/// --sweep follows the branch of home for one round. An input that can make a revolution makes one.
+/// Otherwise it goes to the end of its range, back in the branch that meets the first one there, and so on
+/// until the linkage is home. CSV: all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in
+/// radians. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -280,21 +281,21 @@ pub struct LinkageArgs {
     pub output: Option<PathBuf>,
 }
 
-/// LegBranch a motion of the platform: every joint, its speed and acceleration, as a recording that plays
+/// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
 ///
 /// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
 /// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task
 /// coordinates, in seconds, metres and radians), or the name of a shipped motion. The working mode
-/// stays the same, and angles go on across half a turn.
+/// stays the same, and angles are continuous.
 ///
-/// What the mechanism cannot follow is told with its time, its leg or joint and by how much: out of
-/// reach, past a joint's limit, passive ones too, through a singularity. It is found between the
-/// samples as well, wherever a distance falls and rises but once from one sample to the next. The rest
-/// is recorded whole; with --strict the exit status is then 1.
+/// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
+/// reach, past the limit of a joint (passive joints too), through a singularity. Violations between two
+/// samples are found too, unless one comes and goes more than once there. The rest of the motion is
+/// recorded; with --strict the exit status is then 1.
 ///
-/// The recording has joints, speeds, accelerations, imaginary joints, pose and condition number to be
-/// plotted, and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of
-/// /bodies in Rerun.
+/// The recording has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
+/// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
+/// Rerun.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -330,17 +331,17 @@ pub struct TrajectoryArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
-/// --kind asks for another set than that of poses. A place is a value for each coordinate of the lower
-/// section (x and y, say), an orientation one for each of the upper section. `reachable` and
-/// `dexterous` have the share of the orientations that reach a place stored with it, as `share`. The
-/// lower section alone has the imaginary joints for coordinates, too, by their names, at home where
-/// --grid does not say otherwise; what it has in common with `upper` is the whole workspace.
+/// --kind asks for another set than that of poses. A place is one value for each coordinate of the lower
+/// section (for example x and y), an orientation one value for each coordinate of the upper section.
+/// `reachable` and `dexterous` store with each place the share of the orientations that reach it, as
+/// `share`. The lower section alone has the imaginary joints as coordinates too, by their names; they stay
+/// at home unless --grid says otherwise. The whole workspace is where `lower` and `upper` agree on the
+/// imaginary joints.
 ///
-/// All kinds but `grid`, and that with --shape, tell the connected components of the set, and the
-/// boundary of one that varies in two coordinates, or in slices of a third: closed lines, whose inside
-/// is to the left, in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
-/// `imaginary` has neither boundary nor measure: values of joints are on no grid, and where orientations
-/// fold over them, the image of their boundary is not that of the image.
+/// Boundary and connected components are given for every kind; for `grid`, add --shape. A boundary needs a
+/// set that varies in two coordinates, or in slices of a third. It consists of closed lines with the inside
+/// on their left: in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
+/// `imaginary` has neither boundary nor measure, since values of joints lie on no grid.
 ///
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.

@@ -133,7 +133,7 @@ pub struct Violation {
     message: String,
 }
 
-/// LegBranch a motion of the platform.
+/// Follow a motion of the platform.
 ///
 /// Parameters
 /// ----------

@@ -333,7 +333,7 @@ fn only_a_slice_at_home_has_a_cross() {
     }
 }
 
-/// CoordinateRange large ranges of angles no place is dexterous: the flags of the hint ask for what is.
+/// Over large ranges of angles no place is dexterous: the flags of the hint ask for what is.
 #[test]
 fn an_empty_dexterous_workspace_says_how_to_ask_for_fewer_orientations() {
     let places = ["--grid=x=-0.1:0.1:11", "--grid=y=-0.1:0.1:11"];
