@@ -24,14 +24,14 @@ const LEAST_BOXES: u64 = 1 << 12;
 const SECTIONS: [(Sections, &str); 3] =
     [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
-/// How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+/// The measure of the part of a box that is in reach and within all limits, with guaranteed bounds.
 ///
-/// In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
-/// orientations is Haar's.
+/// Its unit is the product of those of the coordinates with a range; a tilt is weighted with its sine, so that the measure
+/// of orientations is the Haar measure.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Measure {
     found: Measured,
-    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
+    /// Unit of the measure: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     units: String,
     /// Lowest and highest value of every coordinate.
     over: Vec<(String, f64, f64)>,
@@ -61,8 +61,8 @@ enum Range {
 /// ----------
 /// manipulator : Manipulator
 /// over : mapping, optional
-///     Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
-///     workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+///     For each coordinate ``(min, max)`` or one value; metres and radians. A coordinate that is not given stays at home. If
+///     none is given, ranges are fitted to the workspace; for the upper section alone, every orientation is measured.
 /// section : str
 ///     ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
 /// mode : str
@@ -70,21 +70,21 @@ enum Range {
 /// tolerance : float, optional
 ///     How far the true measure may be from the value, as a share of it: 0.01 if not given.
 /// budget : int, optional
-///     Boxes to look at, at most: 2**22 if not given.
+///     Largest number of boxes to examine: 2**22 if not given.
 /// threads : int, optional
-///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+///     1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
 /// executor : concurrent.futures.Executor or callable, optional
-///     Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
-///     more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
-///     executor that a function makes serves all rounds.
+///     Where the boxes are examined, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+///     more than 4096 boxes; smaller rounds are computed in this process, which also fits the ranges. An executor that a
+///     function makes serves all rounds.
 /// shards : int, optional
-///     How many parts of a round the executor gets: as for :func:`sweep`, but of at least 4096 boxes each but for the last.
+///     How many parts of a round the executor gets: as for :func:`sweep`, but each except the last has at least 4096 boxes.
 ///
 /// Raises
 /// ------
 /// OpmError
-///     A coordinate that is none, ends that are not numbers in order, an unknown section or mode; parts that were lost again
-///     and again.
+///     A coordinate is unknown; its ends are not numbers in order; the section or mode is unknown; or parts were lost
+///     repeatedly.
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, over = None, section = "whole", mode = "home", tolerance = None, budget = None,
@@ -290,13 +290,13 @@ impl Measure {
         self.found.value()
     }
 
-    /// The measure is not less.
+    /// Lower bound of the measure.
     #[getter]
     fn lower(&self) -> f64 {
         self.found.lower
     }
 
-    /// The measure is not more.
+    /// Upper bound of the measure.
     #[getter]
     fn upper(&self) -> f64 {
         self.found.upper
@@ -314,19 +314,19 @@ impl Measure {
         self.found.fraction()
     }
 
-    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
+    /// Unit of the measure: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     #[getter]
     fn units(&self) -> &str {
         &self.units
     }
 
-    /// Boxes that were looked at.
+    /// Number of boxes that were examined.
     #[getter]
     fn boxes(&self) -> u64 {
         self.found.boxes
     }
 
-    /// Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+    /// Why the computation stopped: ``"tolerance"`` is met, ``"budget"`` is used up, or ``"exhausted"`` where splitting brings
     /// the bounds no closer.
     #[getter]
     fn stop(&self) -> &'static str {
@@ -334,7 +334,7 @@ impl Measure {
         word.map_or("", |(_, word)| word)
     }
 
-    /// Of every coordinate lowest and highest value, or the one that it is held at, as :func:`measure` takes them.
+    /// Lowest and highest value of every coordinate, or the value at which it is held, as :func:`measure` takes them.
     #[getter]
     fn over<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

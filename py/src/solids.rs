@@ -18,9 +18,9 @@ pub struct Solid {
     shape: String,
     /// ``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``.
     material: String,
-    /// (2, 3): the ends of its axis, metres; of a ball both are its middle.
+    /// (2, 3): the ends of its axis, metres; for a ball both are its centre.
     ends: Py<PyArray2<f64>>,
-    /// Diameter, or side of the square of a block; metres.
+    /// Diameter, or side of the square section of a block, metres.
     width: f64,
 }
 

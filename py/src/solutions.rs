@@ -21,29 +21,29 @@ const PART: usize = 4096;
 
 /// Joint values of ``n`` poses, NaN where a pose is out of reach.
 ///
-/// Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
-/// entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
+/// For one working mode the arrays have the shapes below. For all modes they have one more axis after the first, with one
+/// entry for each mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solutions {
     /// (n, k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
     /// (n, j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// (n,): in reach, limits apart.
+    /// (n,): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
-    /// (n,): in reach, and all joints within their limits.
+    /// (n,): whether the pose is in reach and all joints are within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
-    /// Of the last axis of `joints`.
+    /// Names along the last axis of `joints`.
     joint_names: Vec<String>,
-    /// Of the last axis of `imaginary`.
+    /// Names along the last axis of `imaginary`.
     imaginary_names: Vec<String>,
     /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
     units: BTreeMap<String, String>,
     /// The working mode, or ``"all"``.
     mode: String,
-    /// The working modes: of the mode axis, if there is one.
+    /// The working modes, in the order of the mode axis if there is one.
     modes: Vec<String>,
-    /// n.
+    /// Number of rows, n.
     rows: usize,
 }
 

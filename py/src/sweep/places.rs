@@ -19,7 +19,7 @@ impl Sweep {
     /// Raises
     /// ------
     /// OpmError
-    ///     Of another kind than ``"reachable"`` and ``"dexterous"``.
+    ///     The kind is neither ``"reachable"`` nor ``"dexterous"``.
     ///
     /// Parameters
     /// ----------

@@ -15,10 +15,10 @@ use std::num::NonZeroU64;
 
 #[pymethods]
 impl Sweep {
-    /// Which points are in: an axis a coordinate of :attr:`axes`, as many values as the grid has.
+    /// Which points are in the workspace: one axis for each coordinate of :attr:`axes`, with one entry for each value.
     ///
-    /// `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
-    /// already, and nobody is asked again.
+    /// `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are
+    /// already known and are not computed again.
     ///
     /// Parameters
     /// ----------
