@@ -1,4 +1,4 @@
-//! How a mechanism falls into two sections.
+//! The decomposition of a mechanism into two sections.
 
 use crate::html::{self, digits};
 use crate::pickle::pickled;

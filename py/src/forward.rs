@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rows that are done before threads would have begun.
+/// So many rows are computed before threads would have started.
 const FEW: usize = 16;
 
 /// One way in which a mechanism can be assembled for given actuated joints.
@@ -148,8 +148,8 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// The assemblies with these joints, number `row` of those that are asked for. Where Newton's method
-    /// ends nowhere there is none.
+    /// The assemblies with these joints, which are row `row` of the input. There is none if Newton's method
+    /// does not converge.
     fn assemblies(
         &self,
         joints: &[f64],

@@ -88,7 +88,7 @@ impl Linkage {
         Ok(Self { inner, text, label })
     }
 
-    /// Linkages are the same if their files are, whatever these are called.
+    /// Linkages are equal if the texts of their files are equal, whatever the names of the files.
     fn __eq__(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -246,7 +246,7 @@ impl Linkage {
 }
 
 impl Linkage {
-    /// Moved by the joint of this name, or by the actuated one.
+    /// The input joint of this name, or the actuated joint.
     fn input(&self, name: Option<&str>) -> PyResult<Input<'_>> {
         let actuated = || {
             let joint = self.inner.mechanism().joints().find(|joint| joint.actuated);

@@ -146,7 +146,8 @@ impl Manipulator {
     /// The geometric parameters of its family by name; empty for a list of joints.
     ///
     /// ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-    /// of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None without limits.
+    /// of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``,
+    /// or None if there are none.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -405,7 +406,7 @@ impl Manipulator {
         Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
     }
 
-    /// Every working mode of every pose: a row a mode, all of a pose together.
+    /// Every working mode of every pose: one row for each mode, with the rows of a pose together.
     fn inverse_all(
         &self,
         py: Python<'_>,

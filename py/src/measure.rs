@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyMapping};
 use std::num::{NonZeroU64, NonZeroUsize};
 
-/// Boxes of a part, all but the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
+/// Boxes of each part except the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
 /// to get them and to compile the manipulator. Rounds of no more are answered here.
 const LEAST_BOXES: u64 = 1 << 12;
 

@@ -52,7 +52,8 @@ impl Manipulator {
     /// Returns
     /// -------
     /// (n, 4, 4) ndarray
-    ///     Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a position, metres.
+    ///     Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
+    ///     position, metres.
     #[pyo3(signature = (poses, *, threads = None))]
     fn transform<'py>(
         &self,

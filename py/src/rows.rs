@@ -51,8 +51,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Tables with a row of each for every row of the input, NaN where nothing was written, and two answers
-/// a row.
+/// Tables with one row for every row of the input, NaN where nothing was written, and two flags for
+/// each row.
 pub struct Tables<'py, const N: usize> {
     numbers: Vec<Bound<'py, PyArray2<f64>>>,
     pub answers: [Vec<bool>; 2],

@@ -151,7 +151,7 @@ fn read_legs(given: &Bound<'_, PyAny>) -> PyResult<Vec<Leg>> {
     named.into_iter().map(read).collect()
 }
 
-/// A sequence a leg of an entry a joint.
+/// One sequence for each leg, with one entry for each joint.
 fn per_joint<'py, T: FromPyObjectOwned<'py>>(
     given: &Bound<'py, PyAny>,
     what: &str,

@@ -1,4 +1,4 @@
-//! What there is to draw of a mechanism in a pose.
+//! The solids with which a mechanism is drawn in a pose.
 
 use crate::arguments;
 use crate::error::{failed, wrong};

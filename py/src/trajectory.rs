@@ -92,7 +92,7 @@ pub struct Trajectory {
     source: Source,
 }
 
-/// What was followed: for a recording.
+/// The motion that was followed, for a recording.
 struct Source {
     manipulator: Py<Manipulator>,
     motion: PlatformMotion,
@@ -190,7 +190,7 @@ pub fn trajectory(
 /// A motion, the name of its file, and the text of that.
 type Read = (PlatformMotion, String, String);
 
-/// Waypoints, as the table of poses that they are.
+/// Waypoints as a table of poses.
 fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
     let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
     let poses = Rows::new(&poses)?;
@@ -238,7 +238,7 @@ fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> 
     Ok((motion, name, text))
 }
 
-/// What the text of a file of this name says; messages call it `label`.
+/// The motion in the text of a file of this name; messages call it `label`.
 fn parse(
     manipulator: &Manipulator,
     text: &str,
@@ -252,7 +252,7 @@ fn parse(
     motion.map_err(|errors| wrong(errors.in_file(label)))
 }
 
-/// Columns in the making.
+/// The columns while they are filled.
 #[derive(Default)]
 struct Record {
     times: Vec<f64>,
@@ -276,7 +276,7 @@ impl Record {
             + manipulator.coordinates().len()
             + manipulator.imaginary().len();
         let room = usize::try_from(samples).ok().and_then(|n| n.checked_mul(3 * width));
-        // The room itself is asked for table by table; this says early that there is none.
+        // Memory is allocated table by table; this reports early if there is not enough.
         let whole = room.filter(|&room| Vec::<f64>::new().try_reserve_exact(room).is_ok());
         whole.ok_or_else(|| no_memory(format_args!("{samples} samples")))?;
         while !stop.load(Ordering::Relaxed) && followed.advance().map_err(|e| failed(&e))? {
@@ -395,7 +395,7 @@ pickled!(Violation {
 
 columns!(Trajectory);
 
-/// What of a trajectory is as Python sees it.
+/// The parts of a trajectory in the form that Python sees.
 const ATTRIBUTES: [&str; 21] = [
     "times",
     "poses",

@@ -97,7 +97,7 @@ impl Singularity {
     }
 }
 
-/// How many poses there are, and of how many each answer is yes.
+/// The number of poses, and the number of poses for which each flag is true.
 fn counted<const N: usize>(
     py: Python<'_>,
     answers: [&Py<PyArray1<bool>>; N],
@@ -212,7 +212,7 @@ impl Manipulator {
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let per_pose = |rows: &Rows<'_>, what: &str| {
-            // One row is for all poses.
+            // A single row is used for all poses.
             if rows.count != poses.count && rows.count != 1 {
                 let (given, expected) = (rows.count, poses.count);
                 return Err(wrong(format!("{given} rows of {what}, expected {expected}, or one")));

@@ -9,7 +9,7 @@ __all__ = ["main"]
 
 
 def main() -> int:
-    """Do what the command line asks for; the status to exit with."""
+    """Run the command line and return the exit status."""
     # Python only notes down that Ctrl-C was pressed, until the program returns: here it ends it at once, and
     # where there is something to be put in order first, the program says so itself.
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -73,7 +73,7 @@ class Workers:
             self._made = None
 
     def shards(self) -> int:
-        """How many parts are good for the executor, which is made where it is not yet."""
+        """A suitable number of parts for the executor, which is made if there is none yet."""
         workers = _number_of_workers(self._executor())
         return SHARDS if workers is None else SHARDS_EACH * workers
 
@@ -84,7 +84,7 @@ class Workers:
         parts: Sequence[tuple[Any, ...]],
         fold: Callable[[Any, Any], Any] | None = None,
     ) -> Any:
-        """What the parts give.
+        """The results of the parts.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ def run(
 
 
 class _Results:
-    """What has come of the parts: one by one, or folded."""
+    """The results of the parts: one by one, or folded."""
 
     def __init__(self, fold: Callable[[Any, Any], Any] | None) -> None:
         self._fold, self._folded, self._each = fold, [], {}  # type: ignore[var-annotated]
@@ -167,7 +167,7 @@ class _Results:
 def _round(
     pool: Executor, plan: object, task: str, missing: dict[int, tuple[Any, ...]], results: _Results
 ) -> BaseException | None:
-    """Runs the parts that are missing once, takes those away that have a result, and gives a sign of a lost worker.
+    """Runs the parts that are missing once, removes those that have a result, and returns the evidence of a lost worker.
 
     A broken executor is the sign that it gives first: such a one takes no more work.
     """
@@ -242,7 +242,7 @@ class _Submitted:
 
 
 def _number_of_workers(executor: Executor) -> int | None:
-    """How many parts an executor works on at a time, where it tells.
+    """How many parts an executor works on at a time, if it says so.
 
     The pools of the standard library, of loky and of mpi4py have a fixed number of workers. That of a Dask cluster
     may grow with what it has to do.

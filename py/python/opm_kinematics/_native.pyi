@@ -38,7 +38,7 @@ __all__ = [
 __version__: str
 
 class OpmError(ValueError):
-    """A mechanism, a pose or an option that cannot be computed with."""
+    """A mechanism, a pose or an option with which opm cannot compute."""
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
 
@@ -368,7 +368,8 @@ class Manipulator:
         """The geometric parameters of its family by name; empty for a list of joints.
 
         ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-        of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None without limits.
+        of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``,
+        or None if there are none.
         """
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
@@ -598,7 +599,8 @@ class Manipulator:
         Returns
         -------
         (n, 4, 4) ndarray
-            Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a position, metres.
+            Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
+            position, metres.
         """
     def locate(self, transforms: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
         """The poses at which the platform has the given displacements: the inverse of :meth:`transform`.

@@ -69,7 +69,7 @@ impl Sweep {
         }
     }
 
-    /// Of every pose of one part, in their order, whether it is reachable.
+    /// Whether each pose of one part is reachable, in their order.
     fn _mask<'py>(
         &self,
         py: Python<'py>,
@@ -91,7 +91,7 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// Of every point, whether it is in.
+    /// Whether each point is in the workspace.
     pub fn flat_mask<'py>(
         slf: &Bound<'py, Self>,
         parts: Option<&Parts<'py>>,
@@ -110,7 +110,7 @@ impl Sweep {
         }
     }
 
-    /// Its points.
+    /// The points of the workspace.
     pub fn set<'py>(slf: &Bound<'py, Self>, parts: Option<&Parts<'py>>) -> PyResult<GridSet> {
         let (py, this) = (slf.py(), slf.get());
         let set = match (this.workspace.required_visits(), parts) {
@@ -190,7 +190,7 @@ impl Sweep {
         all.into_pyarray(py).reshape([count, width])
     }
 
-    /// Sweeps again, for the points: what `make` keeps of the hits goes to `take`, in their order.
+    /// Sweeps again to find the points: what `make` keeps of the hits goes to `take`, in their order.
     pub fn visit<T: Default + Send>(
         &self,
         py: Python<'_>,
