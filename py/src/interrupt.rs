@@ -37,7 +37,7 @@ pub fn run<T: Send>(
         pool.in_place_scope(|scope| {
             let (sender, receiver) = channel();
             scope.spawn(move |_| {
-                // Nobody listens any more where a signal has raised.
+                // There is no receiver any more if a signal handler has raised.
                 let _ = sender.send(work());
             });
             loop {
@@ -52,7 +52,7 @@ pub fn run<T: Send>(
                             return Err(raised);
                         }
                     }
-                    // The work has panicked, and so will the scope.
+                    // The work has panicked, so the scope will panic, too.
                     Err(RecvTimeoutError::Disconnected) => return Err(wrong("the work panicked")),
                 }
             }

@@ -225,7 +225,7 @@ impl Manipulator {
         })
     }
 
-    /// Mechanisms are the same if their files are, whatever these are called.
+    /// Mechanisms are equal if the texts of their files are equal, whatever the names of the files.
     fn __eq__(&self, other: &Self) -> bool {
         self == other
     }
@@ -393,14 +393,14 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
 }
 
 impl Manipulator {
-    /// What its file is called, without folders.
+    /// The name of its file, without folders.
     pub fn file_name(&self) -> String {
         let path = Path::new(&self.label);
         let name = path.file_name().map_or_else(|| self.label.clone(), |n| n.display().to_string());
         if path.extension().is_some() { name } else { format!("{name}.toml") }
     }
 
-    /// What a file says, decomposed; `text` is the file.
+    /// The decomposed mechanism of a file; `text` is its text.
     pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
         let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
         Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })

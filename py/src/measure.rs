@@ -37,7 +37,7 @@ pub struct Measure {
     over: Vec<(String, f64, f64)>,
 }
 
-/// Why a search was taken no further.
+/// Why a computation stopped.
 const STOPS: [(Stop, &str); 4] = [
     (Stop::Tolerance, "tolerance"),
     (Stop::Budget, "budget"),
@@ -109,7 +109,7 @@ pub fn measure(
     };
     let given = given.into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
-        // What has no width has no measure, which is never meant.
+        // A range without width has measure zero, which is never meant.
         Ok(Range::Between((min, max))) if min == max => {
             let found = range.repr()?;
             Err(wrong(format!(
@@ -127,7 +127,7 @@ pub fn measure(
     let asked = Asked { of: manipulator, sections: sections(section)?, modes, threads };
     let goal = goal(tolerance, budget)?;
     let parts = Parts::new(executor, shards)?;
-    // What is given is looked at first: a wrong name need not wait for a sweep.
+    // Arguments are checked first: a wrong name need not wait for a sweep.
     asked.domain(&given)?;
     let progress = Progress::default();
     let fit = || {
@@ -147,13 +147,13 @@ fn sections(word: &str) -> PyResult<Sections> {
     known.map(|(sections, _)| *sections).ok_or_else(told)
 }
 
-/// What sections are called.
+/// The names of the sections.
 fn word(sections: Sections) -> &'static str {
     let word = SECTIONS.iter().find(|(known, _)| *known == sections);
     word.map_or("", |(_, word)| word)
 }
 
-/// The goal with what is not given as it is by default.
+/// The goal, with defaults for arguments that are not given.
 pub fn goal(tolerance: Option<f64>, budget: Option<u64>) -> PyResult<Goal> {
     let usual = Goal::default();
     let tolerance = tolerance.unwrap_or(usual.tolerance);
@@ -201,7 +201,7 @@ impl Asked {
     }
 }
 
-/// Measures with the help of workers, who are asked for the boxes of large rounds.
+/// Measures with workers, which examine the boxes of large rounds.
 fn boxes_searched(
     boxes: &Bound<'_, Boxes>,
     goal: Goal,
@@ -354,7 +354,7 @@ impl Measure {
         format!("<Measure {value} {units}, from {low} to {high}: {share} of the box>")
     }
 
-    /// Measures are the same if they are of the same ranges, and found the same bounds after as many boxes.
+    /// Measures are equal if their ranges, bounds and numbers of boxes are equal.
     fn __eq__(&self, other: &Self) -> bool {
         (&self.found, &self.units, &self.over) == (&other.found, &other.units, &other.over)
     }

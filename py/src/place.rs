@@ -178,7 +178,7 @@ impl Manipulator {
     }
 }
 
-/// The displacement that a matrix is, row by row; or what is wrong with it.
+/// The displacement of a matrix that is given row by row, or what is wrong with it.
 fn isometry(matrix: &[f64]) -> Result<Isometry3<f64>, String> {
     let last = &matrix[12..];
     if last != [0.0, 0.0, 0.0, 1.0] {

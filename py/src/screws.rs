@@ -103,7 +103,7 @@ impl Manipulator {
             .map_err(|(leg, joint, error)| {
                 wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
             })?;
-        // By way of a file, so that it is checked as any other, can be saved, and crosses processes.
+        // The mechanism goes through a file, so that it is checked like any other, can be saved, and crosses processes.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
         let file = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?;
         Self::compile(file, text, name.to_owned())
@@ -181,7 +181,7 @@ fn per_joint<'py, T: FromPyObjectOwned<'py>>(
     of_legs.into_iter().zip(legs).map(read).collect()
 }
 
-/// The problems of a written file, at the joints that they are about instead of its lines.
+/// The problems of a generated file, with the joints concerned instead of lines.
 fn told(errors: &FileErrors, text: &str, legs: &[Leg]) -> String {
     let (mut leg, mut joint) = (0, 0);
     let places: Vec<String> = text

@@ -107,7 +107,7 @@ impl Manipulator {
     }
 }
 
-/// Its name, the ends of its axis, and its diameter or width.
+/// The name of a shape, the ends of its axis, and its diameter or width.
 fn shape(solid: &skeleton::Solid, place: &Isometry3<f64>) -> (&'static str, [Point3<f64>; 2], f64) {
     match *solid {
         skeleton::Solid::Cylinder { from, to, radius } => {

@@ -206,7 +206,7 @@ impl Sweep {
         self.workspace.grid().coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
-    /// Sweeps are the same if they are of the same mechanism and were asked for the same, on any number of threads.
+    /// Sweeps are equal if their mechanisms and queries are equal, on any number of threads.
     fn __eq__(&self, other: &Self) -> bool {
         self.of.get() == other.of.get()
             && self.mode == other.mode
@@ -258,7 +258,7 @@ fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
 }
 
 impl Sweep {
-    /// A sweep that is still to be done. Where no axis is given, the grid is fitted to the workspace.
+    /// A sweep that is still to be done. If no axis is given, the grid is fitted to the workspace.
     fn planned(
         py: Python<'_>,
         of: Py<Manipulator>,

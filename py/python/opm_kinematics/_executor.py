@@ -1,4 +1,4 @@
-"""Parts of some work on any executor: submitted as pickled specifications, run again where a worker is lost.
+"""Parts of some work on any executor: submitted as pickled specifications, run again if a worker is lost.
 
 What the work itself gives or raises comes back in an :class:`_Answer`. So whatever else a future gives or raises was made by the
 executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
@@ -47,7 +47,7 @@ class Workers:
     Parameters
     ----------
     executor : concurrent.futures.Executor or callable
-        One; or what makes one.
+        An executor, or a function that makes one.
     """
 
     def __init__(self, executor: Executor | Callable[[], Executor]) -> None:
@@ -93,19 +93,19 @@ class Workers:
         task : str
             Which method of the plan works on a part.
         parts : sequence of tuple
-            Its arguments, a tuple a part.
+            Its arguments, one tuple for each part.
         fold : callable, optional
-            Puts the results of two parts together, in whatever order they come: so that one alone is kept.
+            Combines the results of two parts, in the order in which they come, so that only one is kept.
 
         Returns
         -------
         list or object
-            A result a part, in their order; or the one that they fold to.
+            One result for each part, in their order; or the one result of `fold`.
 
         Raises
         ------
         OpmError
-            A part was lost with its worker again and again, or the executor is broken.
+            A part was lost with its worker repeatedly, or the executor is broken.
         Exception
             What the work itself raised.
         """
@@ -273,7 +273,7 @@ def _work(plan: object, task: str, part: tuple[Any, ...], _submission: int) -> _
 
 
 def _portable(error: Exception) -> Exception:
-    """The error, or one that says the same, where it cannot be pickled: it would look like a lost part."""
+    """The error; or, if it cannot be pickled and would look like a lost part, one with the same message."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -313,14 +313,14 @@ def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipu
 
 
 def _upper_cost(manipulator: Manipulator, orientations: Axes, mode: str) -> float:
-    """Orientations out of reach, then how wide the imaginary joints range."""
+    """The share of orientations out of reach, then the widths of the imaginary joints' ranges."""
     swept = _swept(manipulator, mode, orientations, kind="upper")
     widths = [found[1] - found[0] for found in swept.imaginary_range.values() if found is not None]
     return 1.0 - swept.fraction + (WIDTH * float(np.mean(widths)) if widths else 0.0)
 
 
 def _whole_cost(swept: Sweep, places: Axes) -> float:
-    """Places that are not reached in all that is asked for."""
+    """The share of places that are not reached with all values of the other coordinates."""
     every, some = _everywhere(swept, places)
     return 1.0 - every - SOME * some
 

@@ -122,17 +122,18 @@ def workspace(
     slices : str, optional
         The coordinate that has a panel for each of its values; without it there is one panel.
     values : sequence of float, optional
-        For which of them: the nearest on the grid. If not given, for all up to twelve; of more, twelve that are spread over
-        them, and the title says so.
+        The values to draw: the nearest ones on the grid are taken. If not given, all up to twelve; of more, twelve that are
+        spread over them, and the title says so.
     ax : Axes or sequence of them, optional
-        What to draw on, one a panel; a new figure if not given.
+        The panels to draw on; a new figure if not given.
 
     Returns
     -------
     list of Axes
-        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; of reachable and
-        dexterous places, where more of the orientations are. A new figure has a colour bar for these shares. The boundary is a line, of all kinds but ``"grid"`` and
-        ``"imaginary"``, where the panels show it: two coordinates with several values, or a third one for `slices`.
+        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; for reachable and
+        dexterous places, darker where more of the orientations are. A new figure has a colour bar for these shares. The boundary
+        is a line, for all kinds except ``"grid"`` and ``"imaginary"``, if the panels show it: two coordinates with several
+        values, or a third one for `slices`.
     """
     pyplot = _pyplot()
     from matplotlib.colors import LinearSegmentedColormap

@@ -147,7 +147,7 @@ impl Sweep {
             let area = outline.area();
             let rings = outline.rings.into_iter().map(|ring| -> PyResult<_> {
                 let area = ring.area();
-                // Closed for whoever draws it.
+                // The ring is closed, so that it can be drawn as it is.
                 let corners = ring.points.iter().chain(ring.points.first());
                 let corners: Vec<f64> = corners.flatten().copied().collect();
                 let shape = [corners.len() / 2, 2];

@@ -45,7 +45,7 @@ pub fn shard(number: u64, of: u64) -> PyResult<Shard> {
 
 #[pymethods]
 impl Sweep {
-    /// Pickles the manipulator and the query, not the results over the grid.
+    /// Pickles the manipulator, the query and the counts, not the points of the workspace.
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
