@@ -56,7 +56,7 @@ pub struct Trajectory {
     /// (n, j), m/s² and rad/s².
     #[pyo3(get)]
     imaginary_accelerations: Py<PyArray2<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist.
+    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist.
     #[pyo3(get)]
     condition: Py<PyArray1<f64>>,
     /// (n,): whether the pose is in reach, joint limits not considered.

@@ -45,7 +45,7 @@ pub struct Singularity {
     serial: Py<PyArray1<f64>>,
     /// (n,), no unit: the measure of this kind for the whole mechanism.
     parallel: Py<PyArray1<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity.
+    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist; infinite at a singularity.
     condition: Py<PyArray1<f64>>,
     /// (n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
     /// characteristic length.
@@ -187,7 +187,7 @@ impl Manipulator {
     /// rates : (n, d) or (1, d) array_like
     ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
     /// accelerations : (n, d) or (1, d) array_like, optional
-    ///     Second derivatives, m/s² and rad/s²; none if not given.
+    ///     Second derivatives, m/s² and rad/s²; zero if not given.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// threads : int, optional

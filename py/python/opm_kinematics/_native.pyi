@@ -521,7 +521,7 @@ class Manipulator:
         rates : (n, d) or (1, d) array_like
             First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
         accelerations : (n, d) or (1, d) array_like, optional
-            Second derivatives, m/s² and rad/s²; none if not given.
+            Second derivatives, m/s² and rad/s²; zero if not given.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         threads : int, optional
@@ -737,7 +737,7 @@ class Singularity:
         """(n,), no unit: the measure of this kind for the whole mechanism."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist; infinite at a singularity."""
     @property
     def manipulability(self) -> NDArray[np.float64]:
         """(n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
@@ -1288,7 +1288,7 @@ class Trajectory:
         """(n, j), m/s² and rad/s²."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): whether the pose is in reach, joint limits not considered."""
