@@ -45,7 +45,8 @@ pub struct Singularity {
     serial: Py<PyArray1<f64>>,
     /// (n,), no unit: the measure of this kind for the whole mechanism.
     parallel: Py<PyArray1<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist; infinite at a singularity.
+    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
+    /// infinite at a singularity.
     condition: Py<PyArray1<f64>>,
     /// (n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
     /// characteristic length.

@@ -737,7 +737,8 @@ class Singularity:
         """(n,), no unit: the measure of this kind for the whole mechanism."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist; infinite at a singularity."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
+        infinite at a singularity."""
     @property
     def manipulability(self) -> NDArray[np.float64]:
         """(n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
