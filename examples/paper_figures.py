@@ -22,7 +22,7 @@ from opm_kinematics import plot
 
 SPHERICAL = opm.examples.load("plano-spherical-5dof")
 HELICAL = opm.examples.load("translational-helical-3dof")
-# What the figures' curves come from.
+# The sources of the figures' curves.
 SPHERICAL_MOTION = opm.trajectory(SPHERICAL, "plano-spherical-sinusoids")
 HELICAL_MOTION = opm.trajectory(HELICAL, "translational-helical-sinusoids")
 
@@ -66,14 +66,14 @@ def figure_7() -> Figure:
 
 
 def figure_8() -> Figure:
-    """Its imaginary joints."""
+    """Imaginary joints of the 5-DoF manipulator."""
     figure, row = panels(1)
     plot.joints(SPHERICAL_MOTION, SPHERICAL.imaginary, ax=row)
     return figure
 
 
 def figure_9() -> Figure:
-    """Its actuated joints: (a) sliders, (b) arms."""
+    """Actuated joints of the 5-DoF manipulator: (a) sliders, (b) arms."""
     figure, row = panels(2)
     plot.joints(SPHERICAL_MOTION, actuated(SPHERICAL), ax=row)
     return figure
@@ -122,7 +122,7 @@ def figure_14() -> Figure:
 
 
 def figure_15() -> Figure:
-    """(a) its imaginary joint, (b) its sliders."""
+    """Joints of the 3-DoF manipulator: (a) the imaginary joint, (b) the sliders."""
     figure, row = panels(2)
     plot.joints(HELICAL_MOTION, HELICAL.imaginary, ax=row[0])
     plot.joints(HELICAL_MOTION, actuated(HELICAL), ax=row[1])

@@ -51,7 +51,7 @@ def faces(inside):
 
 
 def extent(axis):
-    """Of the pixels around an axis's values."""
+    """The edges of the pixels around an axis's values."""
     half = (axis[1] - axis[0]) / 2
     return axis[0] - half, axis[-1] + half
 
@@ -94,7 +94,7 @@ def solid(panel, recording, colors, view):
 
 
 def save(figure, name):
-    """As a PNG of 256 colours, a third of the size, whose bytes depend on the picture alone."""
+    """Saves the figure as a PNG of 256 colours: a third of the size, with bytes that depend on the picture alone."""
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[..., :3])
     IMAGES.mkdir(exist_ok=True)

@@ -158,7 +158,7 @@ def degrees(value):
 
 
 def mark(panels, at, values):
-    """Home's place in the one panel that shows its slice."""
+    """Marks home in the one panel that shows its slice."""
     home_mark(panels.flat[int(np.argmin(np.abs(values - at)))])
 
 

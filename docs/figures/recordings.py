@@ -19,7 +19,7 @@ class Recording:
     """A recorded grid over three of the task coordinates, and which of its poses are reachable."""
 
     def __init__(self, mechanism, axes, **grid):
-        """Sweeps `grid`, `name=values` as on the command line, where all but `axes` are fixed."""
+        """Sweeps `grid`, `name=values` as on the command line, where all coordinates except `axes` are fixed."""
         with tempfile.TemporaryDirectory() as directory:
             path = Path(directory) / "workspace.mcap"
             flags = [f"--grid={name}={values}" for name, values in grid.items()]
@@ -32,7 +32,7 @@ class Recording:
         # Radians and metres.
         values = [axis(run[f"grid.{name}"]) for name in axes]
         self.inside = np.zeros([len(v) for v in values[::-1]], bool)
-        """By third, second and first coordinate."""
+        """The mask, indexed by third, second and first coordinate."""
         for _, _, _, cloud in clouds:
             points = positions(cloud).T
             first, second, third = (number(p, v) for p, v in zip(points, values, strict=True))
@@ -54,7 +54,7 @@ def axis(text):
 
 
 def shown(name, values):
-    """In the unit that a figure has it in."""
+    """A value in the unit that a figure uses."""
     return 1000 * values if name in LENGTHS else np.degrees(values)
 
 

@@ -17,7 +17,7 @@ else:
 
 LOWER, UPPER, IMAGINARY = "#31688e", "#c8a000", "#c2185b"
 
-# File, picture, view, and legs whose joints turn about a centre, with the radius (mm) to draw them at.
+# File, picture, view, and legs whose joints rotate about a centre, with the radius (mm) to draw them at.
 DRAWN = (
     ("plano-spherical-5dof-joints", "plano-spherical", (40, -75), {"leg1": 60, "leg2": 60, "leg3": 60}),
     ("bennett-double-spherical-6r", "bennett", (24, -62), {"leg1": 70, "leg2": 70}),
@@ -37,7 +37,7 @@ def draw():
 
 
 class Joint:
-    """Where a joint is drawn: mostly at its point; at a radius where the leg turns about a point."""
+    """Where a joint is drawn: mostly at its point; at a radius if the leg rotates about a point."""
 
     def __init__(self, table, section):
         self.name, self.kind = table["name"], table["type"]
@@ -49,7 +49,7 @@ class Joint:
 
 
 def read(name, radii):
-    """Its legs as lists of joints, the platform's point, and its decomposition."""
+    """The legs of a mechanism as lists of joints, the platform's point, and its decomposition."""
     text = (REPOSITORY / "data" / "mechanisms" / f"{name}.toml").read_text()
     file = tomllib.loads(text)
     found = json.loads(opm("decompose", name, "--format", "json", "--quiet"))
@@ -76,7 +76,7 @@ def spread(joints, found, radius):
 
 
 def link(one, other, steps=24):
-    """From joint to joint: an arc about the point that both axes meet in, or else straight."""
+    """A link from joint to joint: an arc about the point where both axes meet, or a straight line."""
     a, b = one.at - one.point, other.at - other.point
     if not np.allclose(one.point, other.point) or min(np.linalg.norm(a), np.linalg.norm(b)) == 0:
         return np.array([one.at, other.at])
@@ -140,7 +140,7 @@ def symbol(panel, joint, length):
 
 
 def imaginary(panel, found, legs, size):
-    """A dashed line along the shared motion: its axis, or a slide where each leg is cut."""
+    """A dashed line along the shared motion: its axis, or a slide where each leg is split."""
     shared = found["intersection"]
     along = np.array(shared["axis"])
     cuts = [

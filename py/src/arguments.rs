@@ -1,4 +1,4 @@
-//! Arguments from Python. What is wrong with one is told with its name, what was given and what was
+//! Arguments from Python. An error message has the name of the argument, what was given and what was
 //! expected.
 
 use crate::error::wrong;
@@ -15,10 +15,10 @@ use std::path::{Path, PathBuf};
 /// Rows of numbers.
 pub type Array<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 
-/// Characters of a value that a message shows.
+/// The number of characters of a value that a message shows.
 const SHOWN: usize = 60;
 
-/// What was given, for a message.
+/// The given value, as a message shows it.
 pub fn shown(given: &Bound<'_, PyAny>) -> String {
     let text = given.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
     match text.char_indices().nth(SHOWN) {
@@ -39,7 +39,7 @@ fn whole(given: &Bound<'_, PyAny>, what: &str, range: &RangeInclusive<u64>) -> P
     })
 }
 
-/// `threads`: as many as the command line allows.
+/// The argument `threads`, in the range that the command line allows.
 pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
     if given.is_none() {
         return Ok(None);
@@ -48,7 +48,7 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
     Ok(NonZeroUsize::new(number as usize))
 }
 
-/// `shards`.
+/// The argument `shards`.
 pub fn shards(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroU64>> {
     if given.is_none() {
         return Ok(None);
@@ -56,7 +56,7 @@ pub fn shards(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroU64>> {
     Ok(NonZeroU64::new(whole(given, "shards", &(1..=u64::MAX))?))
 }
 
-/// `budget`.
+/// The argument `budget`.
 pub fn budget(given: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
     if given.is_none() {
         return Ok(None);
@@ -64,7 +64,7 @@ pub fn budget(given: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
     whole(given, "budget", &(1..=u64::MAX)).map(Some)
 }
 
-/// `scalars`: names, and not the letters of one.
+/// The argument `scalars`: a sequence of names. A single string is not taken for one.
 pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     if given.is_none() {
         return Ok(None);
@@ -74,7 +74,7 @@ pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     names.map(Some).ok_or_else(told)
 }
 
-/// `axes` of a cloud: three names, or the one of a point.
+/// The argument `axes` of a cloud: three names, or the name of a point.
 pub fn cloud_axes(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     if given.is_none() {
         return Ok(None);
@@ -90,8 +90,8 @@ pub fn path(given: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     given.py().import("os")?.call_method1("fsdecode", (given,))?.extract()
 }
 
-/// The text of a file, or Python's exception for what the system says of it, with its name; `hint` goes
-/// after that where there is no such file.
+/// The text of a file, or Python's exception for the system's error, with the file's name. If there is
+/// no such file, `hint` follows the message.
 pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult<String> {
     let bytes = std::fs::read(path).map_err(|error| {
         let Some(number) = error.raw_os_error() else { return error.into() };
@@ -109,8 +109,8 @@ pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult
     })
 }
 
-/// The text of a mechanism file, and what messages call it. Where there is no such file but a shipped one of this
-/// name, `shipped` is what gives that in Python.
+/// The text of a mechanism file, and its name in messages. If there is no such file but a shipped one of this
+/// name, the message says that `shipped` reads it in Python.
 pub fn mechanism(py: Python<'_>, path: &Path, shipped: &str) -> PyResult<(String, String)> {
     let label = path.display().to_string();
     let hint = match examples::find(&label) {
@@ -120,7 +120,7 @@ pub fn mechanism(py: Python<'_>, path: &Path, shipped: &str) -> PyResult<(String
     Ok((text(py, path, "a mechanism file", &hint)?, label))
 }
 
-/// As an array of numbers, whatever its shape.
+/// The argument as an array of numbers of any shape.
 fn numbers<'py>(
     given: &Bound<'py, PyAny>,
     what: &str,
@@ -142,7 +142,7 @@ fn numbers<'py>(
     }
     let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if kind == 'O' {
-        // Fractions and the like.
+        // Objects such as fractions.
         array = array.call_method1("astype", ("float64",)).map_err(told)?;
     } else if !"biuf".contains(kind) {
         let entries = array.getattr("dtype")?.str()?;
@@ -164,7 +164,7 @@ pub fn rows<'py>(given: &Bound<'py, PyAny>, what: &str, names: &[&str]) -> PyRes
     }
 }
 
-/// Rows of `names`, or one of them for all.
+/// Rows of `names`, or one row for all.
 pub fn one_or_rows<'py>(
     given: &Bound<'py, PyAny>,
     what: &str,
@@ -207,7 +207,7 @@ pub fn row(given: &Bound<'_, PyAny>, what: &str, names: &[&str]) -> PyResult<Vec
     array.call_method0("tolist")?.extract()
 }
 
-/// As many numbers as there are, in a row.
+/// All numbers of a one-dimensional array.
 pub fn list(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
     let expected = || "(n,) numbers".to_owned();
     let array = numbers(given, what, &expected)?;

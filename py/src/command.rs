@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
-/// Do what a command line asks for.
+/// Run a command line of ``opm``.
 ///
 /// Parameters
 /// ----------
@@ -13,7 +13,7 @@ use std::ffi::OsString;
 /// Returns
 /// -------
 /// int
-///     The status to exit with.
+///     The exit status.
 #[pyfunction]
 pub fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| opm_cli::main(arguments))

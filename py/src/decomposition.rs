@@ -1,4 +1,4 @@
-//! How a mechanism falls into two sections.
+//! The decomposition of a mechanism into two sections.
 
 use crate::html::{self, digits};
 use crate::pickle::pickled;
@@ -8,15 +8,15 @@ use opm_core::manipulator as core;
 use opm_core::mechanism::leg::Leg;
 use pyo3::prelude::*;
 
-/// How the legs of a mechanism were cut in two: what ``opm decompose`` says.
+/// How the legs of a mechanism are split in two: the result of ``opm decompose``.
 #[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
 #[derive(Clone)]
 pub struct Decomposition {
-    /// Of the mechanism.
+    /// Name of the mechanism.
     name: String,
-    /// Of all joint screws, lambda.
+    /// Rank of all joint screws, lambda.
     rank: usize,
-    /// N.
+    /// Mobility of the mechanism, N.
     mobility: usize,
     /// Independent motions of the imaginary joints, J.
     imaginary_joints: usize,
@@ -26,9 +26,9 @@ pub struct Decomposition {
     lower: String,
     /// Subspace of the upper section.
     upper: String,
-    /// What both have in common.
+    /// The motion that both sections have in common.
     intersection: Intersection,
-    /// A leg each, in the order of the mechanism file.
+    /// One entry for each leg, in the order of the mechanism file.
     legs: Vec<LegSplit>,
 }
 
@@ -40,23 +40,23 @@ pub struct Intersection {
     kind: String,
     /// Unit vector of its positive direction, base coordinates.
     axis: Option<(f64, f64, f64)>,
-    /// A point of the axis, metres; of a translation none.
+    /// A point of the axis, metres; None for a translation.
     point: Option<(f64, f64, f64)>,
     /// Advance of a helical motion, metres per radian.
     pitch: Option<f64>,
 }
 
-/// Where a leg was cut.
+/// How one leg is split between the two sections.
 #[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
 #[derive(Clone)]
 pub struct LegSplit {
-    /// Of the leg.
+    /// Name of the leg.
     name: String,
     /// Joints in the lower section, base first.
     lower: Vec<String>,
     /// Joints in the upper section, base first.
     upper: Vec<String>,
-    /// The imaginary joint that bridges the cut.
+    /// The imaginary joint at the split.
     imaginary: Option<String>,
 }
 

@@ -9,7 +9,7 @@ pyo3::create_exception!(
     opm_kinematics,
     OpmError,
     PyValueError,
-    "A mechanism, a pose or an option that cannot be computed with."
+    "A mechanism, a pose or an option with which opm cannot compute."
 );
 
 /// An error and its causes, on one line.
@@ -26,7 +26,7 @@ pub fn failed(error: &dyn Error) -> PyErr {
     OpmError::new_err(message)
 }
 
-/// A study that ended early.
+/// The exception for an analysis that ended early.
 pub fn study(error: StudyError) -> PyErr {
     match error {
         StudyError::Request(error) => request(&error),
@@ -34,7 +34,7 @@ pub fn study(error: StudyError) -> PyErr {
     }
 }
 
-/// A request that cannot be met, by the names of the arguments.
+/// The exception for a request that cannot be met. It uses the names of the arguments.
 pub fn request(error: &RequestError) -> PyErr {
     let problem = error.problem(argument);
     let argument = argument(error.option());
@@ -43,14 +43,14 @@ pub fn request(error: &RequestError) -> PyErr {
         RequestError::Length(length) => {
             format!("{argument} is {length:?}, expected a positive one, 1e-75 to 1e75")
         }
-        // These name what they are about: an axis, a file.
+        // These messages name an axis or a file already.
         RequestError::Grid(_) => problem,
         error if error.option() == RequestOption::Output => problem,
         _ => format!("{argument}: {problem}"),
     })
 }
 
-/// The argument that an option of a request is.
+/// The name of the argument that stands for an option of a request.
 fn argument(option: RequestOption) -> &'static str {
     match option {
         RequestOption::Kind => "kind",
@@ -67,7 +67,7 @@ fn argument(option: RequestOption) -> &'static str {
     }
 }
 
-/// A message of our own.
+/// An `OpmError` with a message of this module.
 pub fn wrong(message: impl Into<String>) -> PyErr {
     OpmError::new_err(message.into())
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rows that are done before threads would have begun.
+/// So many rows are computed before threads would have started.
 const FEW: usize = 16;
 
 /// One way in which a mechanism can be assembled for given actuated joints.
@@ -22,7 +22,7 @@ const FEW: usize = 16;
 pub struct Assembly {
     /// (d,): task coordinates, metres and radians.
     pose: Py<PyArray1<f64>>,
-    /// The working mode that it is in.
+    /// The working mode of the assembly.
     mode: String,
     /// (k,): every joint coordinate, metres and radians.
     joints: Py<PyArray1<f64>>,
@@ -30,7 +30,7 @@ pub struct Assembly {
     imaginary: Py<PyArray1<f64>>,
     /// Whether all joints are within their limits.
     within_limits: bool,
-    /// How far the legs fail to close: radians, and lengths over the mechanism's size.
+    /// Closure error of the legs: radians, and lengths divided by the mechanism's size.
     residual: f64,
 }
 
@@ -71,25 +71,25 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// joints : (n, a) array_like
-    ///     A row of actuated joint values each, in the order of `actuated`; metres and radians.
+    ///     Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
     /// near : (d,) or (n, d) array_like, optional
-    ///     From which pose Newton's method begins, metres and radians; one row is for all. It works for every mechanism, the
-    ///     closed form not for all.
+    ///     The pose from which Newton's method begins, metres and radians; one row is used for all. Newton's method works for
+    ///     every mechanism, the closed form only for some.
     /// mode : str, optional
-    ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Of Newton's method the mode
-    ///     that it stays in: home if not given.
+    ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Newton's method
+    ///     stays in this mode, or in the home mode if not given.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// list of list of Assembly
-    ///     A list a row: empty where there is none, or where Newton's method ends nowhere.
+    ///     One list for each row: empty where there is no assembly, or where Newton's method does not converge.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or that is out of reach.
+    ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
     #[pyo3(signature = (joints, *, near = None, mode = None, threads = None))]
     fn forward(
         &self,
@@ -148,8 +148,8 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// The assemblies with these joints, number `row` of those that are asked for. Where Newton's method
-    /// ends nowhere there is none.
+    /// The assemblies with these joints, which are row `row` of the input. There is none if Newton's method
+    /// does not converge.
     fn assemblies(
         &self,
         joints: &[f64],

@@ -1,8 +1,8 @@
-//! What notebooks show: written in Python, by the package's `_html`.
+//! HTML for notebooks, made by the package's Python module `_html`.
 
 use pyo3::prelude::*;
 
-/// Digits of numbers that are shown to somebody who can ask for all of them.
+/// The number of digits shown; the object itself has all of them.
 const DIGITS: usize = 7;
 
 /// A number with at most seven digits, as Python writes it.

@@ -1,4 +1,4 @@
-//! Long work without the interpreter's lock, which Ctrl-C stops.
+//! Long computations without the interpreter's lock. Ctrl-C stops them.
 
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::error::{failed, wrong};
 
-/// How often Python's signal handlers are asked.
+/// The interval at which Python's signal handlers run.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// How many threads are worth it for work that comes in so many pieces: to make one takes as long as to decide
@@ -17,7 +17,7 @@ pub fn few(threads: Option<NonZeroUsize>, pieces: u64) -> Option<NonZeroUsize> {
     let pieces = usize::try_from(pieces).ok().and_then(NonZeroUsize::new)?;
     match threads {
         Some(threads) => Some(threads.min(pieces)),
-        // A processor each is for whoever makes them to find out.
+        // Without a number, the thread pool uses one thread for each processor.
         None => Some(pieces).filter(|pieces| pieces.get() == 1),
     }
 }
@@ -37,7 +37,7 @@ pub fn run<T: Send>(
         pool.in_place_scope(|scope| {
             let (sender, receiver) = channel();
             scope.spawn(move |_| {
-                // Nobody listens any more where a signal has raised.
+                // There is no receiver any more if a signal handler has raised.
                 let _ = sender.send(work());
             });
             loop {
@@ -52,7 +52,7 @@ pub fn run<T: Send>(
                             return Err(raised);
                         }
                     }
-                    // The work has panicked, and so will the scope.
+                    // The work has panicked, so the scope will panic, too.
                     Err(RecvTimeoutError::Disconnected) => return Err(wrong("the work panicked")),
                 }
             }

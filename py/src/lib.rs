@@ -1,10 +1,10 @@
 //! The native half of the Python package `opm_kinematics`: NumPy arrays in and out, metres and
-//! radians. The modules mirror those of the crates; what they do is documented there, and for Python
-//! in the package's stubs.
+//! radians. The modules mirror those of the crates, which document what they do. The package's stubs
+//! document it for Python.
 
 // Arguments come from Python by value.
 #![allow(clippy::needless_pass_by_value)]
-// What has a docstring is documented for Python, in numpydoc.
+// Doc comments here are docstrings for Python, in numpydoc's format.
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
 mod arguments;
@@ -63,7 +63,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // For pickling alone: no export.
+        // This is needed for pickling only and is not exported.
         module.setattr("_Boxes", module.py().get_type::<crate::measure::Boxes>())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

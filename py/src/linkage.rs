@@ -49,9 +49,9 @@ impl Linkage {
     /// Raises
     /// ------
     /// OSError
-    ///     The file cannot be read: FileNotFoundError, with its name, where there is none.
+    ///     The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
     /// OpmError
-    ///     Every problem of the file with its line and column, or what it has instead of two spherical four-bars.
+    ///     Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
     #[staticmethod]
     fn load(
         py: Python<'_>,
@@ -68,7 +68,7 @@ impl Linkage {
     /// text : str
     ///     TOML.
     /// label : str, optional
-    ///     What messages call it.
+    ///     The name that messages use for the text.
     ///
     /// Returns
     /// -------
@@ -78,7 +78,7 @@ impl Linkage {
     /// Raises
     /// ------
     /// OpmError
-    ///     Every problem of the text with its line and column, or what it has instead of two spherical four-bars.
+    ///     Lists every problem of the text with its line and column, or says why it is not a loop of two spherical four-bars.
     #[staticmethod]
     #[pyo3(signature = (text, label = None))]
     fn parse(text: String, label: Option<String>) -> PyResult<Self> {
@@ -88,7 +88,7 @@ impl Linkage {
         Ok(Self { inner, text, label })
     }
 
-    /// Linkages are the same if their files are, whatever these are called.
+    /// Linkages are equal if the texts of their files are equal, whatever the names of the files.
     fn __eq__(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -134,7 +134,7 @@ impl Linkage {
         self.inner.coordinates().iter().map(|c| c.home).collect()
     }
 
-    /// The branch that the linkage is assembled in, moved by one of its joints.
+    /// The branch in which the linkage is assembled, if one of its joints moves it.
     ///
     /// Parameters
     /// ----------
@@ -144,7 +144,7 @@ impl Linkage {
     /// Returns
     /// -------
     /// str
-    ///     Its two signs: of the four-bar that has the input, and of the other one.
+    ///     Two signs: the first for the four-bar with the input, the second for the other one.
     ///
     /// Raises
     /// ------
@@ -155,7 +155,7 @@ impl Linkage {
         Ok(self.input(input)?.home_branch().to_string())
     }
 
-    /// Where the loop closes: the range of one joint, limits apart.
+    /// The range of one joint in which the loop closes, joint limits not considered.
     ///
     /// Parameters
     /// ----------
@@ -165,7 +165,7 @@ impl Linkage {
     /// Returns
     /// -------
     /// (r, 2) array
-    ///     Lowest and highest value of every part, radians. Of a whole turn it is the one about home.
+    ///     Lowest and highest value of every interval, radians. A full revolution is given as the interval around home.
     ///
     /// Raises
     /// ------
@@ -188,23 +188,23 @@ impl Linkage {
     /// Parameters
     /// ----------
     /// values : (n,) array_like
-    ///     Of the joint that moves the linkage, radians.
+    ///     Values of the joint that moves the linkage, radians.
     /// input : str, optional
-    ///     Its name; the actuated one if not given.
+    ///     Name of that joint; the actuated one if not given.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// Solutions
-    ///     As of all modes, with the four branches in their place: ``(n, 4, k)``, ``(n, 4, 1)``, ``(n, 4)``. NaN where the loop
-    ///     does not close. Angles are within half a turn of home, unless the limits allow another turn; ``np.unwrap`` along
-    ///     the first axis makes those of a whole turn continuous.
+    ///     The arrays have the shapes ``(n, 4, k)``, ``(n, 4, 1)`` and ``(n, 4)``, with the four branches as modes. NaN where the
+    ///     loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
+    ///     ``np.unwrap`` along the first axis makes angles over full revolutions continuous.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     There is no joint of this name, or a value is not finite (which, counted from zero).
+    ///     There is no joint of this name, or a value is not finite; the message gives its index, counted from zero.
     #[pyo3(signature = (values, *, input = None, threads = None))]
     fn positions(
         &self,
@@ -246,7 +246,7 @@ impl Linkage {
 }
 
 impl Linkage {
-    /// Moved by the joint of this name, or by the actuated one.
+    /// The input joint of this name, or the actuated joint.
     fn input(&self, name: Option<&str>) -> PyResult<Input<'_>> {
         let actuated = || {
             let joint = self.inner.mechanism().joints().find(|joint| joint.actuated);

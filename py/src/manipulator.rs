@@ -25,7 +25,7 @@ use std::sync::{Arc, OnceLock};
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Manipulator {
     pub inner: Arc<core::Manipulator>,
-    /// The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit.
+    /// The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit.
     text: OnceLock<String>,
     label: String,
     /// What it was assembled from; `None` for a list of joints.
@@ -42,7 +42,7 @@ impl PartialEq for Manipulator {
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 #[derive(Clone)]
 pub struct TaskCoordinate {
-    /// Of the coordinate: ``"x"``, ``"zeta"``, ...
+    /// Name of the coordinate: ``"x"``, ``"zeta"``, ...
     name: String,
     /// The value at home, metres or radians.
     home: f64,
@@ -65,7 +65,7 @@ pub fn examples() -> Vec<&'static str> {
     shipped::EXAMPLES.iter().map(|example| example.name).collect()
 }
 
-/// The text of one of them.
+/// The text of one of the mechanisms of :func:`examples`.
 ///
 /// Parameters
 /// ----------
@@ -105,9 +105,9 @@ impl Manipulator {
     /// Raises
     /// ------
     /// OSError
-    ///     The file cannot be read: FileNotFoundError, with its name, where there is none.
+    ///     The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
     /// OpmError
-    ///     Every problem of the file with its line and column, or why it has no closed-form inverse kinematics.
+    ///     Lists every problem of the file with its line and column, or says why it has no closed-form inverse kinematics.
     #[staticmethod]
     fn load(
         py: Python<'_>,
@@ -124,7 +124,7 @@ impl Manipulator {
     /// text : str
     ///     TOML.
     /// label : str, optional
-    ///     What messages call it.
+    ///     The name that messages use for the text.
     ///
     /// Returns
     /// -------
@@ -134,7 +134,7 @@ impl Manipulator {
     /// Raises
     /// ------
     /// OpmError
-    ///     Every problem of the text with its line and column, or why it has no closed-form inverse kinematics.
+    ///     Lists every problem of the text with its line and column, or says why it has no closed-form inverse kinematics.
     #[staticmethod]
     #[pyo3(signature = (text, label = None))]
     fn parse(text: String, label: Option<String>) -> PyResult<Self> {
@@ -146,7 +146,8 @@ impl Manipulator {
     /// The geometric parameters of its family by name; empty for a list of joints.
     ///
     /// ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-    /// of its joints. Metres and radians; points ``(x, y)``, limits ``(lowest, highest)`` or None where there are none.
+    /// of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``,
+    /// or None if there are none.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -165,21 +166,21 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// changes : mapping, optional
-    ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it, and a
-    ///     whole one (``leg1.h``) in one leg, whatever the other says.
+    ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
+    ///     full name (``leg1.h``) sets it in one leg and takes precedence.
     /// **named
-    ///     Likewise, for names without dots.
+    ///     New values for names without dots.
     ///
     /// Returns
     /// -------
     /// Manipulator
-    ///     A new one; this one stays as it is. It is assembled at the same home pose in the same working mode.
+    ///     A new manipulator, assembled at the same home pose in the same working mode; this one does not change.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     Every name that is no parameter, with those that there are, and every value that is none; every leg that does not
-    ///     reach home; home poses that are singular.
+    ///     A name is not a parameter (the message lists those that exist), a value is not valid, a leg does not reach home, or
+    ///     the home pose is singular. The message lists every such problem.
     ///
     /// Examples
     /// --------
@@ -224,7 +225,7 @@ impl Manipulator {
         })
     }
 
-    /// Mechanisms are the same if their files are, whatever these are called.
+    /// Mechanisms are equal if the texts of their files are equal, whatever the names of the files.
     fn __eq__(&self, other: &Self) -> bool {
         self == other
     }
@@ -246,7 +247,7 @@ impl Manipulator {
         &self.inner.mechanism().name
     }
 
-    /// The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit.
+    /// The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit.
     #[getter]
     pub fn text(&self) -> &str {
         self.text.get_or_init(|| self.family.as_ref().map_or_else(String::new, Family::write))
@@ -304,7 +305,7 @@ impl Manipulator {
         self.inner.modes().map(|mode| self.inner.format_mode(mode)).collect()
     }
 
-    /// How the legs were cut in two.
+    /// How the legs are split in two.
     #[getter]
     fn decomposition(&self) -> Decomposition {
         Decomposition::of(&self.inner)
@@ -315,25 +316,26 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// poses : (n, d) array_like
-    ///     A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is, and must not be
-    ///     written to meanwhile; anything else is converted first, in memory of its own.
+    ///     One row for each pose, one column for each task coordinate; metres and radians. A float64 array in C order is used
+    ///     without a copy and must not be written to meanwhile; anything else is copied and converted first.
     /// mode : str
-    ///     ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
+    ///     ``"home"``; or a sign for every two-valued choice, one group for each leg: ``"++ ++ ++ +"``; or ``"all"``, which
     ///     gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
     ///     of the ``m = 2**choices`` modes of `modes`.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// Solutions
-    ///     Poses out of reach have NaN; angles are within half a turn of home, unless the limits allow another turn.
+    ///     Joint values, NaN for poses out of reach. Angles are within π of their home values, unless the joint limits allow
+    ///     another revolution.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     Columns that are not the task coordinates, a number that is not finite (of which pose, counted from zero), an unknown
-    ///     mode.
+    ///     The columns are not the task coordinates, a number is not finite (the message gives the index of its pose, counted
+    ///     from zero), or the mode is unknown.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
     fn inverse<'py>(
         &self,
@@ -391,20 +393,20 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
 }
 
 impl Manipulator {
-    /// What its file is called, without folders.
+    /// The name of its file, without folders.
     pub fn file_name(&self) -> String {
         let path = Path::new(&self.label);
         let name = path.file_name().map_or_else(|| self.label.clone(), |n| n.display().to_string());
         if path.extension().is_some() { name } else { format!("{name}.toml") }
     }
 
-    /// What a file says, decomposed; `text` is the file.
+    /// The decomposed mechanism of a file; `text` is its text.
     pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
         let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
         Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
     }
 
-    /// Every working mode of every pose: a row a mode, all of a pose together.
+    /// Every working mode of every pose: one row for each mode, with the rows of a pose together.
     fn inverse_all(
         &self,
         py: Python<'_>,

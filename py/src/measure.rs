@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyMapping};
 use std::num::{NonZeroU64, NonZeroUsize};
 
-/// Boxes of a part, all but the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
+/// Boxes of each part except the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
 /// to get them and to compile the manipulator. Rounds of no more are answered here.
 const LEAST_BOXES: u64 = 1 << 12;
 
@@ -24,20 +24,20 @@ const LEAST_BOXES: u64 = 1 << 12;
 const SECTIONS: [(Sections, &str); 3] =
     [(Sections::Whole, "whole"), (Sections::Upper, "upper"), (Sections::Lower, "lower")];
 
-/// How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+/// The measure of the part of a box that is in reach and within all limits, with guaranteed bounds.
 ///
-/// In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
-/// orientations is Haar's.
+/// Its unit is the product of those of the coordinates with a range; a tilt is weighted with its sine, so that the measure
+/// of orientations is the Haar measure.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Measure {
     found: Measured,
-    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
+    /// Unit of the measure: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     units: String,
     /// Lowest and highest value of every coordinate.
     over: Vec<(String, f64, f64)>,
 }
 
-/// Why a search was taken no further.
+/// Why a computation stopped.
 const STOPS: [(Stop, &str); 4] = [
     (Stop::Tolerance, "tolerance"),
     (Stop::Budget, "budget"),
@@ -61,8 +61,8 @@ enum Range {
 /// ----------
 /// manipulator : Manipulator
 /// over : mapping, optional
-///     Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
-///     workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+///     For each coordinate ``(min, max)`` or one value; metres and radians. A coordinate that is not given stays at home. If
+///     none is given, ranges are fitted to the workspace; for the upper section alone, every orientation is measured.
 /// section : str
 ///     ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
 /// mode : str
@@ -70,21 +70,21 @@ enum Range {
 /// tolerance : float, optional
 ///     How far the true measure may be from the value, as a share of it: 0.01 if not given.
 /// budget : int, optional
-///     Boxes to look at, at most: 2**22 if not given.
+///     Largest number of boxes to examine: 2**22 if not given.
 /// threads : int, optional
-///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+///     1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
 /// executor : concurrent.futures.Executor or callable, optional
-///     Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
-///     more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
-///     executor that a function makes serves all rounds.
+///     Where the boxes are examined, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+///     more than 4096 boxes; smaller rounds are computed in this process, which also fits the ranges. An executor that a
+///     function makes serves all rounds.
 /// shards : int, optional
-///     How many parts of a round the executor gets: as for :func:`sweep`, but of at least 4096 boxes each but for the last.
+///     How many parts of a round the executor gets: as for :func:`sweep`, but each except the last has at least 4096 boxes.
 ///
 /// Raises
 /// ------
 /// OpmError
-///     A coordinate that is none, ends that are not numbers in order, an unknown section or mode; parts that were lost again
-///     and again.
+///     A coordinate is unknown; its ends are not numbers in order; the section or mode is unknown; or parts were lost
+///     repeatedly.
 #[pyfunction]
 #[pyo3(signature = (
     manipulator, /, *, over = None, section = "whole", mode = "home", tolerance = None, budget = None,
@@ -109,7 +109,7 @@ pub fn measure(
     };
     let given = given.into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
-        // What has no width has no measure, which is never meant.
+        // A range without width has measure zero, which is never meant.
         Ok(Range::Between((min, max))) if min == max => {
             let found = range.repr()?;
             Err(wrong(format!(
@@ -127,7 +127,7 @@ pub fn measure(
     let asked = Asked { of: manipulator, sections: sections(section)?, modes, threads };
     let goal = goal(tolerance, budget)?;
     let parts = Parts::new(executor, shards)?;
-    // What is given is looked at first: a wrong name need not wait for a sweep.
+    // Arguments are checked first: a wrong name need not wait for a sweep.
     asked.domain(&given)?;
     let progress = Progress::default();
     let fit = || {
@@ -147,13 +147,13 @@ fn sections(word: &str) -> PyResult<Sections> {
     known.map(|(sections, _)| *sections).ok_or_else(told)
 }
 
-/// What sections are called.
+/// The names of the sections.
 fn word(sections: Sections) -> &'static str {
     let word = SECTIONS.iter().find(|(known, _)| *known == sections);
     word.map_or("", |(_, word)| word)
 }
 
-/// The goal with what is not given as it is by default.
+/// The goal, with defaults for arguments that are not given.
 pub fn goal(tolerance: Option<f64>, budget: Option<u64>) -> PyResult<Goal> {
     let usual = Goal::default();
     let tolerance = tolerance.unwrap_or(usual.tolerance);
@@ -201,7 +201,7 @@ impl Asked {
     }
 }
 
-/// Measures with the help of workers, who are asked for the boxes of large rounds.
+/// Measures with workers, which examine the boxes of large rounds.
 fn boxes_searched(
     boxes: &Bound<'_, Boxes>,
     goal: Goal,
@@ -290,13 +290,13 @@ impl Measure {
         self.found.value()
     }
 
-    /// The measure is not less.
+    /// Lower bound of the measure.
     #[getter]
     fn lower(&self) -> f64 {
         self.found.lower
     }
 
-    /// The measure is not more.
+    /// Upper bound of the measure.
     #[getter]
     fn upper(&self) -> f64 {
         self.found.upper
@@ -314,19 +314,19 @@ impl Measure {
         self.found.fraction()
     }
 
-    /// What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
+    /// Unit of the measure: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``.
     #[getter]
     fn units(&self) -> &str {
         &self.units
     }
 
-    /// Boxes that were looked at.
+    /// Number of boxes that were examined.
     #[getter]
     fn boxes(&self) -> u64 {
         self.found.boxes
     }
 
-    /// Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+    /// Why the computation stopped: ``"tolerance"`` is met, ``"budget"`` is used up, or ``"exhausted"`` where splitting brings
     /// the bounds no closer.
     #[getter]
     fn stop(&self) -> &'static str {
@@ -334,7 +334,7 @@ impl Measure {
         word.map_or("", |(_, word)| word)
     }
 
-    /// Of every coordinate lowest and highest value, or the one that it is held at, as :func:`measure` takes them.
+    /// Lowest and highest value of every coordinate, or the value at which it is held, as :func:`measure` takes them.
     #[getter]
     fn over<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -354,7 +354,7 @@ impl Measure {
         format!("<Measure {value} {units}, from {low} to {high}: {share} of the box>")
     }
 
-    /// Measures are the same if they are of the same ranges, and found the same bounds after as many boxes.
+    /// Measures are equal if their ranges, bounds and numbers of boxes are equal.
     fn __eq__(&self, other: &Self) -> bool {
         (&self.found, &self.units, &self.over) == (&other.found, &other.units, &other.over)
     }

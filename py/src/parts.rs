@@ -4,17 +4,17 @@ use crate::error::wrong;
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
-/// As an object crosses processes: what restores it, and what that is given.
+/// An object in the form that crosses processes: the function that restores it, and its arguments.
 pub type Pickled<'py, T> = (Bound<'py, PyAny>, T);
 
-/// An executor, and how many parts it gets, where that is given.
+/// An executor, and the number of parts if it is given.
 pub struct Parts<'py> {
     executor: Bound<'py, PyAny>,
     shards: Option<NonZeroU64>,
 }
 
 impl<'py> Parts<'py> {
-    /// What is asked for: nothing, where there is no executor.
+    /// The given executor and shards; `None` without an executor.
     pub fn new(
         executor: Option<Bound<'py, PyAny>>,
         shards: Option<NonZeroU64>,
@@ -39,7 +39,7 @@ impl<'py> Parts<'py> {
         Ok(shards.min(most))
     }
 
-    /// What comes of work with the executor, which goes through `run` of the workers.
+    /// The result of work on the executor, which goes through `run` of the workers.
     pub fn session<T>(
         &self,
         py: Python<'py>,

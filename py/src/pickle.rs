@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
-/// An array of an object that does not change: it cannot be written to.
+/// Makes an array of an immutable object read-only.
 pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Py<T>> {
     array.as_any().call_method1("setflags", (false,))?;
     Ok(array.unbind())
@@ -20,7 +20,7 @@ pub fn attributes<'py>(object: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<B
     Ok(dict)
 }
 
-/// One of them, as it was. Arrays come out of a pickle writable.
+/// Restores one of the attributes. Arrays come out of a pickle writable.
 pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
     attributes: &Bound<'py, PyDict>,
     name: &str,
@@ -33,7 +33,7 @@ pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
     value.extract().map_err(Into::into)
 }
 
-/// Whether the attributes of these names are the same.
+/// Whether the attributes of these names are equal.
 pub fn equal<'py>(a: &Bound<'py, PyAny>, b: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<bool> {
     for name in names {
         if !same(&a.getattr(*name)?, &b.getattr(*name)?)? {
@@ -43,7 +43,7 @@ pub fn equal<'py>(a: &Bound<'py, PyAny>, b: &Bound<'py, PyAny>, names: &[&str]) 
     Ok(true)
 }
 
-/// Whether values are the same: arrays as a whole, and NaN, where there is no number, as itself.
+/// Whether values are equal: arrays as a whole, and NaN equal to NaN.
 fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<bool> {
     if a.is_instance_of::<PyUntypedArray>() {
         let options = PyDict::new(a.py());
@@ -65,7 +65,7 @@ fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<bool> {
     a.eq(b)
 }
 
-/// Makes a class that is nothing but its attributes: pickled by them, and compared.
+/// Gives a class that consists of its attributes only their pickling and comparison.
 macro_rules! pickled {
     ($class:ident { $($name:ident),+ $(,)? }) => {
         #[pymethods]

@@ -11,14 +11,16 @@ use opm_core::numeric::rotation;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// The poses of a manipulator's motion that are nearest to displacements of the platform, and what these are off by.
+/// The poses of a manipulator's motion that are nearest to given displacements, and the differences that remain.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Nearest {
     /// (n, d): task coordinates, metres and radians.
     poses: Py<PyArray2<f64>>,
-    /// (n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero in the motion.
+    /// (n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero
+    /// where the displacement is in the motion.
     rotation: Py<PyArray2<f64>>,
-    /// (n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero in the motion.
+    /// (n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero
+    /// where the displacement is in the motion.
     translation: Py<PyArray2<f64>>,
 }
 
@@ -38,19 +40,20 @@ impl Nearest {
 
 #[pymethods]
 impl Manipulator {
-    /// Where the platform is at each pose, in SE(3): its reference point and its orientation, in base coordinates.
+    /// The displacement of the platform at each pose, in SE(3): its reference point and its orientation, in base coordinates.
     ///
     /// Parameters
     /// ----------
     /// poses : (n, d) array_like
-    ///     A pose a row, a task coordinate a column; metres and radians.
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// (n, 4, 4) ndarray
-    ///     Homogeneous matrices: a rotation, which is none at home unless the coordinates measure it, and a position, metres.
+    ///     Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
+    ///     position, metres.
     #[pyo3(signature = (poses, *, threads = None))]
     fn transform<'py>(
         &self,
@@ -71,25 +74,25 @@ impl Manipulator {
         tables.table(0).reshape([poses.count, 4, 4])
     }
 
-    /// The poses at which the platform is there: the inverse of :meth:`transform`.
+    /// The poses at which the platform has the given displacements: the inverse of :meth:`transform`.
     ///
     /// Parameters
     /// ----------
     /// transforms : (n, 4, 4) array_like
     ///     Homogeneous matrices, metres.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// (n, d) ndarray
-    ///     Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion:
-    ///     :meth:`nearest` says by how much.
+    ///     Metres and radians, angles within π of their home values. NaN where the displacement is outside the manipulator's
+    ///     motion; :meth:`nearest` gives the difference.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     A matrix that is no rotation and position.
+    ///     A matrix is not a rotation and a position.
     #[pyo3(signature = (transforms, *, threads = None))]
     fn locate<'py>(
         &self,
@@ -106,24 +109,24 @@ impl Manipulator {
         Ok(located?.table(0))
     }
 
-    /// The poses at which the platform is nearest to there, and what it lacks: for what :meth:`locate` has no pose.
+    /// The poses nearest to the given displacements, and the differences that remain where :meth:`locate` has no pose.
     ///
     /// Parameters
     /// ----------
     /// transforms : (n, 4, 4) array_like
     ///     Homogeneous matrices, metres.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// Nearest
-    ///     Nearest by least squares, in which a rotation counts by the mechanism's size.
+    ///     Nearest by least squares; rotations are weighted with the mechanism's size.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     A matrix that is no rotation and position.
+    ///     A matrix is not a rotation and a position.
     #[pyo3(signature = (transforms, *, threads = None))]
     fn nearest<'py>(
         &self,
@@ -175,7 +178,7 @@ impl Manipulator {
     }
 }
 
-/// The displacement that a matrix is, row by row; or what is wrong with it.
+/// The displacement of a matrix that is given row by row, or what is wrong with it.
 fn isometry(matrix: &[f64]) -> Result<Isometry3<f64>, String> {
     let last = &matrix[12..];
     if last != [0.0, 0.0, 0.0, 1.0] {

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rows that a thread works on between two looks at whether it is to stop.
+/// Rows that a thread works on between two checks whether it should stop.
 const BLOCK: usize = 1024;
 
 /// An array from Python: rows of `names`.
@@ -51,8 +51,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Tables with a row of each for every row of the input, NaN where nothing was written, and two answers
-/// a row.
+/// Tables with one row for every row of the input, NaN where nothing was written, and two flags for
+/// each row.
 pub struct Tables<'py, const N: usize> {
     numbers: Vec<Bound<'py, PyArray2<f64>>>,
     pub answers: [Vec<bool>; 2],
@@ -96,8 +96,8 @@ impl<'py, const N: usize> Tables<'py, N> {
         fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
-        // Made by calls from Python, which raise where there is no memory, and touched by the work alone:
-        // the system takes seconds to hand out gigabytes, in which nobody would hear Ctrl-C.
+        // Python's functions allocate these, which raise if there is no memory. Only the work touches them:
+        // the system takes seconds to hand out gigabytes, and Ctrl-C would have no effect meanwhile.
         let empty = |width| -> PyResult<Bound<'py, PyArray2<f64>>> {
             Ok(numpy.call_method1("empty", ((count, width),))?.cast_into()?)
         };

@@ -17,32 +17,32 @@ type Leg = (String, Vec<Screw>);
 impl Manipulator {
     /// Compile a mechanism that is given by the screws of its joints at an assembled pose, home.
     ///
-    /// It is decomposed as any other; `text` is a mechanism file that says the same.
+    /// It is decomposed like any other; `text` is an equivalent mechanism file.
     ///
     /// Parameters
     /// ----------
     /// legs : mapping of str to (n, 6) array_like, or sequence of them
-    ///     A leg each, by name; else they are called leg1, leg2, ... A row is the twist (omega; v) of a joint of one
-    ///     freedom about the base frame, base to platform, of any length but zero: ``(a, p × a + h a)`` turns about ``a``
-    ///     through ``p`` with an advance of ``h`` metres a radian, ``(0, a)`` slides along ``a``. Joints of several
-    ///     freedoms are several rows.
+    ///     One array for each leg, by name; without names the legs are leg1, leg2, ... A row is the twist (omega; v) of a
+    ///     joint with one degree of freedom, in the base frame, from base to platform, of any length except zero:
+    ///     ``(a, p × a + h a)`` rotates about ``a`` through ``p`` with an advance of ``h`` metres per radian, ``(0, a)``
+    ///     slides along ``a``. A joint with several degrees of freedom has several rows.
     /// actuated : sequence of (n,) sequences of bool
-    ///     Which joints are driven, a sequence a leg.
+    ///     Which joints are actuated: one sequence for each leg.
     /// home : sequence of (n,) sequences of float, optional
     ///     Joint values at home, radians and metres; zero if not given.
     /// limits : sequence of (n,) sequences of (float, float) or None, optional
-    ///     Lowest and highest value of each joint. ``None``, or both infinite, is none.
+    ///     Lowest and highest value of each joint. ``None``, or two infinite values, means no limits.
     /// joints : sequence of (n,) sequences of str, optional
-    ///     Names, q1_1, q1_2, ... if not given: leg, then joint.
+    ///     Names of the joints; if not given, q1_1, q1_2, ... (number of the leg, then of the joint).
     /// platform : (3,) sequence of float
     ///     Reference point of the platform at home, metres; the base's origin if not given.
     /// name : str
-    ///     Of the mechanism.
+    ///     Name of the mechanism.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     What is wrong with which joint of which leg; or why the mechanism has no closed-form inverse kinematics.
+    ///     Says what is wrong with which joint of which leg, or why the mechanism has no closed-form inverse kinematics.
     #[staticmethod]
     #[pyo3(signature = (
         legs, actuated, *, home = None, limits = None, joints = None, platform = [0.0; 3],
@@ -103,13 +103,13 @@ impl Manipulator {
             .map_err(|(leg, joint, error)| {
                 wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
             })?;
-        // By way of a file, so that it is checked as any other, can be saved, and crosses processes.
+        // The mechanism goes through a file, so that it is checked like any other, can be saved, and crosses processes.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
         let file = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?;
         Self::compile(file, text, name.to_owned())
     }
 
-    /// The joints' unit screws by leg, (f, 6) each: (omega; v) at home about the base frame, a row a freedom.
+    /// The joints' unit screws by leg, (f, 6) each: (omega; v) at home in the base frame, one row for each degree of freedom.
     #[getter]
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -151,7 +151,7 @@ fn read_legs(given: &Bound<'_, PyAny>) -> PyResult<Vec<Leg>> {
     named.into_iter().map(read).collect()
 }
 
-/// A sequence a leg of an entry a joint.
+/// One sequence for each leg, with one entry for each joint.
 fn per_joint<'py, T: FromPyObjectOwned<'py>>(
     given: &Bound<'py, PyAny>,
     what: &str,
@@ -181,7 +181,7 @@ fn per_joint<'py, T: FromPyObjectOwned<'py>>(
     of_legs.into_iter().zip(legs).map(read).collect()
 }
 
-/// The problems of a written file, at the joints that they are about instead of its lines.
+/// The problems of a generated file, with the joints concerned instead of lines.
 fn told(errors: &FileErrors, text: &str, legs: &[Leg]) -> String {
     let (mut leg, mut joint) = (0, 0);
     let places: Vec<String> = text

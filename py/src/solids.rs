@@ -1,4 +1,4 @@
-//! What there is to draw of a mechanism in a pose.
+//! The solids with which a mechanism is drawn in a pose.
 
 use crate::arguments;
 use crate::error::{failed, wrong};
@@ -18,9 +18,9 @@ pub struct Solid {
     shape: String,
     /// ``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``.
     material: String,
-    /// (2, 3): the ends of its axis, metres; of a ball both are its middle.
+    /// (2, 3): the ends of its axis, metres; for a ball both are its centre.
     ends: Py<PyArray2<f64>>,
-    /// Diameter, or side of the square of a block; metres.
+    /// Diameter, or side of the square section of a block, metres.
     width: f64,
 }
 
@@ -107,7 +107,7 @@ impl Manipulator {
     }
 }
 
-/// Its name, the ends of its axis, and its diameter or width.
+/// The name of a shape, the ends of its axis, and its diameter or width.
 fn shape(solid: &skeleton::Solid, place: &Isometry3<f64>) -> (&'static str, [Point3<f64>; 2], f64) {
     match *solid {
         skeleton::Solid::Cylinder { from, to, radius } => {

@@ -16,34 +16,34 @@ use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Poses that a thread solves between two looks at whether it is to stop.
+/// Poses that a thread solves between two checks whether it should stop.
 const PART: usize = 4096;
 
 /// Joint values of ``n`` poses, NaN where a pose is out of reach.
 ///
-/// Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
-/// entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
+/// For one working mode the arrays have the shapes below. For all modes they have one more axis after the first, with one
+/// entry for each mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solutions {
     /// (n, k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
     /// (n, j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// (n,): in reach, limits apart.
+    /// (n,): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
-    /// (n,): in reach, and all joints within their limits.
+    /// (n,): whether the pose is in reach and all joints are within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
-    /// Of the last axis of `joints`.
+    /// Names along the last axis of `joints`.
     joint_names: Vec<String>,
-    /// Of the last axis of `imaginary`.
+    /// Names along the last axis of `imaginary`.
     imaginary_names: Vec<String>,
     /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
     units: BTreeMap<String, String>,
     /// The working mode, or ``"all"``.
     mode: String,
-    /// The working modes: of the mode axis, if there is one.
+    /// The working modes, in the order of the mode axis if there is one.
     modes: Vec<String>,
-    /// n.
+    /// Number of rows, n.
     rows: usize,
 }
 
@@ -59,7 +59,7 @@ impl Solutions {
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
         let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
-        // Made by calls from Python, which raise where there is no memory.
+        // Python's functions allocate these, which raise if there is no memory.
         let table = |width| -> PyResult<Bound<'_, PyArrayDyn<f64>>> {
             Ok(numpy.call_method1("empty", ((poses.count, width),))?.cast_into()?)
         };
@@ -84,7 +84,7 @@ impl Solutions {
         Self::new(names, poses.count, tables, [reachable, within_limits])
     }
 
-    /// From tables with a row for each mode of each pose, the modes of a pose together.
+    /// Makes solutions from tables with one row for each mode of each pose, the modes of a pose together.
     pub fn of_all_modes(
         py: Python<'_>,
         names: Names,
@@ -100,7 +100,7 @@ impl Solutions {
         Self::new(names, rows, numbers, [reachable?, within_limits?])
     }
 
-    /// The arrays, and what their axes are called.
+    /// The arrays and the names along their axes.
     fn new(
         names: Names,
         rows: usize,
@@ -123,7 +123,7 @@ impl Solutions {
     }
 }
 
-/// What the axes of solutions are called, and in which units their numbers are.
+/// The names along the axes of solutions, and the units of their numbers.
 pub struct Names {
     joints: Vec<String>,
     imaginary: Vec<String>,
@@ -133,7 +133,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// Of a manipulator's joints in one mode, or in all.
+    /// The names and units of a manipulator's joints in one mode, or in all.
     pub fn of(manipulator: &Manipulator, mode: Option<Mode>) -> Self {
         let format = |mode| manipulator.format_mode(mode);
         Self {
@@ -148,7 +148,7 @@ impl Names {
         }
     }
 
-    /// Of a linkage's joints in all branches.
+    /// The names and units of a linkage's joints in all branches.
     pub fn of_branches(linkage: &Linkage) -> Self {
         let joints: Vec<_> = linkage.coordinates().iter().map(|c| c.name.clone()).collect();
         let imaginary = linkage.imaginary().name.clone();
@@ -163,9 +163,9 @@ impl Names {
     }
 }
 
-/// Some of the poses, and where their answers go.
+/// Some of the poses, and the memory for their results.
 struct Part<'a> {
-    /// Number of the first.
+    /// Index of the first pose.
     first: usize,
     poses: &'a [f64],
     out: BatchOutput<'a>,
@@ -190,7 +190,7 @@ impl Part<'_> {
                 other => other,
             })
         };
-        // Of several wrong poses, the first.
+        // If several poses are wrong, the message is about the first.
         let wrong = if self.out.reachable.len() <= PART {
             work(&mut manipulator.batch(), self)
         } else {

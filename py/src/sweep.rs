@@ -30,15 +30,15 @@ use std::collections::BTreeMap;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::sync::{Arc, OnceLock};
 
-/// A grid, swept: a workspace of some kind, of which a point is a pose, a place or an orientation.
+/// A swept grid: a workspace of some kind, whose points are poses, places or orientations.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Sweep {
     of: Py<Manipulator>,
     workspace: Workspace,
-    /// The working mode, as it was asked for.
+    /// The working mode, as it was given.
     mode: String,
     threads: Option<NonZeroUsize>,
-    /// Points of the workspace: of poses, those in reach and within all limits.
+    /// Number of points of the workspace. A pose counts if it is in reach and within all limits.
     count: Count,
     tally: OnceLock<Arc<Vec<u64>>>,
 }
@@ -49,7 +49,7 @@ pub struct Sweep {
 /// ----------
 /// manipulator : Manipulator
 /// kind : str
-///     What the workspace is of, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
+///     Kind of the workspace, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
 ///     lower one.
 ///
 ///     * ``"grid"``: poses.
@@ -62,29 +62,29 @@ pub struct Sweep {
 /// mode : str
 ///     ``"home"``, ``"any"``, or a sign for every two-valued choice.
 /// max_condition : float, optional
-///     Only poses with a condition number of at most this count, in a mode in which they have it.
+///     Only poses whose condition number is at most this count, in a mode in which it is.
 /// length : float, optional
 ///     Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
 /// threads : int, optional
-///     1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+///     1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
 /// executor : concurrent.futures.Executor or callable, optional
-///     Who does the work: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
+///     Where the work is done: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
 ///     ``mpi4py.futures``. What is sent is the manipulator, the grid and the number of a shard; the result is that of one
 ///     process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
 ///     takes no more work: give a function that makes one, and the shards that are missing go to a new one.
 /// shards : int, optional
-///     How many parts the executor gets: 8 a worker if not given, 64 where it does not say how many it has; fewer for small
-///     grids.
+///     How many parts the executor gets: 8 for each worker if not given, 64 if it does not say how many it has; fewer for
+///     small grids.
 /// **axes
-///     Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
-///     is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
-///     on beyond it.
+///     For each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. A coordinate
+///     that is not given stays at home. If none is given, the grid is fitted to the workspace, with a warning if the
+///     workspace continues beyond it.
 ///
 /// Raises
 /// ------
 /// OpmError
-///     An axis that is none, ends that are not numbers or reversed, an unknown kind or mode, a grid that the kind is not of;
-///     more places or orientations than fit in memory; shards that were lost again and again.
+///     An axis is not a coordinate; its ends are reversed or not numbers; the kind or mode is unknown; the grid does not suit
+///     the kind; the places or orientations do not fit in memory; or shards were lost repeatedly.
 ///
 /// Examples
 /// --------
@@ -134,13 +134,13 @@ pub fn sweep(
 
 #[pymethods]
 impl Sweep {
-    /// What the workspace is of, as it was asked for.
+    /// The kind of the workspace, as it was given.
     #[getter]
     fn kind(&self) -> &'static str {
         self.workspace.kind().name()
     }
 
-    /// The largest condition number at which a pose counts, if there is one.
+    /// The largest condition number at which a pose counts, if it is limited.
     #[getter]
     fn max_condition(&self) -> Option<f64> {
         self.workspace.limit().map(|limit| limit.most)
@@ -152,19 +152,19 @@ impl Sweep {
         self.workspace.length()
     }
 
-    /// Orientations of the grid: values of the upper section's coordinates together.
+    /// Number of orientations of the grid: combinations of values of the upper section's coordinates.
     #[getter]
     fn orientations(&self) -> u64 {
         self.workspace.grid().slices()
     }
 
-    /// Points of the workspace: of poses, those in reach and within all limits.
+    /// Number of points of the workspace. A pose counts if it is in reach and within all limits.
     #[getter]
     fn count(&self) -> u64 {
         self.count.reachable
     }
 
-    /// Points of the grid that could be in: poses, places of the grid, or orientations of it.
+    /// Number of points of the grid: its poses, places or orientations.
     #[getter]
     fn poses(&self) -> u64 {
         self.count.poses
@@ -194,7 +194,7 @@ impl Sweep {
         values(py, &self.workspace.grid().axes()[self.span()])
     }
 
-    /// The values of every coordinate of the grid; of places and orientations, the others as well.
+    /// The values of every coordinate of the grid, including those that places or orientations do not have.
     #[getter]
     fn grid<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         values(py, self.workspace.grid().axes())
@@ -206,7 +206,7 @@ impl Sweep {
         self.workspace.grid().coordinates().iter().map(|c| (&*c.name, c.quantity.unit())).collect()
     }
 
-    /// Sweeps are the same if they are of the same mechanism and were asked for the same, on any number of threads.
+    /// Sweeps are equal if their mechanisms and queries are equal, on any number of threads.
     fn __eq__(&self, other: &Self) -> bool {
         self.of.get() == other.of.get()
             && self.mode == other.mode
@@ -217,7 +217,7 @@ impl Sweep {
         html::of(slf, "sweep")
     }
 
-    /// The working mode, as it was asked for.
+    /// The working mode, as it was given.
     #[getter]
     fn mode(&self) -> &str {
         &self.mode
@@ -258,7 +258,7 @@ fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
 }
 
 impl Sweep {
-    /// A sweep that is still to be done. Where no axis is given, the grid is fitted to the workspace.
+    /// A sweep that is still to be done. If no axis is given, the grid is fitted to the workspace.
     fn planned(
         py: Python<'_>,
         of: Py<Manipulator>,

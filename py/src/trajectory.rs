@@ -38,7 +38,7 @@ pub struct Trajectory {
     /// (n, d): their second derivatives, m/s² and rad/s².
     #[pyo3(get)]
     pose_accelerations: Py<PyArray2<f64>>,
-    /// (n, k): every joint coordinate, metres and radians; angles go on across half turns.
+    /// (n, k): every joint coordinate, metres and radians; angles are continuous, not wrapped at π.
     #[pyo3(get)]
     joints: Py<PyArray2<f64>>,
     /// (n, k), m/s and rad/s.
@@ -56,25 +56,25 @@ pub struct Trajectory {
     /// (n, j), m/s² and rad/s².
     #[pyo3(get)]
     imaginary_accelerations: Py<PyArray2<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist.
+    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist.
     #[pyo3(get)]
     condition: Py<PyArray1<f64>>,
-    /// (n,): in reach, limits apart.
+    /// (n,): whether the pose is in reach, joint limits not considered.
     #[pyo3(get)]
     reachable: Py<PyArray1<bool>>,
-    /// (n,): in reach, and all joints within their limits.
+    /// (n,): whether the pose is in reach and all joints are within their limits.
     #[pyo3(get)]
     within_limits: Py<PyArray1<bool>>,
-    /// (n,): in reach, and every joint has its rate.
+    /// (n,): whether the pose is in reach and every joint has a rate.
     #[pyo3(get)]
     regular: Py<PyArray1<bool>>,
-    /// What it cannot follow, found between the samples too, in the order of time.
+    /// What the mechanism cannot follow, also between the samples, in the order of time.
     #[pyo3(get)]
     violations: Vec<Violation>,
-    /// Of the columns of `joints`.
+    /// Names of the columns of `joints`.
     #[pyo3(get)]
     joint_names: Vec<String>,
-    /// Of the columns of `imaginary`.
+    /// Names of the columns of `imaginary`.
     #[pyo3(get)]
     imaginary_names: Vec<String>,
     /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
@@ -83,16 +83,16 @@ pub struct Trajectory {
     /// The working mode.
     #[pyo3(get)]
     mode: String,
-    /// Of the motion.
+    /// Name of the motion.
     #[pyo3(get)]
     name: String,
-    /// n.
+    /// Number of rows, n.
     #[pyo3(get)]
     rows: usize,
     source: Source,
 }
 
-/// What was followed: for a recording.
+/// The motion that was followed, for a recording.
 struct Source {
     manipulator: Py<Manipulator>,
     motion: PlatformMotion,
@@ -109,17 +109,17 @@ struct Source {
 pub struct Violation {
     /// ``"reach"``, ``"limit"`` or ``"singularity"``.
     kind: String,
-    /// Seconds.
+    /// Time at which it starts, seconds.
     start: f64,
-    /// Seconds; of a singularity, as `start`.
+    /// Time at which it ends, seconds; equal to `start` for a singularity.
     end: f64,
-    /// When it is worst, seconds.
+    /// Time at which it is worst, seconds.
     worst: f64,
-    /// By how much, there; in :attr:`unit`.
+    /// How large the violation is at that time, in :attr:`unit`.
     amount: f64,
-    /// Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure.
+    /// Unit of the amount: ``"m"``, ``"rad"``, or ``"1"`` for the remaining measure of a singularity.
     unit: String,
-    /// The leg that it is about.
+    /// The leg that the violation is about.
     leg: Option<String>,
     /// The joint that is past its limit.
     joint: Option<String>,
@@ -129,7 +129,7 @@ pub struct Violation {
     bound: Option<String>,
     /// ``"serial"`` or ``"parallel"``.
     singularity: Option<String>,
-    /// All of it, as a line.
+    /// The whole violation in one line.
     message: String,
 }
 
@@ -139,23 +139,23 @@ pub struct Violation {
 /// ----------
 /// manipulator : Manipulator
 /// motion : path, str or (w, d) array_like
-///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
-///     coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
-///     waypoint before, as those of a table are.
+///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints with one
+///     column for each task coordinate, through which a natural cubic spline passes. Angles are brought within π of the
+///     preceding waypoint, as those of a table are.
 /// times : (w,) sequence of float, optional
-///     When the waypoints are, seconds, increasing; three at least.
+///     Times of the waypoints, seconds, increasing; at least three.
 /// rate : float, optional
-///     Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+///     Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
 /// mode : str, optional
-///     ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+///     ``"home"``, or a sign for every two-valued choice; if not given, the mode of the file, or home.
 ///
 /// Raises
 /// ------
 /// OSError
 ///     The file cannot be read.
 /// OpmError
-///     Every problem of the file with its line and column; waypoints that are not poses, times that do not increase (of which waypoint,
-///     counted from zero).
+///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
+///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
 #[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
 pub fn trajectory(
@@ -190,7 +190,7 @@ pub fn trajectory(
 /// A motion, the name of its file, and the text of that.
 type Read = (PlatformMotion, String, String);
 
-/// Waypoints, as the table of poses that they are.
+/// Waypoints as a table of poses.
 fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
     let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
     let poses = Rows::new(&poses)?;
@@ -238,7 +238,7 @@ fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> 
     Ok((motion, name, text))
 }
 
-/// What the text of a file of this name says; messages call it `label`.
+/// The motion in the text of a file of this name; messages call it `label`.
 fn parse(
     manipulator: &Manipulator,
     text: &str,
@@ -252,7 +252,7 @@ fn parse(
     motion.map_err(|errors| wrong(errors.in_file(label)))
 }
 
-/// Columns in the making.
+/// The columns while they are filled.
 #[derive(Default)]
 struct Record {
     times: Vec<f64>,
@@ -276,7 +276,7 @@ impl Record {
             + manipulator.coordinates().len()
             + manipulator.imaginary().len();
         let room = usize::try_from(samples).ok().and_then(|n| n.checked_mul(3 * width));
-        // The room itself is asked for table by table; this says early that there is none.
+        // Memory is allocated table by table; this reports early if there is not enough.
         let whole = room.filter(|&room| Vec::<f64>::new().try_reserve_exact(room).is_ok());
         whole.ok_or_else(|| no_memory(format_args!("{samples} samples")))?;
         while !stop.load(Ordering::Relaxed) && followed.advance().map_err(|e| failed(&e))? {
@@ -395,7 +395,7 @@ pickled!(Violation {
 
 columns!(Trajectory);
 
-/// What of a trajectory is as Python sees it.
+/// The parts of a trajectory in the form that Python sees.
 const ATTRIBUTES: [&str; 21] = [
     "times",
     "poses",
@@ -485,12 +485,12 @@ impl Trajectory {
     /// Parameters
     /// ----------
     /// path : path
-    ///     The file appears when it is whole.
+    ///     The file appears when it is complete.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     A file that cannot be written.
+    ///     The file cannot be written.
     fn write_mcap(
         &self,
         py: Python<'_>,

@@ -11,7 +11,7 @@ use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// Rates and accelerations of every joint at many poses; NaN where there is none.
+/// Rates and accelerations of every joint at many poses; NaN where a joint has none.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Motion {
     /// (n, k), rad/s and m/s.
@@ -22,36 +22,38 @@ pub struct Motion {
     imaginary_rates: Py<PyArray2<f64>>,
     /// (n, j), rad/s² and m/s².
     imaginary_accelerations: Py<PyArray2<f64>>,
-    /// (n,): in reach, limits apart.
+    /// (n,): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArray1<bool>>,
-    /// (n,): in reach, and every joint has its rate.
+    /// (n,): whether the pose is in reach and every joint has a rate.
     regular: Py<PyArray1<bool>>,
 }
 
-/// How near many poses are to singular, (n,) each: signed measures without dimension that vanish at a singularity.
+/// How near many poses are to a singularity: signed measures without unit, (n,) each, that vanish at a singularity.
 ///
-/// NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
+/// They are NaN where a pose is out of reach. Parallel measures are NaN, too, where the inputs are too few to hold the section.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Singularity {
-    /// (n,), no unit: of the upper section: zero where the chain of a leg is.
+    /// (n,), no unit: a measure of the upper section that is zero where the chain of a leg is singular.
     upper_serial: Py<PyArray1<f64>>,
-    /// (n,), no unit: of the upper section: zero where its inputs do not hold it.
+    /// (n,), no unit: a measure of the upper section that is zero where its inputs do not hold it.
     upper_parallel: Py<PyArray1<f64>>,
-    /// (n,), no unit: of the lower section: zero where the chain of a leg is.
+    /// (n,), no unit: a measure of the lower section that is zero where the chain of a leg is singular.
     lower_serial: Py<PyArray1<f64>>,
-    /// (n,), no unit: of the lower section: zero where its inputs do not hold it.
+    /// (n,), no unit: a measure of the lower section that is zero where its inputs do not hold it.
     lower_parallel: Py<PyArray1<f64>>,
-    /// (n,), no unit: of the whole mechanism.
+    /// (n,), no unit: the measure of this kind for the whole mechanism.
     serial: Py<PyArray1<f64>>,
-    /// (n,), no unit: of the whole mechanism.
+    /// (n,), no unit: the measure of this kind for the whole mechanism.
     parallel: Py<PyArray1<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity.
+    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
+    /// infinite at a singularity.
     condition: Py<PyArray1<f64>>,
-    /// (n,), no unit: the volume that unit rates of the actuated joints span of twists, lengths over the characteristic length.
+    /// (n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
+    /// characteristic length.
     manipulability: Py<PyArray1<f64>>,
-    /// (n,), no unit: zero where the coordinates of the pose are singular, which is nothing to the mechanism.
+    /// (n,), no unit: zero where the coordinates of the pose are singular; this is not a singularity of the mechanism.
     coordinates: Py<PyArray1<f64>>,
-    /// (n,): in reach, limits apart.
+    /// (n,): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArray1<bool>>,
 }
 
@@ -96,7 +98,7 @@ impl Singularity {
     }
 }
 
-/// How many poses there are, and of how many each answer is yes.
+/// The number of poses, and the number of poses for which each flag is true.
 fn counted<const N: usize>(
     py: Python<'_>,
     answers: [&Py<PyArray1<bool>>; N],
@@ -115,13 +117,13 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// poses : (n, d) array_like
-    ///     A pose a row, a task coordinate a column; metres and radians.
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// joints : str
-    ///     ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+    ///     Which joints the ``a`` rows are: ``"actuated"``, or ``"all"`` for every joint coordinate.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
@@ -182,15 +184,15 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// poses : (n, d) array_like
-    ///     A pose a row, a task coordinate a column; metres and radians.
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// rates : (n, d) or (1, d) array_like
     ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
     /// accelerations : (n, d) or (1, d) array_like, optional
-    ///     Second derivatives, m/s² and rad/s²; none if not given.
+    ///     Second derivatives, m/s² and rad/s²; zero if not given.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
@@ -211,7 +213,7 @@ impl Manipulator {
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let per_pose = |rows: &Rows<'_>, what: &str| {
-            // One row is for all poses.
+            // A single row is used for all poses.
             if rows.count != poses.count && rows.count != 1 {
                 let (given, expected) = (rows.count, poses.count);
                 return Err(wrong(format!("{given} rows of {what}, expected {expected}, or one")));
@@ -284,18 +286,18 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// poses : (n, d) array_like
-    ///     A pose a row, a task coordinate a column; metres and radians.
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// length : float, optional
     ///     Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
     /// threads : int, optional
-    ///     1 to 1024; the result does not depend on it. A processor each if not given.
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
     /// Singularity
-    ///     A number a pose and measure, NaN out of reach.
+    ///     One number for each pose and measure, NaN where the pose is out of reach.
     #[pyo3(signature = (poses, *, mode = "home", length = None, threads = None))]
     fn singularity<'py>(
         &self,

@@ -9,9 +9,9 @@ __all__ = ["main"]
 
 
 def main() -> int:
-    """Do what the command line asks for; the status to exit with."""
-    # Python only notes down that Ctrl-C was pressed, until the program returns: here it ends it at once, and
-    # where there is something to be put in order first, the program says so itself.
+    """Run the command line and return the exit status."""
+    # By default Python only records Ctrl-C until the program returns. Here Ctrl-C ends it at once; where something
+    # has to be put in order first, the program handles the signal itself.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["opm", *sys.argv[1:]])
 

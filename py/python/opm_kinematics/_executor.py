@@ -1,4 +1,4 @@
-"""Parts of some work on any executor: submitted as pickled specifications, run again where a worker is lost.
+"""Parts of some work on any executor: submitted as pickled specifications, run again if a worker is lost.
 
 What the work itself gives or raises comes back in an :class:`_Answer`. So whatever else a future gives or raises was made by the
 executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
@@ -47,7 +47,7 @@ class Workers:
     Parameters
     ----------
     executor : concurrent.futures.Executor or callable
-        One; or what makes one.
+        An executor, or a function that makes one.
     """
 
     def __init__(self, executor: Executor | Callable[[], Executor]) -> None:
@@ -73,7 +73,7 @@ class Workers:
             self._made = None
 
     def shards(self) -> int:
-        """How many parts are good for the executor, which is made where it is not yet."""
+        """A suitable number of parts for the executor, which is made if there is none yet."""
         workers = _number_of_workers(self._executor())
         return SHARDS if workers is None else SHARDS_EACH * workers
 
@@ -84,7 +84,7 @@ class Workers:
         parts: Sequence[tuple[Any, ...]],
         fold: Callable[[Any, Any], Any] | None = None,
     ) -> Any:
-        """What the parts give.
+        """The results of the parts.
 
         Parameters
         ----------
@@ -93,19 +93,19 @@ class Workers:
         task : str
             Which method of the plan works on a part.
         parts : sequence of tuple
-            Its arguments, a tuple a part.
+            Its arguments, one tuple for each part.
         fold : callable, optional
-            Puts the results of two parts together, in whatever order they come: so that one alone is kept.
+            Combines the results of two parts, in the order in which they come, so that only one is kept.
 
         Returns
         -------
         list or object
-            A result a part, in their order; or the one that they fold to.
+            One result for each part, in their order; or the one result of `fold`.
 
         Raises
         ------
         OpmError
-            A part was lost with its worker again and again, or the executor is broken.
+            A part was lost with its worker repeatedly, or the executor is broken.
         Exception
             What the work itself raised.
         """
@@ -149,7 +149,7 @@ def run(
 
 
 class _Results:
-    """What has come of the parts: one by one, or folded."""
+    """The results of the parts: one by one, or folded."""
 
     def __init__(self, fold: Callable[[Any, Any], Any] | None) -> None:
         self._fold, self._folded, self._each = fold, [], {}  # type: ignore[var-annotated]
@@ -167,7 +167,7 @@ class _Results:
 def _round(
     pool: Executor, plan: object, task: str, missing: dict[int, tuple[Any, ...]], results: _Results
 ) -> BaseException | None:
-    """Runs the parts that are missing once, takes those away that have a result, and gives a sign of a lost worker.
+    """Runs the parts that are missing once, removes those that have a result, and returns the evidence of a lost worker.
 
     A broken executor is the sign that it gives first: such a one takes no more work.
     """
@@ -242,7 +242,7 @@ class _Submitted:
 
 
 def _number_of_workers(executor: Executor) -> int | None:
-    """How many parts an executor works on at a time, where it tells.
+    """How many parts an executor works on at a time, if it says so.
 
     The pools of the standard library, of loky and of mpi4py have a fixed number of workers. That of a Dask cluster
     may grow with what it has to do.
@@ -273,7 +273,7 @@ def _work(plan: object, task: str, part: tuple[Any, ...], _submission: int) -> _
 
 
 def _portable(error: Exception) -> Exception:
-    """The error, or one that says the same, where it cannot be pickled: it would look like a lost part."""
+    """The error; or, if it cannot be pickled and would look like a lost part, one with the same message."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

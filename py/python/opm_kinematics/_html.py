@@ -1,4 +1,4 @@
-"""What notebooks show of the package's objects."""
+"""HTML of the package's objects for notebooks."""
 
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
@@ -110,7 +110,7 @@ def _some(count: int, cells: Callable[[int], list[str]], width: int) -> list[lis
 
 
 def _ends(values: NDArray[np.float64]) -> tuple[float, float]:
-    """Lowest and highest value, where there is any."""
+    """Lowest and highest value, if there is any."""
     known = values[~np.isnan(values)]
     return (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan)
 

@@ -38,7 +38,7 @@ __all__ = [
 __version__: str
 
 class OpmError(ValueError):
-    """A mechanism, a pose or an option that cannot be computed with."""
+    """A mechanism, a pose or an option with which opm cannot compute."""
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
 
@@ -46,17 +46,17 @@ _Executor: TypeAlias = Executor | Callable[[], Executor]
 
 @final
 class Decomposition:
-    """How the legs of a mechanism were cut in two: what ``opm decompose`` says."""
+    """How the legs of a mechanism are split in two: the result of ``opm decompose``."""
 
     @property
     def name(self) -> str:
-        """Of the mechanism."""
+        """Name of the mechanism."""
     @property
     def rank(self) -> int:
-        """Of all joint screws, lambda."""
+        """Rank of all joint screws, lambda."""
     @property
     def mobility(self) -> int:
-        """N."""
+        """Mobility of the mechanism, N."""
     @property
     def imaginary_joints(self) -> int:
         """Independent motions of the imaginary joints, J."""
@@ -71,10 +71,10 @@ class Decomposition:
         """Subspace of the upper section."""
     @property
     def intersection(self) -> Intersection:
-        """What both have in common."""
+        """The motion that both sections have in common."""
     @property
     def legs(self) -> list[LegSplit]:
-        """A leg each, in the order of the mechanism file."""
+        """One entry for each leg, in the order of the mechanism file."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def _repr_html_(self) -> str: ...
@@ -91,7 +91,7 @@ class Intersection:
         """Unit vector of its positive direction, base coordinates."""
     @property
     def point(self) -> tuple[float, float, float] | None:
-        """A point of the axis, metres; of a translation none."""
+        """A point of the axis, metres; None for a translation."""
     @property
     def pitch(self) -> float | None:
         """Advance of a helical motion, metres per radian."""
@@ -100,11 +100,11 @@ class Intersection:
 
 @final
 class LegSplit:
-    """Where a leg was cut."""
+    """How one leg is split between the two sections."""
 
     @property
     def name(self) -> str:
-        """Of the leg."""
+        """Name of the leg."""
     @property
     def lower(self) -> list[str]:
         """Joints in the lower section, base first."""
@@ -113,7 +113,7 @@ class LegSplit:
         """Joints in the upper section, base first."""
     @property
     def imaginary(self) -> str | None:
-        """The imaginary joint that bridges the cut."""
+        """The imaginary joint at the split."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -123,7 +123,7 @@ class TaskCoordinate:
 
     @property
     def name(self) -> str:
-        """Of the coordinate: ``"x"``, ``"zeta"``, ..."""
+        """Name of the coordinate: ``"x"``, ``"zeta"``, ..."""
     @property
     def home(self) -> float:
         """The value at home, metres or radians."""
@@ -165,9 +165,9 @@ class Linkage:
         Raises
         ------
         OSError
-            The file cannot be read: FileNotFoundError, with its name, where there is none.
+            The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
         OpmError
-            Every problem of the file with its line and column, or what it has instead of two spherical four-bars.
+            Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
         """
     @staticmethod
     def parse(text: str, label: str | None = None) -> Linkage:
@@ -178,7 +178,7 @@ class Linkage:
         text : str
             TOML.
         label : str, optional
-            What messages call it.
+            The name that messages use for the text.
 
         Returns
         -------
@@ -188,7 +188,7 @@ class Linkage:
         Raises
         ------
         OpmError
-            Every problem of the text with its line and column, or what it has instead of two spherical four-bars.
+            Lists every problem of the text with its line and column, or says why it is not a loop of two spherical four-bars.
         """
     @property
     def name(self) -> str:
@@ -206,7 +206,7 @@ class Linkage:
     def home(self) -> list[float]:
         """(k,): every joint at home, radians."""
     def home_branch(self, input: str | None = None) -> str:
-        """The branch that the linkage is assembled in, moved by one of its joints.
+        """The branch in which the linkage is assembled, if one of its joints moves it.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class Linkage:
         Returns
         -------
         str
-            Its two signs: of the four-bar that has the input, and of the other one.
+            Two signs: the first for the four-bar with the input, the second for the other one.
 
         Raises
         ------
@@ -224,7 +224,7 @@ class Linkage:
             There is no joint of this name.
         """
     def range(self, input: str | None = None) -> NDArray[np.float64]:
-        """Where the loop closes: the range of one joint, limits apart.
+        """The range of one joint in which the loop closes, joint limits not considered.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Linkage:
         Returns
         -------
         (r, 2) array
-            Lowest and highest value of every part, radians. Of a whole turn it is the one about home.
+            Lowest and highest value of every interval, radians. A full revolution is given as the interval around home.
 
         Raises
         ------
@@ -249,23 +249,23 @@ class Linkage:
         Parameters
         ----------
         values : (n,) array_like
-            Of the joint that moves the linkage, radians.
+            Values of the joint that moves the linkage, radians.
         input : str, optional
-            Its name; the actuated one if not given.
+            Name of that joint; the actuated one if not given.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         Solutions
-            As of all modes, with the four branches in their place: ``(n, 4, k)``, ``(n, 4, 1)``, ``(n, 4)``. NaN where the loop
-            does not close. Angles are within half a turn of home, unless the limits allow another turn; ``np.unwrap`` along
-            the first axis makes those of a whole turn continuous.
+            The arrays have the shapes ``(n, 4, k)``, ``(n, 4, 1)`` and ``(n, 4)``, with the four branches as modes. NaN where the
+            loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
+            ``np.unwrap`` along the first axis makes angles over full revolutions continuous.
 
         Raises
         ------
         OpmError
-            There is no joint of this name, or a value is not finite (which, counted from zero).
+            There is no joint of this name, or a value is not finite; the message gives its index, counted from zero.
         """
 
 @final
@@ -292,9 +292,9 @@ class Manipulator:
         Raises
         ------
         OSError
-            The file cannot be read: FileNotFoundError, with its name, where there is none.
+            The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
         OpmError
-            Every problem of the file with its line and column, or why it has no closed-form inverse kinematics.
+            Lists every problem of the file with its line and column, or says why it has no closed-form inverse kinematics.
         """
     @staticmethod
     def from_screws(
@@ -309,32 +309,32 @@ class Manipulator:
     ) -> Manipulator:
         """Compile a mechanism that is given by the screws of its joints at an assembled pose, home.
 
-        It is decomposed as any other; `text` is a mechanism file that says the same.
+        It is decomposed like any other; `text` is an equivalent mechanism file.
 
         Parameters
         ----------
         legs : mapping of str to (n, 6) array_like, or sequence of them
-            A leg each, by name; else they are called leg1, leg2, ... A row is the twist (omega; v) of a joint of one
-            freedom about the base frame, base to platform, of any length but zero: ``(a, p × a + h a)`` turns about ``a``
-            through ``p`` with an advance of ``h`` metres a radian, ``(0, a)`` slides along ``a``. Joints of several
-            freedoms are several rows.
+            One array for each leg, by name; without names the legs are leg1, leg2, ... A row is the twist (omega; v) of a
+            joint with one degree of freedom, in the base frame, from base to platform, of any length except zero:
+            ``(a, p × a + h a)`` rotates about ``a`` through ``p`` with an advance of ``h`` metres per radian, ``(0, a)``
+            slides along ``a``. A joint with several degrees of freedom has several rows.
         actuated : sequence of (n,) sequences of bool
-            Which joints are driven, a sequence a leg.
+            Which joints are actuated: one sequence for each leg.
         home : sequence of (n,) sequences of float, optional
             Joint values at home, radians and metres; zero if not given.
         limits : sequence of (n,) sequences of (float, float) or None, optional
-            Lowest and highest value of each joint. ``None``, or both infinite, is none.
+            Lowest and highest value of each joint. ``None``, or two infinite values, means no limits.
         joints : sequence of (n,) sequences of str, optional
-            Names, q1_1, q1_2, ... if not given: leg, then joint.
+            Names of the joints; if not given, q1_1, q1_2, ... (number of the leg, then of the joint).
         platform : (3,) sequence of float
             Reference point of the platform at home, metres; the base's origin if not given.
         name : str
-            Of the mechanism.
+            Name of the mechanism.
 
         Raises
         ------
         OpmError
-            What is wrong with which joint of which leg; or why the mechanism has no closed-form inverse kinematics.
+            Says what is wrong with which joint of which leg, or why the mechanism has no closed-form inverse kinematics.
         """
     @staticmethod
     def parse(text: str, label: str | None = None) -> Manipulator:
@@ -345,7 +345,7 @@ class Manipulator:
         text : str
             TOML.
         label : str, optional
-            What messages call it.
+            The name that messages use for the text.
 
         Returns
         -------
@@ -355,20 +355,21 @@ class Manipulator:
         Raises
         ------
         OpmError
-            Every problem of the text with its line and column, or why it has no closed-form inverse kinematics.
+            Lists every problem of the text with its line and column, or says why it has no closed-form inverse kinematics.
         """
     @property
     def name(self) -> str:
         """The mechanism's name."""
     @property
     def text(self) -> str:
-        """The mechanism file. After :meth:`with_parameters` one in metres and radians that gives the same to the bit."""
+        """The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit."""
     @property
     def parameters(self) -> dict[str, float | tuple[float, float] | None]:
         """The geometric parameters of its family by name; empty for a list of joints.
 
         ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-        of its joints. Metres and radians; points ``(x, y)``, limits ``(lowest, highest)`` or None where there are none.
+        of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``,
+        or None if there are none.
         """
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
@@ -378,21 +379,21 @@ class Manipulator:
         Parameters
         ----------
         changes : mapping, optional
-            New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it, and a
-            whole one (``leg1.h``) in one leg, whatever the other says.
+            New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
+            full name (``leg1.h``) sets it in one leg and takes precedence.
         **named
-            Likewise, for names without dots.
+            New values for names without dots.
 
         Returns
         -------
         Manipulator
-            A new one; this one stays as it is. It is assembled at the same home pose in the same working mode.
+            A new manipulator, assembled at the same home pose in the same working mode; this one does not change.
 
         Raises
         ------
         OpmError
-            Every name that is no parameter, with those that there are, and every value that is none; every leg that does not
-            reach home; home poses that are singular.
+            A name is not a parameter (the message lists those that exist), a value is not valid, a leg does not reach home, or
+            the home pose is singular. The message lists every such problem.
 
         Examples
         --------
@@ -425,13 +426,13 @@ class Manipulator:
         """Number of two-valued choices; there are ``2**choices`` working modes."""
     @property
     def decomposition(self) -> Decomposition:
-        """How the legs were cut in two."""
+        """How the legs are split in two."""
     @property
     def modes(self) -> list[str]:
         """Every working mode, all-plus first: the mode axis of ``inverse(poses, mode="all")``."""
     @property
     def screws(self) -> dict[str, NDArray[np.float64]]:
-        """The joints' unit screws by leg, (f, 6) each: (omega; v) at home about the base frame, a row a freedom."""
+        """The joints' unit screws by leg, (f, 6) each: (omega; v) at home in the base frame, one row for each degree of freedom."""
     def solids(self, pose: Sequence[float] | NDArray[np.float64] | None = None, *, mode: str = "home") -> list[Solid]:
         """The solids that the mechanism is drawn with, from its joint screws alone.
 
@@ -459,25 +460,26 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians. float64 in C order is used as it is, and must not be
-            written to meanwhile; anything else is converted first, in memory of its own.
+            One row for each pose, one column for each task coordinate; metres and radians. A float64 array in C order is used
+            without a copy and must not be written to meanwhile; anything else is copied and converted first.
         mode : str
-            ``"home"``; or a sign for every two-valued choice, a group a leg: ``"++ ++ ++ +"``; or ``"all"``, which
+            ``"home"``; or a sign for every two-valued choice, one group for each leg: ``"++ ++ ++ +"``; or ``"all"``, which
             gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
             of the ``m = 2**choices`` modes of `modes`.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         Solutions
-            Poses out of reach have NaN; angles are within half a turn of home, unless the limits allow another turn.
+            Joint values, NaN for poses out of reach. Angles are within π of their home values, unless the joint limits allow
+            another revolution.
 
         Raises
         ------
         OpmError
-            Columns that are not the task coordinates, a number that is not finite (of which pose, counted from zero), an unknown
-            mode.
+            The columns are not the task coordinates, a number is not finite (the message gives the index of its pose, counted
+            from zero), or the mode is unknown.
         """
 
     def jacobian(
@@ -488,13 +490,13 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians.
+            One row for each pose, one column for each task coordinate; metres and radians.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         joints : str
-            ``"actuated"``, or ``"all"`` for every joint coordinate: what the ``a`` rows are.
+            Which joints the ``a`` rows are: ``"actuated"``, or ``"all"`` for every joint coordinate.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
@@ -515,15 +517,15 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians.
+            One row for each pose, one column for each task coordinate; metres and radians.
         rates : (n, d) or (1, d) array_like
             First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
         accelerations : (n, d) or (1, d) array_like, optional
-            Second derivatives, m/s² and rad/s²; none if not given.
+            Second derivatives, m/s² and rad/s²; zero if not given.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
@@ -538,18 +540,18 @@ class Manipulator:
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians.
+            One row for each pose, one column for each task coordinate; metres and radians.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         length : float, optional
             Characteristic length of `condition` and `manipulability`, metres. The spread of the joint axes if not given.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         Singularity
-            A number a pose and measure, NaN out of reach.
+            One number for each pose and measure, NaN where the pose is out of reach.
         """
     def forward(
         self,
@@ -564,81 +566,82 @@ class Manipulator:
         Parameters
         ----------
         joints : (n, a) array_like
-            A row of actuated joint values each, in the order of `actuated`; metres and radians.
+            Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
         near : (d,) or (n, d) array_like, optional
-            From which pose Newton's method begins, metres and radians; one row is for all. It works for every mechanism, the
-            closed form not for all.
+            The pose from which Newton's method begins, metres and radians; one row is used for all. Newton's method works for
+            every mechanism, the closed form only for some.
         mode : str, optional
-            Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Of Newton's method the mode
-            that it stays in: home if not given.
+            Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Newton's method
+            stays in this mode, or in the home mode if not given.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         list of list of Assembly
-            A list a row: empty where there is none, or where Newton's method ends nowhere.
+            One list for each row: empty where there is no assembly, or where Newton's method does not converge.
 
         Raises
         ------
         OpmError
-            The mechanism's forward kinematics have no closed form, and `near` is not given; or that is out of reach.
+            The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
         """
     def transform(self, poses: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
-        """Where the platform is at each pose, in SE(3): its reference point and its orientation, in base coordinates.
+        """The displacement of the platform at each pose, in SE(3): its reference point and its orientation, in base coordinates.
 
         Parameters
         ----------
         poses : (n, d) array_like
-            A pose a row, a task coordinate a column; metres and radians.
+            One row for each pose, one column for each task coordinate; metres and radians.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         (n, 4, 4) ndarray
-            Homogeneous matrices: a rotation, which is none at home unless the coordinates measure it, and a position, metres.
+            Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
+            position, metres.
         """
     def locate(self, transforms: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
-        """The poses at which the platform is there: the inverse of :meth:`transform`.
+        """The poses at which the platform has the given displacements: the inverse of :meth:`transform`.
 
         Parameters
         ----------
         transforms : (n, 4, 4) array_like
             Homogeneous matrices, metres.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         (n, d) ndarray
-            Metres and radians, angles within half a turn of home. NaN where the displacement is none of the manipulator's motion:
-            :meth:`nearest` says by how much.
+            Metres and radians, angles within π of their home values. NaN where the displacement is outside the manipulator's
+            motion; :meth:`nearest` gives the difference.
 
         Raises
         ------
         OpmError
-            A matrix that is no rotation and position.
+            A matrix is not a rotation and a position.
         """
     def nearest(self, transforms: ArrayLike, *, threads: int | None = None) -> Nearest:
-        """The poses at which the platform is nearest to there, and what it lacks: for what :meth:`locate` has no pose.
+        """The poses nearest to the given displacements, and the differences that remain where :meth:`locate` has no pose.
 
         Parameters
         ----------
         transforms : (n, 4, 4) array_like
             Homogeneous matrices, metres.
         threads : int, optional
-            1 to 1024; the result does not depend on it. A processor each if not given.
+            1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
         Nearest
-            Nearest by least squares, in which a rotation counts by the mechanism's size.
+            Nearest by least squares; rotations are weighted with the mechanism's size.
 
         Raises
         ------
         OpmError
-            A matrix that is no rotation and position.
+            A matrix is not a rotation and a position.
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -653,7 +656,7 @@ class Assembly:
         """(d,): task coordinates, metres and radians."""
     @property
     def mode(self) -> str:
-        """The working mode that it is in."""
+        """The working mode of the assembly."""
     @property
     def joints(self) -> NDArray[np.float64]:
         """(k,): every joint coordinate, metres and radians."""
@@ -665,11 +668,11 @@ class Assembly:
         """Whether all joints are within their limits."""
     @property
     def residual(self) -> float:
-        """How far the legs fail to close: radians, and lengths over the mechanism's size."""
+        """Closure error of the legs: radians, and lengths divided by the mechanism's size."""
 
 @final
 class Motion:
-    """Rates and accelerations of every joint at many poses; NaN where there is none."""
+    """Rates and accelerations of every joint at many poses; NaN where a joint has none."""
 
     @property
     def joint_rates(self) -> NDArray[np.float64]:
@@ -685,63 +688,67 @@ class Motion:
         """(n, j), rad/s² and m/s²."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
-        """(n,): in reach, limits apart."""
+        """(n,): whether the pose is in reach, joint limits not considered."""
     @property
     def regular(self) -> NDArray[np.bool_]:
-        """(n,): in reach, and every joint has its rate."""
+        """(n,): whether the pose is in reach and every joint has a rate."""
 
 @final
 class Nearest:
-    """The poses of a manipulator's motion that are nearest to displacements of the platform, and what these are off by."""
+    """The poses of a manipulator's motion that are nearest to given displacements, and the differences that remain."""
 
     @property
     def poses(self) -> NDArray[np.float64]:
         """(n, d): task coordinates, metres and radians."""
     @property
     def rotation(self) -> NDArray[np.float64]:
-        """(n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero in the motion."""
+        """(n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero
+        where the displacement is in the motion."""
     @property
     def translation(self) -> NDArray[np.float64]:
-        """(n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero in the motion."""
+        """(n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero
+        where the displacement is in the motion."""
 
 @final
 class Singularity:
-    """How near many poses are to singular, (n,) each: signed measures without dimension that vanish at a singularity.
+    """How near many poses are to a singularity: signed measures without unit, (n,) each, that vanish at a singularity.
 
-    NaN where a pose is out of reach, and of parallel ones where the inputs are too few to hold the section at all.
+    They are NaN where a pose is out of reach. Parallel measures are NaN, too, where the inputs are too few to hold the section.
     """
 
     def _repr_html_(self) -> str: ...
     @property
     def upper_serial(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the upper section: zero where the chain of a leg is."""
+        """(n,), no unit: a measure of the upper section that is zero where the chain of a leg is singular."""
     @property
     def upper_parallel(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the upper section: zero where its inputs do not hold it."""
+        """(n,), no unit: a measure of the upper section that is zero where its inputs do not hold it."""
     @property
     def lower_serial(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the lower section: zero where the chain of a leg is."""
+        """(n,), no unit: a measure of the lower section that is zero where the chain of a leg is singular."""
     @property
     def lower_parallel(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the lower section: zero where its inputs do not hold it."""
+        """(n,), no unit: a measure of the lower section that is zero where its inputs do not hold it."""
     @property
     def serial(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the whole mechanism."""
+        """(n,), no unit: the measure of this kind for the whole mechanism."""
     @property
     def parallel(self) -> NDArray[np.float64]:
-        """(n,), no unit: of the whole mechanism."""
+        """(n,), no unit: the measure of this kind for the whole mechanism."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist; infinite at a singularity."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
+        infinite at a singularity."""
     @property
     def manipulability(self) -> NDArray[np.float64]:
-        """(n,), no unit: the volume that unit rates of the actuated joints span of twists, lengths over the characteristic length."""
+        """(n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
+        characteristic length."""
     @property
     def coordinates(self) -> NDArray[np.float64]:
-        """(n,), no unit: zero where the coordinates of the pose are singular, which is nothing to the mechanism."""
+        """(n,), no unit: zero where the coordinates of the pose are singular; this is not a singularity of the mechanism."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
-        """(n,): in reach, limits apart."""
+        """(n,): whether the pose is in reach, joint limits not considered."""
 
 @final
 class Solid:
@@ -758,17 +765,17 @@ class Solid:
         """``"base"``, ``"link"``, ``"actuated"``, ``"passive"``, ``"platform"`` or ``"imaginary"``."""
     @property
     def ends(self) -> NDArray[np.float64]:
-        """(2, 3): the ends of its axis, metres; of a ball both are its middle."""
+        """(2, 3): the ends of its axis, metres; for a ball both are its centre."""
     @property
     def width(self) -> float:
-        """Diameter, or side of the square of a block; metres."""
+        """Diameter, or side of the square section of a block, metres."""
 
 @final
 class Solutions:
     """Joint values of ``n`` poses, NaN where a pose is out of reach.
 
-    Of one working mode the arrays have the shapes below. Of all of them there is an axis more after the first, with an
-    entry a mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
+    For one working mode the arrays have the shapes below. For all modes they have one more axis after the first, with one
+    entry for each mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
     """
 
     @property
@@ -779,16 +786,16 @@ class Solutions:
         """(n, j): every imaginary joint, metres and radians."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
-        """(n,): in reach, limits apart."""
+        """(n,): whether the pose is in reach, joint limits not considered."""
     @property
     def within_limits(self) -> NDArray[np.bool_]:
-        """(n,): in reach, and all joints within their limits."""
+        """(n,): whether the pose is in reach and all joints are within their limits."""
     @property
     def joint_names(self) -> list[str]:
-        """Of the last axis of `joints`."""
+        """Names along the last axis of `joints`."""
     @property
     def imaginary_names(self) -> list[str]:
-        """Of the last axis of `imaginary`."""
+        """Names along the last axis of `imaginary`."""
     @property
     def units(self) -> dict[str, str]:
         """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
@@ -797,10 +804,10 @@ class Solutions:
         """The working mode, or ``"all"``."""
     @property
     def modes(self) -> list[str]:
-        """The working modes: of the mode axis, if there is one."""
+        """The working modes, in the order of the mode axis if there is one."""
     @property
     def rows(self) -> int:
-        """n."""
+        """Number of rows, n."""
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
@@ -808,10 +815,10 @@ class Solutions:
 
 @final
 class Measure:
-    """How much of a box is in reach and within all limits, between two bounds that are guaranteed.
+    """The measure of the part of a box that is in reach and within all limits, with guaranteed bounds.
 
-    In the product of metres and radians of the coordinates with a range; a tilt is weighed by its sine, so that a measure of
-    orientations is Haar's.
+    Its unit is the product of those of the coordinates with a range; a tilt is weighted with its sine, so that the measure
+    of orientations is the Haar measure.
     """
 
     @property
@@ -819,10 +826,10 @@ class Measure:
         """The middle of the bounds."""
     @property
     def lower(self) -> float:
-        """The measure is not less."""
+        """Lower bound of the measure."""
     @property
     def upper(self) -> float:
-        """The measure is not more."""
+        """Upper bound of the measure."""
     @property
     def whole(self) -> float:
         """The measure of the whole box."""
@@ -831,24 +838,24 @@ class Measure:
         """``value / whole``."""
     @property
     def units(self) -> str:
-        """What it is in: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``."""
+        """Unit of the measure: ``"m^2"``, ``"m^2 rad^3"``, ``"1"``."""
     @property
     def boxes(self) -> int:
-        """Boxes that were looked at."""
+        """Number of boxes that were examined."""
     @property
     def stop(self) -> str:
-        """Why it was taken no further: ``"tolerance"`` is met, ``"budget"`` is used up, ``"exhausted"`` where splitting brings
+        """Why the computation stopped: ``"tolerance"`` is met, ``"budget"`` is used up, or ``"exhausted"`` where splitting brings
         the bounds no closer."""
     @property
     def over(self) -> dict[str, float | tuple[float, float]]:
-        """Of every coordinate lowest and highest value, or the one that it is held at, as :func:`measure` takes them."""
+        """Lowest and highest value of every coordinate, or the value at which it is held, as :func:`measure` takes them."""
 
 @final
 class Outline:
     """The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
 
-    They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
-    workspace goes on beyond.
+    They run half-way between points inside and their neighbours outside, and along the edge of the grid where the
+    workspace continues beyond it.
     """
 
     @property
@@ -856,70 +863,70 @@ class Outline:
         """The coordinates of the plane: the columns of the polylines."""
     @property
     def at(self) -> dict[str, float]:
-        """The coordinate that it is sliced by, and its value; empty where there is one plane."""
+        """The coordinate of the slice and its value; empty if there is only one plane."""
     @property
     def rings(self) -> tuple[NDArray[np.float64], ...]:
         """Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
         pieces of the workspace, clockwise around holes."""
     @property
     def outer(self) -> tuple[NDArray[np.float64], ...]:
-        """Those around pieces."""
+        """The polylines around pieces."""
     @property
     def holes(self) -> tuple[NDArray[np.float64], ...]:
-        """Those around holes."""
+        """The polylines around holes."""
     @property
     def area(self) -> float:
-        """Of the pieces without the holes, in the product of both coordinates' units."""
+        """Area of the pieces without the holes, in the product of both coordinates' units."""
 
 @final
 class Conditioning:
-    """How well the poses of a workspace are conditioned: their local indices, one over the condition number each."""
+    """How well the poses of a workspace are conditioned. The local index of a pose is the inverse of its condition number."""
 
     @property
     def global_index(self) -> float | None:
         """The mean of the local indices (Gosselin and Angeles); None where no pose has one."""
     @property
     def local_min(self) -> float | None:
-        """The least."""
+        """The smallest local index."""
     @property
     def local_max(self) -> float | None:
-        """The greatest; one at best."""
+        """The largest local index; one at best."""
     @property
     def length(self) -> float:
         """Characteristic length of the condition numbers, metres."""
     @property
     def poses(self) -> int:
-        """Poses that have an index."""
+        """Number of poses that have an index."""
 
 @final
 class Sweep:
-    """A grid, swept: a workspace of some kind, of which a point is a pose, a place or an orientation."""
+    """A swept grid: a workspace of some kind, whose points are poses, places or orientations."""
 
     @property
     def kind(self) -> str:
-        """What the workspace is of, as it was asked for."""
+        """The kind of the workspace, as it was given."""
     @property
     def mode(self) -> str:
-        """The working mode, as it was asked for."""
+        """The working mode, as it was given."""
     @property
     def max_condition(self) -> float | None:
-        """The largest condition number at which a pose counts, if there is one."""
+        """The largest condition number at which a pose counts, if it is limited."""
     @property
     def length(self) -> float:
         """Characteristic length of condition numbers, metres."""
     def _repr_html_(self) -> str: ...
     @property
     def count(self) -> int:
-        """Points of the workspace: of poses, those in reach and within all limits."""
+        """Number of points of the workspace. A pose counts if it is in reach and within all limits."""
     @property
     def poses(self) -> int:
-        """Points of the grid that could be in: poses, places of the grid, or orientations of it."""
+        """Number of points of the grid: its poses, places or orientations."""
     @property
     def fraction(self) -> float:
         """``count / poses``."""
     @property
     def orientations(self) -> int:
-        """Orientations of the grid: values of the upper section's coordinates together."""
+        """Number of orientations of the grid: combinations of values of the upper section's coordinates."""
     @property
     def imaginary_range(self) -> dict[str, tuple[float, float] | None]:
         """Lowest and highest value of every imaginary joint over the reachable poses of the grid."""
@@ -928,15 +935,15 @@ class Sweep:
         """The values of every coordinate of the points, in the order of the mask's axes."""
     @property
     def grid(self) -> dict[str, NDArray[np.float64]]:
-        """The values of every coordinate of the grid; of places and orientations, the others as well."""
+        """The values of every coordinate of the grid, including those that places or orientations do not have."""
     @property
     def units(self) -> dict[str, str]:
         """``"m"`` or ``"rad"`` of every coordinate of the grid, by name."""
     def mask(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.bool_]:
-        """Which points are in: an axis a coordinate of :attr:`axes`, as many values as the grid has.
+        """Which points are in the workspace: one axis for each coordinate of :attr:`axes`, with one entry for each value.
 
-        `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
-        already, and nobody is asked again.
+        `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are
+        already known and are not computed again.
 
         Parameters
         ----------
@@ -961,7 +968,7 @@ class Sweep:
         Raises
         ------
         OpmError
-            Of another kind than ``"reachable"`` and ``"dexterous"``.
+            The kind is neither ``"reachable"`` nor ``"dexterous"``.
 
         Parameters
         ----------
@@ -976,13 +983,13 @@ class Sweep:
         Returns
         -------
         list of Outline
-            One; or, where a third coordinate has several values, one for each of these.
+            One outline; if a third coordinate has several values, one for each of them.
 
         Raises
         ------
         OpmError
-            Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
-            says nothing of the imaginary joints.
+            Fewer than two or more than three coordinates have several values; or the kind is ``"imaginary"``, where the
+            boundary of the orientations says nothing about the imaginary joints.
 
         Parameters
         ----------
@@ -994,8 +1001,8 @@ class Sweep:
     def components(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.uint64]:
         """How many points each connected component has, the largest first.
 
-        Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
-        last value next to the first. :meth:`labels` tells which point is in which.
+        Points are neighbours if they differ by one step along one coordinate; for an angle over a full revolution, the last
+        value is next to the first. :meth:`labels` gives the component of each point.
 
         Parameters
         ----------
@@ -1007,8 +1014,8 @@ class Sweep:
     def labels(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.int32]:
         """Which connected component each point belongs to, in the shape of the mask: 0 where the mask is False, 1 in the largest.
 
-        As of ``scipy.ndimage.label``, but for angles that come full circle. Component ``i`` has ``components()[i - 1]`` points;
-        of several of one size the one with the first point comes first.
+        This is like ``scipy.ndimage.label``, except for angles over a full revolution. Component ``i`` has
+        ``components()[i - 1]`` points; of components of equal size, the one with the first point comes first.
 
         Parameters
         ----------
@@ -1018,14 +1025,14 @@ class Sweep:
             As for :func:`sweep`.
         """
     def conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> Conditioning:
-        """The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
+        """The global conditioning index, and the smallest and largest local one: a few microseconds for each reachable pose.
 
-        Each pose in the first working mode that counts; every pose has the same weight.
+        Each pose is taken in the first working mode that counts; every pose has the same weight.
 
         Raises
         ------
         OpmError
-            The points are no poses.
+            The points are not poses.
 
         Parameters
         ----------
@@ -1037,12 +1044,12 @@ class Sweep:
     def local_conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> NDArray[np.float64]:
         """The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
 
-        One over the condition number: one at best, zero at a singularity.
+        The index is the inverse of the condition number: one at best, zero at a singularity.
 
         Raises
         ------
         OpmError
-            The points are no poses.
+            The points are not poses.
 
         Parameters
         ----------
@@ -1064,7 +1071,7 @@ class Sweep:
         Raises
         ------
         OpmError
-            The points are places or orientations, or there is a `max_condition`, of which a measure knows nothing.
+            The points are places or orientations, or there is a `max_condition`, which a measure does not support.
 
         Parameters
         ----------
@@ -1087,27 +1094,27 @@ class Sweep:
     ) -> None:
         """Record the points as ``opm workspace -o`` does, byte for byte.
 
-        With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only. The fields of an NPY file
-        are those of ``axes``, then of ``scalars``, then of ``color``, each once; without ``scalars`` the other task coordinates
-        come last.
+        The boundary is recorded too, except for kind ``"grid"``. Points that are not poses can only be written as MCAP. The
+        fields of an NPY file are those of ``axes``, then of ``scalars``, then of ``color``, each once; without ``scalars`` the
+        other task coordinates come last.
 
         Parameters
         ----------
         path : path
             Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
-            when it is whole.
+            when it is complete.
         axes : sequence of three str, or "tip", optional
-            The coordinates that are x, y and z of the cloud (of kind ``"imaginary"`` imaginary joints), or the platform's point.
+            The coordinates that are x, y and z of the cloud (imaginary joints for kind ``"imaginary"``), or the platform's point.
         scalars : sequence of str, optional
-            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; of places
+            Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; for places
             the ``share`` of orientations in which they are reached.
         color : str, optional
-            The one of them that the colour shows.
+            The value that the colour shows.
 
         Raises
         ------
         OpmError
-            A name that is none, a file that cannot be written.
+            A name is unknown, or the file cannot be written.
         """
     def write_mcap(
         self,
@@ -1117,12 +1124,12 @@ class Sweep:
         scalars: Sequence[str] | None = None,
         color: str | None = None,
     ) -> None:
-        """:meth:`write`, of a name that ends in ``.mcap``.
+        """Like :meth:`write` for a path that ends in ``.mcap``.
 
         Parameters
         ----------
         path : path
-            The file appears when it is whole.
+            The file appears when it is complete.
         axes : sequence of three str, or "tip", optional
             As for :meth:`write`.
         scalars : sequence of str, optional
@@ -1150,7 +1157,7 @@ def sweep(
     ----------
     manipulator : Manipulator
     kind : str
-        What the workspace is of, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
+        Kind of the workspace, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
         lower one.
 
         * ``"grid"``: poses.
@@ -1163,29 +1170,29 @@ def sweep(
     mode : str
         ``"home"``, ``"any"``, or a sign for every two-valued choice.
     max_condition : float, optional
-        Only poses with a condition number of at most this count, in a mode in which they have it.
+        Only poses whose condition number is at most this count, in a mode in which it is.
     length : float, optional
         Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
     threads : int, optional
-        1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+        1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
     executor : concurrent.futures.Executor or callable, optional
-        Who does the work: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
+        Where the work is done: a ``ProcessPoolExecutor``, a Dask cluster's ``client.get_executor(pure=False)``, one of
         ``mpi4py.futures``. What is sent is the manipulator, the grid and the number of a shard; the result is that of one
         process, to the bit. The shard of a lost worker runs again, three times at most. A process pool that has lost a worker
         takes no more work: give a function that makes one, and the shards that are missing go to a new one.
     shards : int, optional
-        How many parts the executor gets: 8 a worker if not given, 64 where it does not say how many it has; fewer for small
-        grids.
+        How many parts the executor gets: 8 for each worker if not given, 64 if it does not say how many it has; fewer for
+        small grids.
     **axes
-        Of each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. One that
-        is not given stays at home. Where none is given, the grid is fitted to the workspace, with a warning where that goes
-        on beyond it.
+        For each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. A coordinate
+        that is not given stays at home. If none is given, the grid is fitted to the workspace, with a warning if the
+        workspace continues beyond it.
 
     Raises
     ------
     OpmError
-        An axis that is none, ends that are not numbers or reversed, an unknown kind or mode, a grid that the kind is not of;
-        more places or orientations than fit in memory; shards that were lost again and again.
+        An axis is not a coordinate; its ends are reversed or not numbers; the kind or mode is unknown; the grid does not suit
+        the kind; the places or orientations do not fit in memory; or shards were lost repeatedly.
 
     Examples
     --------
@@ -1214,8 +1221,8 @@ def measure(
     ----------
     manipulator : Manipulator
     over : mapping, optional
-        Of each coordinate ``(min, max)`` or one value; metres and radians. If nothing is given, ranges that are fitted to the
-        workspace, and of the upper section alone every orientation; else one that is not given stays at home.
+        For each coordinate ``(min, max)`` or one value; metres and radians. A coordinate that is not given stays at home. If
+        none is given, ranges are fitted to the workspace; for the upper section alone, every orientation is measured.
     section : str
         ``"whole"``: poses. ``"upper"`` or ``"lower"``: one section alone, as those kinds of :func:`sweep`.
     mode : str
@@ -1223,21 +1230,21 @@ def measure(
     tolerance : float, optional
         How far the true measure may be from the value, as a share of it: 0.01 if not given.
     budget : int, optional
-        Boxes to look at, at most: 2**22 if not given.
+        Largest number of boxes to examine: 2**22 if not given.
     threads : int, optional
-        1 to 1024, here or in each worker; the result does not depend on it. A processor each if not given.
+        1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
     executor : concurrent.futures.Executor or callable, optional
-        Who is asked for the boxes, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
-        more than 4096 boxes; smaller ones, not worth the way, are answered in this process, which fits ranges, too. An
-        executor that a function makes serves all rounds.
+        Where the boxes are examined, as for :func:`sweep`; the result is that of one process, to the bit. It gets the rounds of
+        more than 4096 boxes; smaller rounds are computed in this process, which also fits the ranges. An executor that a
+        function makes serves all rounds.
     shards : int, optional
-        How many parts of a round the executor gets: as for :func:`sweep`, but of at least 4096 boxes each but for the last.
+        How many parts of a round the executor gets: as for :func:`sweep`, but each except the last has at least 4096 boxes.
 
     Raises
     ------
     OpmError
-        A coordinate that is none, ends that are not numbers in order, an unknown section or mode; parts that were lost again
-        and again.
+        A coordinate is unknown; its ends are not numbers in order; the section or mode is unknown; or parts were lost
+        repeatedly.
     """
 
 @final
@@ -1246,7 +1253,7 @@ class Trajectory:
 
     @property
     def name(self) -> str:
-        """Of the motion."""
+        """Name of the motion."""
     @property
     def mode(self) -> str:
         """The working mode."""
@@ -1264,7 +1271,7 @@ class Trajectory:
         """(n, d): their second derivatives, m/s² and rad/s²."""
     @property
     def joints(self) -> NDArray[np.float64]:
-        """(n, k): every joint coordinate, metres and radians; angles go on across half turns."""
+        """(n, k): every joint coordinate, metres and radians; angles are continuous, not wrapped at π."""
     @property
     def joint_rates(self) -> NDArray[np.float64]:
         """(n, k), m/s and rad/s."""
@@ -1282,31 +1289,31 @@ class Trajectory:
         """(n, j), m/s² and rad/s²."""
     @property
     def condition(self) -> NDArray[np.float64]:
-        """(n,), no unit: condition number of the actuated joints' Jacobian by the platform's twist."""
+        """(n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
-        """(n,): in reach, limits apart."""
+        """(n,): whether the pose is in reach, joint limits not considered."""
     @property
     def within_limits(self) -> NDArray[np.bool_]:
-        """(n,): in reach, and all joints within their limits."""
+        """(n,): whether the pose is in reach and all joints are within their limits."""
     @property
     def regular(self) -> NDArray[np.bool_]:
-        """(n,): in reach, and every joint has its rate."""
+        """(n,): whether the pose is in reach and every joint has a rate."""
     @property
     def violations(self) -> list[Violation]:
-        """What it cannot follow, found between the samples too, in the order of time."""
+        """What the mechanism cannot follow, also between the samples, in the order of time."""
     @property
     def joint_names(self) -> list[str]:
-        """Of the columns of `joints`."""
+        """Names of the columns of `joints`."""
     @property
     def imaginary_names(self) -> list[str]:
-        """Of the columns of `imaginary`."""
+        """Names of the columns of `imaginary`."""
     @property
     def units(self) -> dict[str, str]:
         """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
     @property
     def rows(self) -> int:
-        """n."""
+        """Number of rows, n."""
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
@@ -1317,12 +1324,12 @@ class Trajectory:
         Parameters
         ----------
         path : path
-            The file appears when it is whole.
+            The file appears when it is complete.
 
         Raises
         ------
         OpmError
-            A file that cannot be written.
+            The file cannot be written.
         """
 
 @final
@@ -1334,22 +1341,22 @@ class Violation:
         """``"reach"``, ``"limit"`` or ``"singularity"``."""
     @property
     def start(self) -> float:
-        """Seconds."""
+        """Time at which it starts, seconds."""
     @property
     def end(self) -> float:
-        """Seconds; of a singularity, as `start`."""
+        """Time at which it ends, seconds; equal to `start` for a singularity."""
     @property
     def worst(self) -> float:
-        """When it is worst, seconds."""
+        """Time at which it is worst, seconds."""
     @property
     def amount(self) -> float:
-        """By how much, there; in :attr:`unit`."""
+        """How large the violation is at that time, in :attr:`unit`."""
     @property
     def unit(self) -> str:
-        """Of the amount: ``"m"``, ``"rad"``, or ``"1"`` for what is left of a singularity's measure."""
+        """Unit of the amount: ``"m"``, ``"rad"``, or ``"1"`` for the remaining measure of a singularity."""
     @property
     def leg(self) -> str | None:
-        """The leg that it is about."""
+        """The leg that the violation is about."""
     @property
     def joint(self) -> str | None:
         """The joint that is past its limit."""
@@ -1364,7 +1371,7 @@ class Violation:
         """``"serial"`` or ``"parallel"``."""
     @property
     def message(self) -> str:
-        """All of it, as a line."""
+        """The whole violation in one line."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -1383,30 +1390,30 @@ def trajectory(
     ----------
     manipulator : Manipulator
     motion : path, str or (w, d) array_like
-        A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints, a task
-        coordinate a column, which a natural cubic spline goes through; angles are brought within half a turn of the
-        waypoint before, as those of a table are.
+        A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints with one
+        column for each task coordinate, through which a natural cubic spline passes. Angles are brought within π of the
+        preceding waypoint, as those of a table are.
     times : (w,) sequence of float, optional
-        When the waypoints are, seconds, increasing; three at least.
+        Times of the waypoints, seconds, increasing; at least three.
     rate : float, optional
-        Samples a second; what the file asks for, or 100, if not given. The last sample is at the end of the motion.
+        Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
     mode : str, optional
-        ``"home"``, or a sign for every two-valued choice; what the file asks for, or home, if not given.
+        ``"home"``, or a sign for every two-valued choice; if not given, the mode of the file, or home.
 
     Raises
     ------
     OSError
         The file cannot be read.
     OpmError
-        Every problem of the file with its line and column; waypoints that are not poses, times that do not increase (of which waypoint,
-        counted from zero).
+        Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
+        message gives the index of the waypoint, counted from zero).
     """
 
 def examples() -> list[str]:
     """Names of the mechanisms that come with the package."""
 
 def example(name: str) -> str:
-    """The text of one of them.
+    """The text of one of the mechanisms of :func:`examples`.
 
     Parameters
     ----------
@@ -1425,7 +1432,7 @@ def example(name: str) -> str:
     """
 
 def command(arguments: Sequence[str]) -> int:
-    """Do what a command line asks for.
+    """Run a command line of ``opm``.
 
     Parameters
     ----------
@@ -1435,5 +1442,5 @@ def command(arguments: Sequence[str]) -> int:
     Returns
     -------
     int
-        The status to exit with.
+        The exit status.
     """

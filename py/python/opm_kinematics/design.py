@@ -1,11 +1,11 @@
 """Design by decomposition: the dimensions of one section after the other, instead of all at once.
 
 The imaginary joints cut a mechanism in two, and its parameters with it (Selvi, section 3.1: 25 parameters into 9 and 16). The
-upper section is optimised first, for a set of orientations; what it asks of the imaginary joints, a range of each, is its outcome.
+upper section is optimised first, for a set of orientations. The result is the range of each imaginary joint that it requires.
 Then the lower section is optimised to reach as many places as it can *with every value in these ranges*. A place that it
-reaches so is dexterous: the whole mechanism gets there in every orientation that was asked for.
+reaches so is dexterous: the whole mechanism reaches it in every orientation of the set.
 
-The optimiser is CMA-ES, of the package ``cma``: ``pip install 'opm-kinematics[design]'``. SI units and radians.
+The optimiser is CMA-ES from the package ``cma``: ``pip install 'opm-kinematics[design]'``. Values are in SI units and radians.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -30,7 +30,7 @@ UPPER = tuple(f"leg{leg}.{name}" for leg in (1, 2, 3) for name in ("alpha1", "al
 #: Those of its lower section: the direction, place and links of each slider, the arm's foot and links; sixteen numbers.
 LOWER = (*(f"leg{leg}.{name}" for leg in (1, 2, 3) for name in ("alpha", "h", "a1", "a2")), "leg4.base", "leg4.b1", "leg4.b2")
 
-#: What a design costs that does not assemble: more than one that assembles and reaches nothing.
+#: The cost of a design that does not assemble: more than that of one that assembles and reaches nothing.
 UNASSEMBLED = 2.0
 
 
@@ -41,7 +41,7 @@ class Variables:
     Parameters
     ----------
     bounds : mapping
-        Lowest and highest value by the name of the parameter, as in ``Manipulator.parameters``; of a point, a pair of bounds.
+        Lowest and highest value by the name of the parameter, as in ``Manipulator.parameters``; for a point, a pair of bounds.
 
     Examples
     --------
@@ -64,11 +64,11 @@ class Variables:
         object.__setattr__(self, "_ends", stacked)
 
     def __len__(self) -> int:
-        """How many numbers they are."""
+        """The number of scalar variables."""
         return len(self._ends)
 
     def parameters(self, shares: Iterable[float]) -> dict[str, float | tuple[float, float]]:
-        """Their values at these shares of the way between the bounds.
+        """The values of the parameters at these shares of the way between the bounds.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Variables:
         Returns
         -------
         dict
-            By name: SI units and radians, of a point a pair.
+            Values by name, in SI units and radians; a pair for a point.
         """
         low, high = self._ends.T
         values = iter((low + (high - low) * np.fromiter(shares, np.float64, len(self))).tolist())
@@ -87,7 +87,7 @@ class Variables:
         }
 
     def __or__(self, other: "Variables") -> "Variables":
-        """These and others together."""
+        """These variables and others together."""
         return Variables({**self.bounds, **other.bounds})
 
 
@@ -98,7 +98,7 @@ class Found:
     #: (len,): shares of the way between the bounds.
     shares: Vector
     cost: float
-    #: How often the cost was asked for.
+    #: How often the cost was evaluated.
     evaluations: int
     #: (evaluations,): the least cost so far.
     history: Vector
@@ -111,14 +111,14 @@ class Design:
     manipulator: Manipulator
     #: Share of the places that are dexterous: see :func:`dexterous`.
     dexterous: float
-    #: Ranges of the imaginary joints that the lower section was made for; empty where it was not designed by itself.
+    #: Ranges of the imaginary joints that the lower section was designed for; empty if all was designed at once.
     imaginary_range: dict[str, tuple[float, float]]
-    #: What was found for the sections, one after the other; or for all at once.
+    #: The optima of the sections in the order of their design; or the one optimum of all variables at once.
     found: tuple[Found, ...]
 
     @property
     def evaluations(self) -> int:
-        """How many designs were looked at."""
+        """How many designs were evaluated."""
         return sum(found.evaluations for found in self.found)
 
 
@@ -128,13 +128,13 @@ def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, se
     Parameters
     ----------
     cost : callable
-        Of a vector (dimension,) of numbers from 0 to 1.
+        A function of a vector (dimension,) of numbers from 0 to 1.
     dimension : int
         At least 2.
     budget : int
-        How often `cost` is asked for, at most; 1 at least.
+        Largest number of evaluations of `cost`, at least 1.
     seed : int
-        Of all chance: the same seed finds the same.
+        Seed of all random numbers: equal seeds give equal results.
     step : float
         Standard deviation of the first generation.
     """
@@ -157,7 +157,7 @@ def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, se
         return asked[-1]
 
     options = {"bounds": [0.0, 1.0], "verbose": -9, "tolfun": 0, "tolflatfitness": 10**9, "tolstagnation": 10**9}
-    while len(asked) < budget:  # once more from elsewhere where it has converged early
+    while len(asked) < budget:  # restart elsewhere if it has converged early
         options["seed"] = int(rng.integers(1, 2**31))
         evolution = cma.CMAEvolutionStrategy(rng.uniform(0.25, 0.75, dimension).tolist(), step, options)
         while len(asked) < budget and not evolution.stop():
@@ -196,21 +196,21 @@ def sections(
     values: int = 5,
     mode: str = "home",
 ) -> Design:
-    """Design the upper section first, then the lower one for the imaginary joints that the upper one asks for.
+    """Design the upper section first, then the lower one for the ranges of the imaginary joints that the upper one requires.
 
     Parameters
     ----------
     manipulator : Manipulator
-        Of a family; what is not among the variables stays as it is.
+        A mechanism of a family; parameters that are not variables keep their values.
     upper, lower : Variables
-        Of the sections; for the plano-spherical family :data:`UPPER` and :data:`LOWER` name them.
+        Variables of the sections; for the plano-spherical family :data:`UPPER` and :data:`LOWER` name them.
     places, orientations : mapping
         Grids as for :func:`dexterous`.
     budget : int
-        Designs to look at, shared out by the number of variables; 2 at least.
+        Number of designs to evaluate, shared in proportion to the numbers of variables; at least 2.
     seed : int
     values : int
-        Of each imaginary joint in its range, both ends among them: what the lower section is tried with.
+        Number of values of each imaginary joint over its range, both ends included, with which the lower section is evaluated.
     mode : str
     """
     _disjoint(places, orientations)
@@ -242,17 +242,17 @@ def undivided(
     seed: int = 0,
     mode: str = "home",
 ) -> Design:
-    """Design all at once: the same question as :func:`sections`, asked of the whole mechanism.
+    """Design all variables at once: the problem of :func:`sections` for the whole mechanism.
 
     Parameters
     ----------
     manipulator : Manipulator
-        Of a family; what is not among the variables stays as it is.
+        A mechanism of a family; parameters that are not variables keep their values.
     variables : Variables
     places, orientations : mapping
         Grids as for :func:`dexterous`.
     budget : int
-        Designs to look at, 1 at least.
+        Number of designs to evaluate, at least 1.
     seed : int
     mode : str
     """
@@ -266,14 +266,14 @@ def undivided(
     return Design(whole, dexterous(whole, places=places, orientations=orientations, mode=mode), {}, (found,))
 
 
-#: How much it counts to reach a place in some orientations, of what it counts in all: what leads to the first dexterous place.
+#: Weight of a place that is reached in some orientations, relative to one reached in all: it leads to the first dexterous place.
 SOME = 0.01
-#: How much a radian of the imaginary joints' ranges costs, of what an orientation costs that is out of reach.
+#: Cost of one radian of the imaginary joints' ranges, relative to that of an orientation out of reach.
 WIDTH = 0.01
 
 
 def _whole(what: str, value: int, least: int) -> int:
-    """A whole number that is large enough."""
+    """The value as a whole number of at least `least`."""
     try:
         number = index(value)
     except TypeError:
@@ -284,7 +284,7 @@ def _whole(what: str, value: int, least: int) -> int:
 
 
 def _disjoint(places: Axes, orientations: Axes) -> None:
-    """A coordinate is of the places or of the orientations."""
+    """Check that no coordinate belongs to both places and orientations."""
     both = [name for name in places if name in orientations]
     if both:
         raise OpmError(f"places and orientations both give {', '.join(both)}, expected each coordinate once")
@@ -296,7 +296,7 @@ def _swept(manipulator: Manipulator, mode: str, *grids: Axes, kind: str = "grid"
 
 
 def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipulator], float]) -> Callable[[Vector], float]:
-    """The cost of shares: that of the mechanism, if it assembles."""
+    """The cost as a function of the shares: the cost of the mechanism if it assembles."""
 
     def of(shares: Vector) -> float:
         try:
@@ -308,19 +308,19 @@ def _cost(manipulator: Manipulator, variables: Variables, cost: Callable[[Manipu
     known = manipulator.parameters
     for name in variables.bounds:
         if not any(full == name or full.endswith(f".{name}") for full in known):
-            manipulator.with_parameters({name: 0.0})  # tells that there is none, and what there is
+            manipulator.with_parameters({name: 0.0})  # raises an error that lists the parameters
     return of
 
 
 def _upper_cost(manipulator: Manipulator, orientations: Axes, mode: str) -> float:
-    """Orientations out of reach, then how wide the imaginary joints range."""
+    """The share of orientations out of reach, then the widths of the imaginary joints' ranges."""
     swept = _swept(manipulator, mode, orientations, kind="upper")
     widths = [found[1] - found[0] for found in swept.imaginary_range.values() if found is not None]
     return 1.0 - swept.fraction + (WIDTH * float(np.mean(widths)) if widths else 0.0)
 
 
 def _whole_cost(swept: Sweep, places: Axes) -> float:
-    """Places that are not reached in all that is asked for."""
+    """The share of places that are not reached with all values of the other coordinates."""
     every, some = _everywhere(swept, places)
     return 1.0 - every - SOME * some
 

@@ -1,6 +1,6 @@
 """The mechanisms that come with the package.
 
-:func:`names` lists them. Those of the paper have a function each; every one is there by its name with :func:`load`.
+:func:`names` lists them. Each mechanism of the paper has a function of its own; :func:`load` reads any of them by its name.
 
 >>> import opm_kinematics as opm
 >>> opm.examples.plano_spherical() == opm.examples.load("plano-spherical-5dof")

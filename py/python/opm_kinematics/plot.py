@@ -36,11 +36,11 @@ CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#00
 
 OUTLINE = "#d55e00"
 
-# Where the light comes from, a little from the left of who looks at it.
+# Direction of the light, a little from the left of the viewer.
 LIGHT = np.array([-0.4, -0.6, 0.8]) / np.sqrt(1.16)
 # Sides of a cylinder, and meridians of a ball.
 SIDES = 16
-# Panels of a workspace, at most, where nobody says.
+# Largest number of panels of a workspace if none is given.
 PANELS = 12
 
 
@@ -57,7 +57,7 @@ def mechanism(
     ----------
     manipulator : Manipulator
     pose : (d,) sequence of float, optional
-        Home if not given.
+        The home pose if not given.
     mode : str
         The working mode.
     ax : Axes3D, optional
@@ -85,14 +85,14 @@ def mechanism(
         for face in _faces(solid):
             normal = np.cross(face[1] - face[0], face[2] - face[1])
             length = np.linalg.norm(normal)
-            # Both sides of a face are lit, the one that looks away from the light less.
+            # Both sides of a face are lit; the side away from the light is darker.
             shade = 0.72 + 0.28 * float(normal @ LIGHT) / length if length > 0 else 1.0
             *rgb, alpha = COLORS[solid.material]
             faces.append(face)
             colors.append((*(float(shade * c) for c in rgb), alpha))
     points = np.vstack(faces)
     low, high = points.min(axis=0), points.max(axis=0)
-    # What is flat still needs a box.
+    # A flat drawing needs a box with some depth, too.
     room = np.maximum(high - low, 0.2 * (high - low).max())
     middle = (low + high) / 2
     for name, centre, width in zip("xyz", middle, room, strict=True):
@@ -122,17 +122,18 @@ def workspace(
     slices : str, optional
         The coordinate that has a panel for each of its values; without it there is one panel.
     values : sequence of float, optional
-        For which of them: the nearest on the grid. If not given, for all up to twelve; of more, twelve that are spread over
-        them, and the title says so.
+        The values to draw: the nearest ones on the grid are taken. If not given, all up to twelve; of more, twelve that are
+        spread over them, and the title says so.
     ax : Axes or sequence of them, optional
-        What to draw on, one a panel; a new figure if not given.
+        The panels to draw on; a new figure if not given.
 
     Returns
     -------
     list of Axes
-        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; of reachable and
-        dexterous places, where more of the orientations are. A new figure has a colour bar for these shares. The boundary is a line, of all kinds but ``"grid"`` and
-        ``"imaginary"``, where the panels show it: two coordinates with several values, or a third one for `slices`.
+        Metres and radians. Darker where more of the values of the coordinates that are not shown are reached; for reachable and
+        dexterous places, darker where more of the orientations are. A new figure has a colour bar for these shares. The boundary
+        is a line, for all kinds except ``"grid"`` and ``"imaginary"``, if the panels show it: two coordinates with several
+        values, or a third one for `slices`.
     """
     pyplot = _pyplot()
     from matplotlib.colors import LinearSegmentedColormap
@@ -208,9 +209,9 @@ def imaginary(
     names : sequence of str, optional
         Two or three imaginary joints; the first three if not given.
     color : (n,) array_like, optional
-        A number a pose, to colour it by.
+        One number for each pose, for its colour.
     ax : Axes, optional
-        What to draw on, with three dimensions for three joints; a new one if not given.
+        The panel to draw on, with three dimensions for three joints; a new one if not given.
     """
     pyplot = _pyplot()
     _expect("solutions", solutions, Solutions)
@@ -252,11 +253,11 @@ def joints(
     names : sequence of str, optional
         Joints and imaginary joints; all imaginary ones if not given.
     rates : bool
-        Of a trajectory: their rates instead of their values.
+        Draw the rates of a trajectory's joints instead of their values.
     times : (n,) array_like, optional
         Seconds.
     ax : Axes or sequence of them, optional
-        What to draw on, one for lengths and one for angles where there are both; a new figure if not given.
+        The panels to draw on, one for lengths and one for angles if there are both; a new figure if not given.
 
     Returns
     -------
@@ -288,7 +289,7 @@ def joints(
 def _curves(
     times: _Array, curves: dict[str, _Array], units: dict[str, str], ax: Axes | Sequence[Axes] | None
 ) -> list[Axes]:
-    """Curves over time, a panel for each unit."""
+    """Curves over time, with one panel for each unit."""
     kinds = sorted(set(units.values()))
     panels = _panels(_pyplot(), len(kinds), ax)
     for panel, kind in zip(panels, kinds, strict=True):
@@ -303,14 +304,14 @@ def _curves(
 
 
 def _expect(what: str, given: object, *classes: type) -> None:
-    """An argument is of one of these classes."""
+    """Check that an argument is an instance of one of these classes."""
     if not isinstance(given, classes):
         names = " or ".join(f"a {kind.__name__}" for kind in classes)
         raise TypeError(f"{what} is {given!r}, expected {names}")
 
 
 def _pyplot() -> Any:
-    """Matplotlib, where there is one."""
+    """Matplotlib, or an error if it is not installed."""
     try:
         from matplotlib import pyplot
     except ImportError as error:
@@ -358,7 +359,7 @@ def _faces(solid: Solid) -> list[_Array]:
     axis = end - start
     length = np.linalg.norm(axis)
     axis = axis / length if length > 0 else np.array([0.0, 0.0, 1.0])
-    # Any direction across, the same for parallel axes.
+    # Any perpendicular direction, the same for parallel axes.
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     across /= np.linalg.norm(across)
     up = np.cross(axis, across)

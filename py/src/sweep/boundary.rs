@@ -15,17 +15,17 @@ use std::num::NonZeroU64;
 
 /// The boundary of a workspace in a plane, or of one slice of it: closed polylines along the steps of the grid.
 ///
-/// They run half-way between points that are in and their neighbours that are out, and along the edge of the grid where the
-/// workspace goes on beyond.
+/// They run half-way between points inside and their neighbours outside, and along the edge of the grid where the
+/// workspace continues beyond it.
 #[pyclass(frozen, module = "opm_kinematics")]
 pub struct Outline {
     /// The coordinates of the plane: the columns of the polylines.
     #[pyo3(get)]
     axes: (String, String),
-    /// The coordinate that it is sliced by, and its value; empty where there is one plane.
+    /// The coordinate of the slice and its value; empty if there is only one plane.
     #[pyo3(get)]
     at: BTreeMap<String, f64>,
-    /// Of the pieces without the holes, in the product of both coordinates' units.
+    /// Area of the pieces without the holes, in the product of both coordinates' units.
     #[pyo3(get)]
     area: f64,
     /// Closed polylines, (n, 2) each, metres and radians; the last corner is the first one again. Counter-clockwise around
@@ -45,13 +45,13 @@ impl Outline {
         self.those(py, |_| true)
     }
 
-    /// Those around pieces.
+    /// The polylines around pieces.
     #[getter]
     fn outer<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         self.those(py, |area| area >= 0.0)
     }
 
-    /// Those around holes.
+    /// The polylines around holes.
     #[getter]
     fn holes<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         self.those(py, |area| area < 0.0)
@@ -108,13 +108,13 @@ impl Sweep {
     /// Returns
     /// -------
     /// list of Outline
-    ///     One; or, where a third coordinate has several values, one for each of these.
+    ///     One outline; if a third coordinate has several values, one for each of them.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     Fewer or more coordinates with several values; or of kind ``"imaginary"``, where the boundary of the orientations
-    ///     says nothing of the imaginary joints.
+    ///     Fewer than two or more than three coordinates have several values; or the kind is ``"imaginary"``, where the
+    ///     boundary of the orientations says nothing about the imaginary joints.
     ///
     /// Parameters
     /// ----------
@@ -147,7 +147,7 @@ impl Sweep {
             let area = outline.area();
             let rings = outline.rings.into_iter().map(|ring| -> PyResult<_> {
                 let area = ring.area();
-                // Closed for whoever draws it.
+                // The ring is closed, so that it can be drawn as it is.
                 let corners = ring.points.iter().chain(ring.points.first());
                 let corners: Vec<f64> = corners.flatten().copied().collect();
                 let shape = [corners.len() / 2, 2];

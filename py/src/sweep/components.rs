@@ -14,8 +14,8 @@ use std::num::NonZeroU64;
 impl Sweep {
     /// How many points each connected component has, the largest first.
     ///
-    /// Points are neighbours where they differ by one step along one coordinate; an angle whose values come full circle has its
-    /// last value next to the first. :meth:`labels` tells which point is in which.
+    /// Points are neighbours if they differ by one step along one coordinate; for an angle over a full revolution, the last
+    /// value is next to the first. :meth:`labels` gives the component of each point.
     ///
     /// Parameters
     /// ----------
@@ -36,8 +36,8 @@ impl Sweep {
 
     /// Which connected component each point belongs to, in the shape of the mask: 0 where the mask is False, 1 in the largest.
     ///
-    /// As of ``scipy.ndimage.label``, but for angles that come full circle. Component ``i`` has ``components()[i - 1]`` points;
-    /// of several of one size the one with the first point comes first.
+    /// This is like ``scipy.ndimage.label``, except for angles over a full revolution. Component ``i`` has
+    /// ``components()[i - 1]`` points; of components of equal size, the one with the first point comes first.
     ///
     /// Parameters
     /// ----------

@@ -14,18 +14,18 @@ use opm_workspace::{ConditionLimit, Conditioned, ConditioningIndex, Progress, Sh
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
-/// How well the poses of a workspace are conditioned: their local indices, one over the condition number each.
+/// How well the poses of a workspace are conditioned. The local index of a pose is the inverse of its condition number.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Conditioning {
     /// The mean of the local indices (Gosselin and Angeles); None where no pose has one.
     global_index: Option<f64>,
-    /// The least.
+    /// The smallest local index.
     local_min: Option<f64>,
-    /// The greatest; one at best.
+    /// The largest local index; one at best.
     local_max: Option<f64>,
     /// Characteristic length of the condition numbers, metres.
     length: f64,
-    /// Poses that have an index.
+    /// Number of poses that have an index.
     poses: u64,
 }
 
@@ -53,14 +53,14 @@ type Indices = (u64, f64, f64, u128);
 
 #[pymethods]
 impl Sweep {
-    /// The global conditioning index, and the least and greatest local one: a few microseconds a reachable pose.
+    /// The global conditioning index, and the smallest and largest local one: a few microseconds for each reachable pose.
     ///
-    /// Each pose in the first working mode that counts; every pose has the same weight.
+    /// Each pose is taken in the first working mode that counts; every pose has the same weight.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     The points are no poses.
+    ///     The points are not poses.
     ///
     /// Parameters
     /// ----------
@@ -97,12 +97,12 @@ impl Sweep {
 
     /// The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
     ///
-    /// One over the condition number: one at best, zero at a singularity.
+    /// The index is the inverse of the condition number: one at best, zero at a singularity.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     The points are no poses.
+    ///     The points are not poses.
     ///
     /// Parameters
     /// ----------

@@ -16,7 +16,7 @@ impl Sweep {
     /// Raises
     /// ------
     /// OpmError
-    ///     The points are places or orientations, or there is a `max_condition`, of which a measure knows nothing.
+    ///     The points are places or orientations, or there is a `max_condition`, which a measure does not support.
     ///
     /// Parameters
     /// ----------

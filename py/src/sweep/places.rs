@@ -1,4 +1,4 @@
-//! Kinds whose points are places or orientations: how often each is reached, which says whether it is in.
+//! Kinds whose points are places or orientations. How often a point is reached decides whether it is in the workspace.
 
 use super::Sweep;
 use super::shards::{shard, spread};
@@ -19,7 +19,7 @@ impl Sweep {
     /// Raises
     /// ------
     /// OpmError
-    ///     Of another kind than ``"reachable"`` and ``"dexterous"``.
+    ///     The kind is neither ``"reachable"`` nor ``"dexterous"``.
     ///
     /// Parameters
     /// ----------
@@ -42,7 +42,7 @@ impl Sweep {
         this.shaped(&PyArray1::from_slice(slf.py(), &tally))
     }
 
-    /// Of every point of a kind that is not of poses, how often one part reaches it.
+    /// How often one part of the grid reaches every point, for a kind whose points are not poses.
     fn _tally<'py>(
         &self,
         py: Python<'py>,
@@ -64,7 +64,7 @@ impl Sweep {
         Ok(done.map_err(|error: SetError| failed(&error))?.unwrap_or_default())
     }
 
-    /// The same of the whole grid, which is kept.
+    /// The same for the whole grid. The result is kept.
     pub fn tally<'py>(
         slf: &Bound<'py, Self>,
         parts: Option<&Parts<'py>>,

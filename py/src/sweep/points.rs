@@ -15,10 +15,10 @@ use std::num::NonZeroU64;
 
 #[pymethods]
 impl Sweep {
-    /// Which points are in: an axis a coordinate of :attr:`axes`, as many values as the grid has.
+    /// Which points are in the workspace: one axis for each coordinate of :attr:`axes`, with one entry for each value.
     ///
-    /// `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are known
-    /// already, and nobody is asked again.
+    /// `executor` and `shards` are those of :func:`sweep`, here and in all other methods; places and orientations are
+    /// already known and are not computed again.
     ///
     /// Parameters
     /// ----------
@@ -69,7 +69,7 @@ impl Sweep {
         }
     }
 
-    /// Of every pose of one part, in their order, whether it is reachable.
+    /// Whether each pose of one part is reachable, in their order.
     fn _mask<'py>(
         &self,
         py: Python<'py>,
@@ -91,7 +91,7 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// Of every point, whether it is in.
+    /// Whether each point is in the workspace.
     pub fn flat_mask<'py>(
         slf: &Bound<'py, Self>,
         parts: Option<&Parts<'py>>,
@@ -110,7 +110,7 @@ impl Sweep {
         }
     }
 
-    /// Its points.
+    /// The points of the workspace.
     pub fn set<'py>(slf: &Bound<'py, Self>, parts: Option<&Parts<'py>>) -> PyResult<GridSet> {
         let (py, this) = (slf.py(), slf.get());
         let set = match (this.workspace.required_visits(), parts) {
@@ -190,7 +190,7 @@ impl Sweep {
         all.into_pyarray(py).reshape([count, width])
     }
 
-    /// Sweeps again, for the points: what `make` keeps of the hits goes to `take`, in their order.
+    /// Sweeps again to find the points: what `make` keeps of the hits goes to `take`, in their order.
     pub fn visit<T: Default + Send>(
         &self,
         py: Python<'_>,

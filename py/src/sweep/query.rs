@@ -1,4 +1,4 @@
-//! What is asked of a sweep, as it comes from Python: kind, working modes and axes.
+//! The query of a sweep as Python gives it: kind, working modes and axes.
 
 use crate::error::{failed, wrong};
 use crate::interrupt;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::num::NonZeroUsize;
 
-/// Values of one coordinate: a number, or lowest, highest and how many.
+/// Values of one coordinate: a number, or the lowest value, the highest value and their count.
 #[derive(FromPyObject)]
 enum Range {
     Fixed(f64),

@@ -14,27 +14,27 @@ use std::path::PathBuf;
 impl Sweep {
     /// Record the points as ``opm workspace -o`` does, byte for byte.
     ///
-    /// With the boundary, but for kind ``"grid"``. Points that are no poses are written as MCAP only. The fields of an NPY file
-    /// are those of ``axes``, then of ``scalars``, then of ``color``, each once; without ``scalars`` the other task coordinates
-    /// come last.
+    /// The boundary is recorded too, except for kind ``"grid"``. Points that are not poses can only be written as MCAP. The
+    /// fields of an NPY file are those of ``axes``, then of ``scalars``, then of ``color``, each once; without ``scalars`` the
+    /// other task coordinates come last.
     ///
     /// Parameters
     /// ----------
     /// path : path
     ///     Ends in ``.mcap`` (Foxglove, Lichtblick, Rerun), ``.npy`` (NumPy) or ``.ply`` (mesh tools). The file appears
-    ///     when it is whole.
+    ///     when it is complete.
     /// axes : sequence of three str, or "tip", optional
-    ///     The coordinates that are x, y and z of the cloud (of kind ``"imaginary"`` imaginary joints), or the platform's point.
+    ///     The coordinates that are x, y and z of the cloud (imaginary joints for kind ``"imaginary"``), or the platform's point.
     /// scalars : sequence of str, optional
-    ///     Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; of places
+    ///     Values stored with every point: task coordinates, imaginary joints, actuated joints, ``inverse_condition``; for places
     ///     the ``share`` of orientations in which they are reached.
     /// color : str, optional
-    ///     The one of them that the colour shows.
+    ///     The value that the colour shows.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     A name that is none, a file that cannot be written.
+    ///     A name is unknown, or the file cannot be written.
     #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
     fn write(
         &self,
@@ -61,12 +61,12 @@ impl Sweep {
         Ok(())
     }
 
-    /// :meth:`write`, of a name that ends in ``.mcap``.
+    /// Like :meth:`write` for a path that ends in ``.mcap``.
     ///
     /// Parameters
     /// ----------
     /// path : path
-    ///     The file appears when it is whole.
+    ///     The file appears when it is complete.
     /// axes : sequence of three str, or "tip", optional
     ///     As for :meth:`write`.
     /// scalars : sequence of str, optional

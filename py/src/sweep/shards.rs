@@ -1,4 +1,4 @@
-//! A sweep in parts, of which each crosses to another process: pickled, with the number of its shard.
+//! A sweep in parts. Each part is pickled for another process with the number of its shard.
 
 use super::Sweep;
 use super::query::named;
@@ -11,7 +11,7 @@ use opm_workspace::{Axis, Count, Progress, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// Poses of a part at least: fewer are not worth the way to another process.
+/// The least number of poses in a part: fewer are not worth sending to another process.
 const LEAST_PART: u64 = 1 << 15;
 
 /// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
@@ -21,7 +21,7 @@ pub type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 /// characteristic length, threads.
 type Spec = (Vec<(String, f64, f64, u64)>, String, String, Option<f64>, f64, Option<NonZeroUsize>);
 
-/// What `task` of a sweep gives for each of its parts, in their order; or what they `fold` to.
+/// The result of `task` for each part of a sweep, in their order; or their combination by `fold`.
 pub fn spread<'py>(
     plan: &Bound<'py, Sweep>,
     parts: &Parts<'py>,
@@ -45,7 +45,7 @@ pub fn shard(number: u64, of: u64) -> PyResult<Shard> {
 
 #[pymethods]
 impl Sweep {
-    /// Pickling: with the manipulator, not with what the grid holds.
+    /// Pickles the manipulator, the query and the counts, not the points of the workspace.
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec, Counted)>> {
