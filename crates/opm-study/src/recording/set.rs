@@ -72,7 +72,7 @@ impl<'a> SetCloud<'a> {
         names.join(",")
     }
 
-    /// Calls `take` with the slice and the values of every point, in the order of [`CloudLayout::columns`].
+    /// Calls `visit` with the slice and the values of every point, in the order of [`CloudLayout::columns`].
     pub fn points(
         &self,
         mut visit: impl FnMut(u64, &[f64]) -> Result<(), StudyError>,
