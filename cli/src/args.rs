@@ -14,10 +14,10 @@ use std::path::PathBuf;
 /// Columns of the help on a terminal that has as many.
 const WIDEST: usize = 100;
 
-/// Boxes of a measure that no machine has the memory for.
+/// Largest budget of a measure: no machine has the memory for more boxes.
 const MOST_BOXES: f64 = 1e12;
 
-/// The clock of a recording counts nanoseconds: at more samples a second they would coincide.
+/// Most samples per second. The clock of a recording counts nanoseconds; faster samples would coincide.
 const HIGHEST_RATE: f64 = 1e9;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
@@ -32,10 +32,10 @@ const HIGHEST_RATE: f64 = 1e9;
 #[derive(Debug, Parser)]
 #[command(name = "opm", version, max_term_width = WIDEST, after_long_help = ROOT_EXAMPLES)]
 pub struct Args {
-    /// What to do.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Command,
-    /// How to say it.
+    /// Options of every subcommand.
     #[command(flatten)]
     pub output: Output,
 }
@@ -50,7 +50,7 @@ Examples:
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
   opm measure plano-spherical-5dof --section upper     its share of all orientations, with bounds
-  opm merge part-*.mcap -o cloud.mcap                  a sweep that was shared among machines
+  opm merge part-*.mcap -o cloud.mcap                  the parts of a sweep, joined to one recording
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
@@ -142,7 +142,7 @@ pub struct IkArgs {
     /// One pose, for example x=10mm,y=0,xi=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub pose: Option<Pose>,
-    /// Where the platform is: its point's position, and a unit quaternion, scalar first
+    /// Pose in SE(3): position of the reference point, and a unit quaternion, scalar first
     #[arg(long, value_name = "X,Y,Z,QW,QX,QY,QZ", allow_hyphen_values = true)]
     pub transform: Option<Transform>,
     /// A CSV file of poses; - reads standard input
@@ -151,10 +151,10 @@ pub struct IkArgs {
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
-    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    /// Working mode: `home`, or one group of signs for each leg, as "++ ++ ++ +"
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
-    /// Where the CSV goes; - or nothing is standard output
+    /// Output file for the CSV; standard output if it is - or not given
     #[arg(
         short,
         long,
@@ -187,13 +187,13 @@ pub struct VelocityArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// The pose, for example x=10mm,xi=15deg; what is not given is at home
+    /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
-    /// Rates of the task coordinates a second, for example zeta=1,x=10mm; what is not given is 0
+    /// Rates of the task coordinates per second, for example zeta=1,x=10mm; other rates are 0
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub rates: Pose,
-    /// Working mode: `home`, or a sign for every two-valued choice, a group a leg ("++ ++ ++ +")
+    /// Working mode: `home`, or one group of signs for each leg, as "++ ++ ++ +"
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Characteristic length of the condition number, instead of the spread of the joint axes
@@ -210,7 +210,7 @@ pub struct VelocityArgs {
 ///
 /// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
 /// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
-/// own, one advance of the screw away. `opm ik` does not tell which; the angles given in --joints decide.
+/// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -225,7 +225,7 @@ pub struct FkArgs {
     /// The value of every actuated joint, for example S1=10mm,phi14=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub joints: Pose,
-    /// Start Newton's method at this pose; what is not given is at home
+    /// Start Newton's method at this pose; other coordinates start at home
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub near: Option<Pose>,
     /// Only assemblies in this working mode: `home`, or a sign for every two-valued choice
@@ -255,13 +255,13 @@ pub struct LinkageArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// The joint that moves the linkage, and its value where that is not home
+    /// The joint that moves the linkage, and its value if it is not at home
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub input: Option<InputValue>,
     /// One round of the input instead of one value
     #[arg(long)]
     pub sweep: bool,
-    /// Positions of the sweep, home at both ends
+    /// Number of positions of the sweep; the first and the last are home
     #[arg(
         long,
         value_name = "N",
@@ -270,7 +270,7 @@ pub struct LinkageArgs {
         value_parser = clap::value_parser!(u32).range(2..=10_000_000)
     )]
     pub count: u32,
-    /// Where the sweep goes, by its ending; - or nothing is CSV on standard output
+    /// Output file, in the format of its ending; CSV on standard output if it is - or not given
     #[arg(
         short,
         long,
@@ -313,7 +313,7 @@ pub struct TrajectoryArgs {
     /// Record it in this MCAP file
     #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// Samples a second, instead of those of the motion file; of a CSV file 100
+    /// Samples per second, instead of the motion file's rate (100 for a CSV file)
     #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = rate)]
     pub rate: Option<f64>,
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
@@ -331,7 +331,7 @@ pub struct TrajectoryArgs {
 /// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
 /// slice.
 ///
-/// --kind asks for another set than that of poses. A place is one value for each coordinate of the lower
+/// --kind selects another set than that of poses. A place is one value for each coordinate of the lower
 /// section (for example x and y), an orientation one value for each coordinate of the upper section.
 /// `reachable` and `dexterous` store with each place the share of the orientations that reach it, as
 /// `share`. The lower section alone has the imaginary joints as coordinates too, by their names; they stay
@@ -346,22 +346,22 @@ pub struct TrajectoryArgs {
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
-/// With -o points.npy the points are a structured NumPy array, float64, of the coordinates or joints
-/// that --axes and --scalars name; with -o cloud.ply a binary PLY file of vertices, as in the clouds.
-/// Without --scalars both have every task coordinate, PLY those whose names are not x, y or z. The columns
-/// follow each other as the flags name them: --axes (if it is not given, coordinates that vary come first),
-/// then --scalars, then --color, each once; without --scalars the other task coordinates come last. Take
-/// them by name rather than by number: `points["x"]`; `points.dtype.names` tells their order. The points are
-/// of poses: the kinds reachable, dexterous, imaginary, upper and lower are written as MCAP alone, and so
-/// are shards.
+/// -o points.npy writes a structured NumPy array (float64) of the coordinates and joints that --axes,
+/// --scalars and --color name. -o cloud.ply writes a binary PLY file whose vertices are the points of the
+/// cloud. Without --scalars, both have every task coordinate; PLY leaves out those named x, y or z. The
+/// columns come in the order --axes, --scalars, --color, and none comes twice. Without --axes, coordinates
+/// that vary come first; without --scalars, the other task coordinates come last. Select columns by name:
+/// `points["x"]`; `points.dtype.names` lists them. Both formats hold poses only: the kinds reachable,
+/// dexterous, imaginary, upper and lower, and all shards, are written as MCAP only.
 ///
-/// --shard sweeps one part of the grid, on a machine of many; where its file is there already, there
-/// is nothing to do. `opm merge` joins the parts, and takes --axes, --color, --scalars and --shape.
+/// --shard sweeps one part of the grid, so that several machines can share the work. A shard whose file
+/// exists already is not swept again. `opm merge` joins the parts, and takes --axes, --color, --scalars and
+/// --shape.
 ///
-/// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with
-/// more than one value: an estimate, too small by up to half a step at every edge that the workspace
-/// stays away from. Angles count as they are. `opm measure` gives bounds, and counts orientations as
-/// evenly as rotations are spread. `seconds` is the time of the count.
+/// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
+/// one value. It is an estimate: it may be too small by half a step at every edge of the box that the
+/// workspace does not touch. Angles have equal weight. `opm measure` gives bounds, and weighs orientations
+/// by the Haar measure. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -379,19 +379,19 @@ pub struct WorkspaceArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// What the workspace is of
+    /// What the workspace consists of
     #[arg(long, value_name = "KIND", value_parser = kind(), default_value = "grid")]
     pub kind: WorkspaceKind,
-    /// Values of one task coordinate: MIN, MAX and how many, or one value alone
+    /// Values of one task coordinate: minimum, maximum and number of values, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
     pub grid: Vec<GridAxis>,
     /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
-    /// Only poses with a condition number of at most C count, in a mode in which they have it
+    /// Count a pose only if its condition number is at most C in one of the working modes
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
-    /// Also tell the global conditioning index: the mean of 1 / condition number, a few us a pose
+    /// Also compute the global conditioning index, the mean of 1 / condition number (a few us per pose)
     #[arg(long)]
     pub conditioning: bool,
     /// Characteristic length of condition numbers, instead of the spread of the joint axes
@@ -400,7 +400,7 @@ pub struct WorkspaceArgs {
     /// Also find the boundary and the connected components, as all kinds but `grid` do
     #[arg(long)]
     pub shape: bool,
-    /// Sweep only part number I of N, from 1 on, and write it to -o, for `opm merge`
+    /// Sweep only part I of N (I counts from 1), and write it to -o, for `opm merge`
     #[arg(
         long,
         value_name = "I/N",
@@ -408,13 +408,13 @@ pub struct WorkspaceArgs {
         conflicts_with_all = ["axes", "color", "scalars", "shape"]
     )]
     pub shard: Option<Shard>,
-    /// Sweep a shard again, and replace whatever file there is
+    /// Sweep a shard even if its file exists, and replace the file
     #[arg(long, requires = "shard")]
     pub force: bool,
-    /// Where the points go, and what of them
+    /// How points are recorded.
     #[command(flatten)]
     pub cloud: CloudArgs,
-    /// Threads to use, instead of one a processor
+    /// Number of threads, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
@@ -422,29 +422,29 @@ pub struct WorkspaceArgs {
 /// How points are recorded.
 #[derive(Debug, clap::Args)]
 pub struct CloudArgs {
-    /// Record the points in this file: MCAP, an array for NumPy (its columns are --axes, then
-    /// --scalars, then --color), or a cloud for mesh tools
+    /// Record the points in this file: MCAP, a NumPy array (its columns are --axes, then --scalars,
+    /// then --color), or a PLY cloud for mesh tools
     #[arg(short, long, value_name = "OUT.mcap|.npy|.ply", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// What x, y and z of the cloud are: three coordinates (of `imaginary`, imaginary joints), or `tip`,
-    /// the platform's point
+    /// x, y and z of the cloud: three coordinates (for the kind `imaginary`, three imaginary joints), or
+    /// `tip`, the position of the reference point
     #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
     pub axes: Vec<String>,
-    /// What the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
+    /// The value that the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
     /// `inverse_condition`, one over the condition number
     #[arg(long, value_name = "NAME", requires = "output")]
     pub color: Option<String>,
-    /// Values stored with every point, named like those of --color
+    /// Values stored with every point, with names as for --color
     #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
     pub scalars: Option<Vec<String>>,
 }
 
-/// Join the shards of a sweep into what one run would have found, and recorded
+/// Join the shards of a sweep into the result of a single run
 ///
-/// Takes all files of `opm workspace --shard`, in any order; what is printed is what one run prints,
-/// but for the time, which nobody measured (`seconds` and `poses_per_second` are null). With -o, the
-/// recording is the one run's, byte for byte. Shards of different runs are refused, and so are two of
-/// one part; of parts that are missing the commands are told that make them.
+/// Takes all files of `opm workspace --shard`, in any order, and prints what a single run prints. Only the
+/// time is unknown: `seconds` and `poses_per_second` are null. With -o, the recording equals that of a
+/// single run byte for byte. Shards of different runs are an error, and so are two files of the same part.
+/// If parts are missing, the error message lists the commands that make them.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -455,40 +455,41 @@ pub struct MergeArgs {
     /// The files of all shards
     #[arg(value_name = "PART.mcap", required = true, value_hint = ValueHint::FilePath)]
     pub parts: Vec<PathBuf>,
-    /// Also find the boundary and the connected components, as of all kinds but `grid`
+    /// Also find the boundary and the connected components, as all kinds but `grid` do
     #[arg(long)]
     pub shape: bool,
-    /// Where the points go, and what of them
+    /// How points are recorded.
     #[command(flatten)]
     pub cloud: CloudArgs,
-    /// Threads to use, instead of one a processor
+    /// Number of threads, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
 /// Measure the workspace: area, volume, share of all orientations, with guaranteed bounds
 ///
-/// Covers the ranges of --over with boxes, each known to lie inside the workspace, outside, or in part;
-/// splits those that are least known until the measure is certain to within --tolerance of its value. The
-/// bounds hold whatever it stops for, Ctrl-C included, and do not depend on the number of threads. A pose
-/// counts as in `opm workspace`: in reach and within all joint limits.
+/// The ranges of --over are covered with boxes. Each box is proved to be inside the workspace or outside of
+/// it, or is undecided. The least certain boxes are split until the measure is certain to within --tolerance
+/// of its value. The bounds hold however the command ends, Ctrl-C
+/// included, and do not depend on the number of threads. A pose counts as in `opm workspace`: if it is in
+/// reach and within all joint limits.
 ///
-/// What is measured is the product of all ranges. Orientations count as evenly as rotations are
-/// spread (Haar's measure): xi is weighed by sin xi, nu by cos(nu - home), and every orientation once is
+/// The measure is taken over the product of all ranges. Orientations are weighed by the Haar measure, which
+/// is uniform over rotations: xi by sin xi, nu by cos(nu - home). All orientations, each once, are
 /// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
-/// positive xi has orientations twice if zeta has a whole turn.
+/// positive xi counts orientations twice if zeta has a full revolution.
 ///
-/// How many boxes that takes depends on how many coordinates have a range, and how wide it is: for three,
-/// some thousand; for five with whole turns among them, more than --budget allows unless told otherwise.
-/// Then the result and a warning say how far it came. Narrower ranges of --over, --section upper or a larger
-/// --budget take it further.
+/// The number of boxes depends on how many coordinates have a range, and on the widths of the ranges. Three
+/// coordinates take some thousand boxes. Five with full revolutions among them take more than the default
+/// --budget; the result and a warning then say which accuracy was reached. To improve it, use narrower
+/// ranges of --over, --section upper, or a larger --budget.
 ///
-/// A coordinate without --over stays at home, but an angle of `--section upper` takes a whole turn. With
-/// no --over at all, ranges are fitted to the workspace as in `opm workspace`.
+/// A coordinate without --over stays at home. With --section upper, an angle without --over has a full
+/// revolution instead. Without any --over, ranges are fitted to the workspace as in `opm workspace`.
 ///
-/// --section upper asks of the upper section alone whether it closes, for the coordinates that are
-/// its own; --section lower of the lower one alone, for its own coordinates and the values of the
-/// imaginary joints, which --over names, too.
+/// --section upper measures where the upper section closes by itself, in its own coordinates. --section
+/// lower does the same for the lower section, in its own coordinates and the values of the imaginary
+/// joints; --over takes the names of both.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -502,10 +503,10 @@ pub struct MeasureArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Range of one coordinate, or one value
+    /// Range of one coordinate, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
     pub over: Vec<OverAxis>,
-    /// What has to be in reach: the whole mechanism, or one section alone
+    /// What has to close: the whole mechanism, or one section alone
     #[arg(long, value_enum, default_value_t = SectionName::Whole)]
     pub section: SectionName,
     /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
@@ -514,15 +515,15 @@ pub struct MeasureArgs {
     /// Stop when the measure is certain to be within this share of its value
     #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: f64,
-    /// Stop before more than so many boxes are looked at; each takes some 100 bytes of memory
+    /// Largest number of boxes; each takes some 100 bytes of memory
     #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = boxes, allow_hyphen_values = true)]
     pub budget: u64,
-    /// Threads to use, instead of one a processor
+    /// Number of threads, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
-/// What of a mechanism is measured.
+/// The part of a mechanism that is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SectionName {
     /// Poses of the platform
@@ -534,7 +535,7 @@ pub enum SectionName {
 }
 
 impl SectionName {
-    /// As it is given.
+    /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Whole => "whole",
@@ -543,7 +544,7 @@ impl SectionName {
         }
     }
 
-    /// What a domain is of.
+    /// The sections that have to close in the domain of the measure.
     pub fn sections(self) -> Sections {
         match self {
             Self::Whole => Sections::Whole,
@@ -553,20 +554,20 @@ impl SectionName {
     }
 }
 
-/// Kinds of workspace by their names, which the help lists.
+/// Parses a kind of workspace; the help lists the names.
 fn kind() -> impl TypedValueParser<Value = WorkspaceKind> {
     let value = |kind: WorkspaceKind| PossibleValue::new(kind.name()).help(kind.description());
     let names = PossibleValuesParser::new(WorkspaceKind::ALL.map(value));
     names.try_map(|name| name.parse::<WorkspaceKind>())
 }
 
-/// A share of a measure.
+/// Parses the tolerance, a share of a measure.
 fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().unwrap_or(f64::NAN);
     check_tolerance(number).map(|()| number).map_err(|expected| format!("{text:?}, {expected}"))
 }
 
-/// Reads a number of samples a second.
+/// Parses a number of samples per second.
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(rate) if rate > 0.0 && rate <= HIGHEST_RATE => Ok(rate),
@@ -574,7 +575,7 @@ fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number of boxes.
+/// Parses a number of boxes.
 fn boxes(text: &str) -> Result<u64, String> {
     match text.trim().parse::<f64>() {
         Ok(boxes) if (1.0..=MOST_BOXES).contains(&boxes) && boxes.fract() == 0.0 => {
@@ -584,7 +585,7 @@ fn boxes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// A condition number to compare with.
+/// Parses the largest condition number that counts.
 fn condition_number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
@@ -594,15 +595,15 @@ fn condition_number(text: &str) -> Result<f64, String> {
 
 /// Draw a recording as a picture, SVG or PNG
 ///
-/// Of a motion: poses, imaginary joints, actuated joints and their velocities over time, what goes
-/// with each other side by side; spans in which the mechanism cannot follow are shaded. Of a workspace:
-/// slices of it, and the values that the imaginary joints take in it, where these were recorded
-/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is in the
-/// recording. What reached an unfinished .partial file can be drawn too.
+/// The picture of a motion shows poses, imaginary joints, actuated joints and their velocities over time;
+/// each value is beside its velocity. Spans in which the mechanism cannot follow are shaded. The picture of
+/// a workspace shows slices, and the values that the imaginary joints take if they were recorded
+/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is part of the
+/// recording. An unfinished .partial file can be drawn too, as far as it was written.
 ///
-/// A picture stays small whatever it is of: curves of more than 32768 samples are drawn by their
-/// extremes in 4096 spans of time; a panel of more than 5000 cells or dots becomes an image in it. The
-/// program brings its own fonts.
+/// Pictures stay small: curves of more than 32768 samples are drawn by their extremes in 4096 spans of
+/// time, and a panel of more than 5000 cells or dots becomes an image within the picture. Fonts are part of
+/// the program.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -614,30 +615,31 @@ pub struct PlotArgs {
     /// MCAP file of `opm workspace`, `opm linkage` or any other command that records
     #[arg(value_name = "RECORDING", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Where the picture goes; the ending says which format
+    /// Output file; its ending selects the format
     #[arg(short, long, value_name = "OUT.svg|OUT.png", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
-    /// What to draw, instead of what suits the recording
+    /// Panels to draw, instead of those that suit the recording
     #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub panels: Vec<PanelName>,
-    /// Only these values: of a motion, joints or task coordinates; of a workspace, two task
-    /// coordinates to see the slices along, or stored values instead of the imaginary joints
+    /// Only these values: for a motion, joints or task coordinates; for a workspace, the two task
+    /// coordinates that the slices show, or stored values instead of the imaginary joints
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub values: Vec<String>,
-    /// Slices of a workspace: values at which task coordinates are held, the nearest of the grid. One
-    /// coordinate may have several: a slice each
+    /// Slices of a workspace: task coordinates are held at the grid values nearest to these. One
+    /// coordinate may have several values, with a slice for each
     #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
     pub slice: Vec<SliceValue>,
-    /// Width and height in pixels of a screen, up to 4000 each, instead of what suits the panels; a
-    /// PNG has twice as many
+    /// Width and height in screen pixels, up to 4000 each, instead of a size that suits the panels; a
+    /// PNG has twice as many pixels
     #[arg(long, value_name = "WxH")]
     pub size: Option<PictureSize>,
 }
 
-/// Say what a recording holds
+/// List the contents of a recording
 ///
-/// Topics with their schemas and counts, the extent of every value of the points, the run that made
-/// it, and whether it is whole. What reached an unfinished .partial file can be read too.
+/// Prints topics with their schemas and counts, the range of every value of the points, the run that made
+/// the recording, and whether it is complete. An unfinished .partial file can be read too, as far as it was
+/// written.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -663,7 +665,7 @@ pub struct ExamplesArgs {
 
 /// Print a completion script for a shell
 ///
-/// It is always the script itself, whatever --format says.
+/// The output is the script itself; --format has no effect.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -685,7 +687,7 @@ mod tests {
         Args::command().debug_assert();
     }
 
-    /// Commands are read, and copied, line by line: none is broken where help ends on the right.
+    /// Examples are copied line by line, so no line may be wider than the help on a terminal.
     #[test]
     fn examples_in_the_help_are_not_wrapped() {
         let program = Args::command();

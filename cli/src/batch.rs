@@ -19,17 +19,17 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Which working modes are asked for.
+/// The requested working modes.
 #[derive(Clone, Copy)]
 pub enum Modes {
     All,
     One(Mode),
 }
 
-/// Bytes written at a time.
+/// Number of bytes that are written at a time.
 const BUFFER: usize = 1 << 16;
 
-/// What was done.
+/// The totals of a batch.
 #[derive(Debug, Serialize)]
 struct Summary {
     poses: u64,
@@ -65,7 +65,7 @@ pub fn run(
     let rows = AtomicU64::new(0);
 
     let Some(path) = target else {
-        // No bar: the rows themselves may be on the terminal.
+        // There is no progress bar, since the rows may go to the terminal.
         return batch.solve(reader, io::stdout().lock(), &rows, &progress).map(|_| ()).map_err(
             |error| match error {
                 Stop::Write(error) => Failure::stdout(error),
@@ -86,7 +86,7 @@ pub fn run(
                 })));
             }
             Err(stop) => {
-                // The rows before a wrong one look like the answer and are not all of it.
+                // The file is discarded: the rows before a wrong one would look like the whole answer.
                 file.discard();
                 return Err(match stop {
                     Stop::Write(error) => Failure::at(&place, error),
@@ -128,7 +128,7 @@ impl From<csv::Error> for Stop {
 }
 
 struct Batch<'a> {
-    /// What messages call the input.
+    /// The name of the input in messages.
     label: &'a str,
     manipulator: &'a Manipulator,
     modes: Modes,
@@ -233,7 +233,7 @@ struct Rows<'a, W: Write> {
     drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
-    /// Imaginary, then actuated joints; empty out of reach.
+    /// Imaginary joints, then actuated joints; empty if the pose is out of reach.
     cells: Vec<Option<f64>>,
     reachable: u64,
     within_limits: u64,
@@ -260,7 +260,7 @@ impl<'a, W: Write> Rows<'a, W> {
         })
     }
 
-    /// Writes the row of a pose; with all modes, one for each that reaches.
+    /// Writes the row of a pose; with all modes, one row for each mode that reaches it.
     fn pose(
         &mut self,
         pose: &[f64],

@@ -17,11 +17,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{Display, Write};
 
-/// A joint screw further than this from its subspace (the sine of an angle, lengths over the
-/// mechanism's size) is worth a warning: a file with nine digits stays well below.
+/// A joint screw farther than this from its subspace (the sine of an angle, with lengths divided by the
+/// mechanism's size) gives a warning. Files with nine digits stay well below.
 const ROUNDING: f64 = 1e-7;
 
-/// Alternatives that the text lists; JSON has them all.
+/// Number of alternatives that the text lists. JSON has all of them.
 const LISTED: usize = 6;
 
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
@@ -65,7 +65,7 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
 struct Way<'a> {
     decomposition: &'a Decomposition,
     legs: Vec<Parts<'a>>,
-    /// `None` where there are no closed forms.
+    /// `None` if there are no closed forms.
     task: Option<Task>,
 }
 
@@ -82,7 +82,7 @@ struct Report<'a> {
     loaded: &'a Loaded,
     mobility: Mobility,
     ways: Vec<Way<'a>>,
-    /// `None` where there are no closed forms.
+    /// `None` if there are no closed forms.
     manipulator: Option<&'a Manipulator>,
 }
 
@@ -226,7 +226,7 @@ impl Report<'_> {
         text
     }
 
-    /// What `opm ik` makes of it.
+    /// The consequences for `opm ik`.
     fn inverse_kinematics(&self, manipulator: &Manipulator) -> String {
         let mut text = "inverse kinematics in closed form".to_owned();
         let used = self.ways.iter().position(|w| w.decomposition == manipulator.decomposition());
@@ -243,7 +243,7 @@ impl Report<'_> {
         text
     }
 
-    /// What the motors do.
+    /// The effect of the actuated joints.
     fn actuation(&self) -> String {
         let report = &self.mobility;
         let joints = self.loaded.file.mechanism.joints().filter(|joint| joint.actuated);
@@ -267,7 +267,7 @@ impl Report<'_> {
     }
 }
 
-/// Names of the joints of a part; of a joint that is divided, those of its coordinates.
+/// Names of the joints of a part. If a joint is divided between parts, its coordinates are named.
 fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
     let mut names = Vec::new();
     for freedom in part {

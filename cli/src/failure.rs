@@ -1,4 +1,4 @@
-//! How a command ends when it does not end well.
+//! Failures of commands, with their exit status.
 
 use opm_study::text::located;
 use opm_study::{RequestError, RequestOption, ShardError, ShardProblem, StudyError};
@@ -13,13 +13,13 @@ pub enum Failure {
     Usage(Message),
     /// The work failed; the message says where and why.
     Work(Message),
-    /// Somebody pressed Ctrl-C.
+    /// Ctrl-C interrupted the work.
     Interrupted(Message),
-    /// The reader of standard output has gone, so that there is nothing more to say.
+    /// The reader of standard output has closed it; nothing more is printed.
     Closed,
 }
 
-/// What people are told of a failure, one line for each problem, and the error that caused it.
+/// The message of a failure, one line for each problem, and the error that caused it.
 #[derive(Debug)]
 pub struct Message {
     text: String,
@@ -27,7 +27,7 @@ pub struct Message {
 }
 
 impl Message {
-    /// The same failure in other words, made of those before.
+    /// The same failure with another message, made from the present one.
     #[must_use]
     pub fn reworded(self, words: impl FnOnce(&str) -> String) -> Self {
         Self { text: words(&self.text), ..self }
@@ -51,27 +51,27 @@ impl<T: Into<String>> From<T> for Message {
 }
 
 impl Failure {
-    /// The work failed at `place`, for instance a file. An error that names the place says it once.
+    /// The work failed at `place`, for instance a file. If the error names the place, it is not repeated.
     pub fn at(place: impl Display, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Work(Message::of(located(place, &error), error))
     }
 
-    /// The work failed, in these words.
+    /// The work failed, with this message.
     pub fn work(text: impl Into<String>) -> Self {
         Self::Work(Message::from(text))
     }
 
-    /// The work was interrupted, in these words.
+    /// The work was interrupted, with this message.
     pub fn interrupted(text: impl Into<String>) -> Self {
         Self::Interrupted(Message::from(text))
     }
 
-    /// The work failed for a reason that is told in other words.
+    /// The work failed for this reason, with another message than that of the error.
     pub fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Work(Message::of(text.into(), error))
     }
 
-    /// A flag was given what it cannot take.
+    /// A flag has an invalid value.
     pub fn flag(flag: &str, problem: impl Display) -> Self {
         Self::Usage(format!("{flag}: {problem}").into())
     }
@@ -84,7 +84,7 @@ impl Failure {
         }
     }
 
-    /// Says what went wrong on standard error, and with which status to exit.
+    /// Prints the failure on standard error, and returns the exit status.
     pub fn report(&self) -> u8 {
         let (message, code) = match self {
             Self::Usage(message) => (message, 2),
@@ -119,7 +119,7 @@ impl Error for Failure {
     }
 }
 
-/// Writes lines to standard error as this program's; if nobody can read them, so be it.
+/// Writes lines to standard error with the name of this program. Failures to write are ignored.
 pub fn talk(message: &str) {
     let mut stderr = io::stderr().lock();
     for line in message.lines() {
@@ -162,7 +162,7 @@ impl From<ShardError> for Failure {
     }
 }
 
-/// The flag that an option of a request is.
+/// The flag for an option of a request.
 fn flag(option: RequestOption) -> &'static str {
     match option {
         RequestOption::Kind => "--kind",
@@ -190,7 +190,7 @@ mod tests {
         assert!(full.to_string().starts_with("standard output: "));
     }
 
-    /// Who uses this library can ask what happened, and need not read the message.
+    /// Callers of this library can inspect the cause, without parsing the message.
     #[test]
     fn a_failure_keeps_its_cause() {
         let full = Failure::at("a.mcap", io::Error::from(ErrorKind::StorageFull));

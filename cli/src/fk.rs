@@ -85,7 +85,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     output.print(&answer.json(), answer.text())
 }
 
-/// Every actuated joint's value.
+/// The value of every actuated joint.
 fn joints(given: &Pose, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> {
     let actuated: Vec<&JointCoordinate> =
         manipulator.actuated().iter().map(|&i| &manipulator.coordinates()[i]).collect();
@@ -118,7 +118,7 @@ fn joints(given: &Pose, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> 
         .collect()
 }
 
-/// A mode as it is written; one without choices has no signs.
+/// The text of a mode; a mode without choices has no signs.
 fn shown(manipulator: &Manipulator, mode: Mode) -> String {
     match manipulator.choices() {
         0 => "(no choices)".to_owned(),
@@ -126,7 +126,7 @@ fn shown(manipulator: &Manipulator, mode: Mode) -> String {
     }
 }
 
-/// How the assemblies were found.
+/// The method that found the assemblies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum Method {
@@ -234,7 +234,7 @@ impl Answer<'_> {
         text
     }
 
-    /// A row an assembly.
+    /// A table with a row for each assembly.
     fn table(&self) -> Table {
         let (m, units) = (self.manipulator, self.loaded.file.units);
         let mut headers = vec![">".to_owned()];

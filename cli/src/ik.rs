@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
-/// Most two-valued choices of which every combination is listed.
+/// Largest number of two-valued choices for which every combination is listed.
 const MOST_CHOICES: u32 = 16;
 
 pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
@@ -35,7 +35,7 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     output.print(&answer.json(), answer.text())
 }
 
-/// The working modes that the flags ask for.
+/// The working modes that the flags select.
 fn modes(args: &IkArgs, manipulator: &Manipulator) -> Result<Modes, Failure> {
     if !args.all_modes {
         return load::mode(manipulator, &args.mode).map(Modes::One);
@@ -58,7 +58,8 @@ struct Answer<'a> {
     all: bool,
     solutions: Vec<(Mode, Solution)>,
     unreachable: Vec<Unreachable>,
-    /// How far the transform asked for is outside the motion; the pose is the nearest then.
+    /// The distance of the requested transform from the motion, if it is outside. The pose is then the
+    /// nearest.
     outside: Option<OutsideMotion>,
 }
 
@@ -119,7 +120,7 @@ impl<'a> Answer<'a> {
         Ok(Self { loaded, manipulator, pose, all, solutions, unreachable, outside: None })
     }
 
-    /// At a transform that is no pose.
+    /// The report for a transform that is not a pose.
     fn outside(
         loaded: &'a Loaded,
         manipulator: &'a Manipulator,
@@ -241,7 +242,7 @@ impl<'a> Answer<'a> {
         table
     }
 
-    /// A row a mode: imaginary and actuated joints.
+    /// A table with a row for each mode: imaginary and actuated joints.
     fn mode_table(&self) -> Table {
         let units = self.loaded.file.units;
         let manipulator = self.manipulator;
@@ -278,7 +279,7 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// Whose value it is.
+/// The owner of a value.
 #[derive(Clone, Copy)]
 enum Of<'a> {
     Joint(&'a JointCoordinate, &'a Limits),
@@ -308,7 +309,7 @@ impl Of<'_> {
     }
 }
 
-/// How far, and in which direction, a transform is outside the motion.
+/// The distance and the direction of a transform from the motion.
 fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
     let parts = outside.parts().map(|(quantity, v)| {
         let way = match quantity {
@@ -322,7 +323,7 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
     format!("the transform is outside the manipulator's motion by {}", parts.join(" and "))
 }
 
-/// Which section of the leg does not close, and by how much.
+/// The section of the leg that does not close, and by how much.
 pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
     let (section, gap) = (unreachable.section, unreachable.deficit);
     if gap.excess.is_finite() {

@@ -1,4 +1,4 @@
-//! `opm inspect`: what a recording holds.
+//! `opm inspect`: the contents of a recording.
 
 use crate::args::{InspectArgs, Output};
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use opm_mcap::{Metadata, ReadError, Recording, read};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// Nanoseconds in a second.
+/// Nanoseconds per second.
 const SECOND: f64 = 1e9;
 
 pub fn run(args: &InspectArgs, output: &Output) -> Result<(), Failure> {

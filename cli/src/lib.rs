@@ -1,6 +1,6 @@
 //! `opm`: kinematics and workspaces of overconstrained parallel manipulators, from a mechanism file.
 //!
-//! The program as a library: [`main`], so that the Python package can bring the command along.
+//! The program is a library with the function [`main`], so that the Python package can include the command.
 
 mod args;
 mod batch;
@@ -32,16 +32,16 @@ use crate::failure::Failure;
 use clap::Parser;
 use std::ffi::OsString;
 
-/// Does what a command line asks for, the program's name first, and returns the status to exit with:
-/// 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. Everything that it had to say is on
-/// standard output and standard error, to the last byte.
+/// Runs a command line, which begins with the program's name, and returns the exit status:
+/// 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. All output has then been written to
+/// standard output and standard error.
 ///
-/// It takes Ctrl-C over where work is long, and the second Ctrl-C ends the process; so it is for a
+/// It handles Ctrl-C during long work, and the second Ctrl-C ends the process. Use it only in a
 /// process that does nothing else.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let done = match Args::try_parse_from(arguments) {
         Ok(args) => run(&args),
-        // Help and the version come this way, too. Whoever does not read them has gone.
+        // Help and the version come this way, too. Failures to print them are ignored.
         Err(told) => {
             let _ = told.print();
             return u8::try_from(told.exit_code()).unwrap_or(2);

@@ -46,13 +46,13 @@ impl<R: Read> Lines<R> {
 /// One line.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
-    /// From 1.
+    /// Its number, from 1.
     pub number: u64,
     text: &'a [u8],
 }
 
 impl<'a> Line<'a> {
-    /// What stands between the commas, without spaces and quotes around it.
+    /// The fields between the commas, without surrounding spaces and quotes.
     pub fn fields(self) -> impl Iterator<Item = &'a [u8]> {
         self.text.split(|&byte| byte == b',').map(|field| {
             let field = field.trim_ascii();

@@ -32,7 +32,7 @@ pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
     }
 }
 
-/// The input that was asked for, and its value; otherwise the first actuated joint.
+/// The requested input and its value; by default the first actuated joint.
 fn resolve<'a>(
     given: Option<&InputValue>,
     linkage: &'a Linkage,

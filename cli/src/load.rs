@@ -13,12 +13,12 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// Longest mechanism file: beyond, it is something else, an endless device for instance.
+/// Largest size of a mechanism file. A larger one is something else, for instance an endless device.
 const LONGEST: u64 = 16 << 20;
 
 /// A mechanism file that was read.
 pub struct Loaded {
-    /// What messages call it: the path or the name as given.
+    /// Its name in messages: the path or the name as given.
     pub label: String,
     /// The file's own name, to attach it under.
     pub file_name: String,
@@ -26,11 +26,11 @@ pub struct Loaded {
     pub path: Option<PathBuf>,
     /// Its text.
     pub text: String,
-    /// What it says.
+    /// The mechanism and its units.
     pub file: MechanismFile,
 }
 
-/// Reads a mechanism. An existing path wins over an example of the same name.
+/// Reads a mechanism. An existing path has priority over an example of the same name.
 pub fn open(given: &Path) -> Result<Loaded, Failure> {
     let label = given.display().to_string();
     let (text, path, file_name) = match text(given, LONGEST, "mechanism file")? {
@@ -55,7 +55,7 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { label, file_name, path, text, file })
 }
 
-/// Reads a mechanism file that is attached to a recording; `label` is what it was named to the run.
+/// Reads a mechanism file that is attached to a recording. `label` is its name in the recorded command.
 pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Failure> {
     let file =
         file::read(text).map_err(|errors| Failure::because(errors.in_file(label), errors))?;
@@ -63,7 +63,7 @@ pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Fail
     Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file })
 }
 
-/// The text of a file of at most so many bytes; `None` where there is no such file.
+/// The text of a file with at most this number of bytes; `None` if there is no such file.
 pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
     let label = given.display();
     let failed = |error| Failure::at(&label, error);
@@ -87,7 +87,7 @@ pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Fa
 }
 
 impl Loaded {
-    /// The file, as a recording takes it along.
+    /// The file, as an attachment of a recording.
     pub fn attachment(&self) -> Attachment<'_> {
         Attachment { name: &self.file_name, text: &self.text }
     }
@@ -101,8 +101,8 @@ impl Loaded {
         })
     }
 
-    /// What messages call the place that an error is about: the file, and the line where it can be
-    /// told.
+    /// The place of an error in messages: the file, and the line if it is
+    /// known.
     pub fn place_of(&self, error: &CompileError) -> String {
         let (file, places) = (&self.file, &self.file.places);
         let place = match error {
@@ -124,7 +124,7 @@ impl Loaded {
         }
     }
 
-    /// Of a mechanism without inverse kinematics: that it is a linkage, if it is one.
+    /// The advice for a mechanism without inverse kinematics: it may be a linkage.
     pub fn linkage_hint(&self) -> String {
         match Linkage::new(&self.file.mechanism) {
             Ok(_) => format!("; it is a linkage: use `opm linkage {}`", self.label),

@@ -19,10 +19,10 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Measures from here on are shown with an exponent.
+/// Measures of at least this size are shown with an exponent.
 const LARGE: f64 = 1e7;
 
-/// Digits of a double.
+/// Number of digits of a double.
 const MOST_DIGITS: i32 = 15;
 
 pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
@@ -55,7 +55,7 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What is measured: as the flags say, or fitted to the workspace.
+/// The domain of the measure: given by the flags, or fitted to the workspace.
 fn domain(
     args: &MeasureArgs,
     output: &Output,
@@ -69,7 +69,7 @@ fn domain(
     let given: Result<Vec<CoordinateRange>, _> =
         args.over.iter().map(|axis| axis.resolve(&coordinates)).collect();
     let given = given.map_err(|error| Failure::flag("--over", error))?;
-    // The flags are wrong or right before any work is done.
+    // The flags are checked before any work is done.
     let checked = |over: &[CoordinateRange]| {
         Domain::new(manipulator, sections, over).map_err(|error| Failure::flag("--over", error))
     };
@@ -78,7 +78,7 @@ fn domain(
     let (over, beyond) = watch(output, "fitting ranges", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::interrupted("interrupted while fitting ranges"))?;
     if over.len() > given.len() {
-        // As flags in SI, so that the same run can be asked for again.
+        // Flags in SI, so that the same run can be repeated.
         let flags = over.iter().map(|CoordinateRange { name, min, max }| match min == max {
             true => format!("--over {name}={min}"),
             false => format!("--over {name}={min}:{max}"),
@@ -93,7 +93,7 @@ fn domain(
     checked(&over)
 }
 
-/// What was measured.
+/// The measured quantity and its results.
 struct Run<'a> {
     loaded: &'a Loaded,
     manipulator: &'a Manipulator,
@@ -174,7 +174,7 @@ impl Run<'_> {
         text
     }
 
-    /// What came of a budget that does not do, and what helps.
+    /// The warning that the budget was too small, with advice.
     fn beyond(&self, found: &Measured) -> String {
         let section = match self.args.section {
             SectionName::Whole => "--section upper, ",
@@ -191,12 +191,12 @@ impl Run<'_> {
     }
 }
 
-/// A share, to two digits and not less.
+/// A share, rounded up to two digits.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let decimals = if percent > 0.0 { (1 - exponent(percent)).max(0) } else { 0 };
     let power = 10_f64.powi(decimals);
-    // What the product with 100 is off by is no reason to round up.
+    // The rounding error of the product with 100 is no reason to round up.
     format!("{} %", readable((percent * power * (1.0 - 1e-12)).ceil() / power))
 }
 
@@ -205,7 +205,7 @@ fn exponent(x: f64) -> i32 {
     x.log10().floor() as i32
 }
 
-/// Decimals that tell two bounds so far apart from one another, and do not pretend more.
+/// The number of decimals that distinguish two bounds this far apart, without false precision.
 fn resolving(gap: f64, size: f64) -> i32 {
     if size <= 0.0 {
         return 0;
@@ -214,7 +214,7 @@ fn resolving(gap: f64, size: f64) -> i32 {
     if gap > 0.0 { (1 - exponent(gap)).min(most) } else { most }
 }
 
-/// Value and bounds with so many decimals, the bounds away from the value; large ones with an exponent.
+/// Value and bounds with this many decimals. Bounds are rounded outward; large numbers have an exponent.
 fn rounded([value, lower, upper]: [f64; 3], decimals: i32) -> [String; 3] {
     let power = 10_f64.powi(decimals);
     let large = upper >= LARGE;

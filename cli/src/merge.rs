@@ -1,4 +1,4 @@
-//! `opm merge`: the shards of a sweep as the one run that they are parts of.
+//! `opm merge`: joins the shards of a sweep to the result of a single run.
 
 use crate::args::{MergeArgs, Output};
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use opm_workspace::{ConditionLimit, Progress};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Most missing shards whose commands are listed one by one.
+/// Largest number of missing shards whose commands are listed one by one.
 const COMMANDS: usize = 8;
 
 pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
@@ -75,7 +75,7 @@ fn read(parts: &[PathBuf], output: &Output, progress: &Progress) -> Result<Shard
     Ok(Shards::new(stored)?)
 }
 
-/// Says which shards are missing, and how to make them.
+/// The message that names the missing shards and the commands that make them.
 fn with_commands(
     missing: &MissingShards,
     workspace: &Workspace,
@@ -117,7 +117,7 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
     command + &format!(" --shard {number}/{of} -o {}", quoted(&output.display().to_string()))
 }
 
-/// A name for another shard's file, like that of a part: with its number in place of the part's.
+/// A file name for another shard, made from that of a part: its number replaces the part's.
 fn named_like(part: &StoredShard, number: u64) -> PathBuf {
     let name = part.path().file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let own = part.shard().number();
@@ -135,7 +135,7 @@ fn named_like(part: &StoredShard, number: u64) -> PathBuf {
     part.path().with_file_name(name)
 }
 
-/// A word as a shell takes it.
+/// A word, quoted for a shell if necessary.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "._-/=:,+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

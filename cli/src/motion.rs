@@ -7,12 +7,12 @@ use opm_core::motion::{PlatformMotion, examples, file, table};
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
 
-/// Longest table of poses: some millions of lines.
+/// Largest size of a table of poses: some millions of lines.
 const LONGEST: u64 = 1 << 30;
 
 /// A motion that was read.
 pub struct LoadedMotion {
-    /// What messages call it: the path or the name as given.
+    /// Its name in messages: the path or the name as given.
     pub label: String,
     /// The file's own name, to attach it under.
     pub file_name: String,
@@ -20,19 +20,19 @@ pub struct LoadedMotion {
     pub path: Option<PathBuf>,
     /// Its text.
     pub text: String,
-    /// What it says.
+    /// The motion.
     pub motion: PlatformMotion,
 }
 
 impl LoadedMotion {
-    /// The file, as a recording takes it along.
+    /// The file, as an attachment of a recording.
     pub fn attachment(&self) -> Attachment<'_> {
         Attachment { name: &self.file_name, text: &self.text }
     }
 }
 
-/// Reads a motion: a table of poses where the name ends in `.csv`, a motion file otherwise. An existing
-/// path wins over an example of the same name.
+/// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise. An existing
+/// path has priority over an example of the same name.
 pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Failure> {
     let label = given.display().to_string();
     let source = match load::text(given, LONGEST, "motion file")? {

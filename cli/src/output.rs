@@ -1,4 +1,4 @@
-//! What goes to standard output, and what is said beside it.
+//! Results on standard output, and notes on standard error.
 
 use crate::args::{Format, Output};
 use crate::failure::{Failure, talk};
@@ -8,7 +8,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 
 impl Output {
-    /// Prints a result in the format asked for.
+    /// Prints a result in the selected format.
     pub fn print(&self, json: &impl Serialize, text: impl Display) -> Result<(), Failure> {
         match self.format {
             Format::Json => print_with(|out| {
@@ -19,14 +19,14 @@ impl Output {
         }
     }
 
-    /// Says something on standard error, unless that is to be quiet.
+    /// Prints a note on standard error, unless --quiet is given.
     pub fn note(&self, message: impl Display) {
         if !self.quiet {
             talk(&message.to_string());
         }
     }
 
-    /// As [`Output::note`], for what may make the result useless.
+    /// As [`Output::note`], for a warning that the result may be useless.
     pub fn warn(&self, message: impl Display) {
         self.note(format_args!("warning: {message}"));
     }

@@ -24,7 +24,7 @@ use source::Source;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The formats.
+/// The formats of pictures.
 #[derive(Clone, Copy)]
 enum Ending {
     Svg,
@@ -118,7 +118,7 @@ impl Target {
 }
 
 impl Drop for Target {
-    /// Half a picture is of no use.
+    /// An incomplete picture is of no use.
     fn drop(&mut self) {
         if let Some(file) = self.file.take() {
             file.discard();

@@ -1,4 +1,4 @@
-//! Poses and grids as they are written on the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
+//! Poses and grids in the syntax of the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
 
 use crate::failure::Failure;
 use opm_core::Quantity;
@@ -10,12 +10,12 @@ use opm_workspace::{Axis, Coordinate, Sections};
 use std::fmt;
 use std::str::FromStr;
 
-/// A text that does not say what it should.
+/// A text that cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misread(pub String);
 
 impl Misread {
-    /// What is wrong, and what was expected.
+    /// The problem, and what was expected.
     pub fn new(problem: String) -> Self {
         Self(problem)
     }
@@ -29,12 +29,12 @@ impl fmt::Display for Misread {
 
 impl std::error::Error for Misread {}
 
-/// A number that may have named its unit.
+/// A number, with or without a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
     /// Metres or radians.
     value: f64,
-    /// What the unit measures; `None` for a number alone.
+    /// The quantity of the unit; `None` for a number without a unit.
     quantity: Option<Quantity>,
 }
 
@@ -51,12 +51,12 @@ pub struct GridAxis {
     count: u64,
 }
 
-/// A range of one coordinate, or one value.
+/// A range of one coordinate, or a single value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverAxis {
     name: String,
     min: Number,
-    /// `None` of one value.
+    /// `None` for a single value.
     max: Option<Number>,
 }
 
@@ -110,12 +110,12 @@ impl FromStr for Number {
 }
 
 impl Number {
-    /// The value for a coordinate, which it must suit.
+    /// The value for a coordinate; its unit must suit the coordinate.
     fn of(self, coordinate: &TaskCoordinate) -> Result<f64, Misread> {
         self.value_of(coordinate.name, coordinate.quantity)
     }
 
-    /// The value for what is called `name` and measures `quantity`, which it must suit.
+    /// The value for `name`, which measures `quantity`; its unit must suit the quantity.
     pub fn value_of(self, name: &str, quantity: Quantity) -> Result<f64, Misread> {
         let what = |quantity| match quantity {
             Quantity::Angle => "an angle",
@@ -133,13 +133,13 @@ impl Number {
 }
 
 impl Number {
-    /// The characteristic length that `--length` gives.
+    /// The characteristic length given by `--length`.
     pub fn characteristic_length(self) -> Result<f64, Failure> {
         let length = self.value_of("the characteristic length", Quantity::Length);
         length.map_err(|error| Failure::flag("--length", error))
     }
 
-    /// The value of what is called `name` and has no unit.
+    /// The value of `name`, which has no unit.
     pub fn bare(self, name: &str) -> Result<f64, Misread> {
         match self.quantity {
             Some(_) => Err(Misread(format!("{name} has a unit, expected a number alone"))),
@@ -165,7 +165,7 @@ impl FromStr for Pose {
 }
 
 impl Pose {
-    /// Every coordinate of the pose: what is not given has its home value.
+    /// Every coordinate of the pose. Coordinates that are not given have their home values.
     pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
         self.resolve_for("--pose", coordinates)
     }
@@ -180,13 +180,13 @@ impl Pose {
         self.fill(home, coordinates).map_err(|e| Failure::flag(flag, e))
     }
 
-    /// The rates of all coordinates, a second: what is not given stands still.
+    /// The rates of all coordinates, per second. Rates that are not given are zero.
     pub fn resolve_rates(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
         let still = vec![0.0; coordinates.len()];
         self.fill(still, coordinates).map_err(|e| Failure::flag("--rates", e))
     }
 
-    /// What was given, in order.
+    /// The given names and values, in order.
     pub fn assignments(&self) -> impl Iterator<Item = (&str, Number)> {
         self.0.iter().map(|(name, number)| (&**name, *number))
     }
@@ -248,7 +248,7 @@ impl GridAxis {
 /// The two ends of a range.
 fn ends(min: &str, max: &str) -> Result<[Number; 2], Misread> {
     let (low, high): (Number, Number) = (min.parse()?, max.parse()?);
-    // -10:10mm would run from minus ten metres.
+    // Otherwise -10:10mm would start at minus ten metres.
     let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
     if (bare(low) && high.quantity.is_some()) || (low.quantity.is_some() && bare(high)) {
         let range = format!("{min}:{max}");
@@ -278,10 +278,10 @@ impl FromStr for OverAxis {
 }
 
 impl OverAxis {
-    /// The range in SI, of one of these coordinates.
+    /// The range in SI, for one of these coordinates.
     pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<CoordinateRange, Misread> {
         let known = coordinates.iter().find(|c| c.name == self.name);
-        // A name that is not known is for others to refuse.
+        // Unknown names are reported elsewhere.
         let end = |number: Number| match known {
             Some(c) => number.value_of(&c.name, c.quantity),
             None => Ok(number.value),
@@ -290,7 +290,7 @@ impl OverAxis {
         let Some(max) = self.max.map(end).transpose()? else {
             return Ok(CoordinateRange::new(name, min, min));
         };
-        // What has no width has no measure, which is never meant.
+        // A range without width has measure zero, which nobody wants.
         if min == max {
             let end = readable(min);
             return Err(Misread(format!(

@@ -11,10 +11,10 @@ use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// How often the bar is redrawn.
+/// Interval at which the bar is redrawn.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Progress that the first Ctrl-C asks to stop; the second ends the process at once.
+/// Progress that the first Ctrl-C cancels. The second one ends the process at once.
 pub fn interruptible() -> Result<Arc<Progress>, Failure> {
     let progress = Arc::new(Progress::default());
     let heard = Arc::clone(&progress);
@@ -28,8 +28,8 @@ pub fn interruptible() -> Result<Arc<Progress>, Failure> {
     Ok(progress)
 }
 
-/// Does some work while a bar shows how far it has come, `done` out of `total` poses. The bar is on
-/// standard error, and only where that is a terminal.
+/// Does some work while a bar shows its progress, `done` out of `total` poses. The bar is on
+/// standard error, and only if that is a terminal.
 pub fn watch<T>(
     output: &Output,
     label: &'static str,
@@ -47,7 +47,7 @@ pub fn watch<T>(
     show(output, &bar, label, done, work)
 }
 
-/// As [`watch`], for boxes of which nobody knows how many there will be.
+/// As [`watch`], for boxes whose final number is unknown.
 pub fn watch_boxes<T>(
     output: &Output,
     label: &'static str,
@@ -59,7 +59,7 @@ pub fn watch_boxes<T>(
     show(output, &bar, label, done, work)
 }
 
-/// As [`watch`], for the reading of a recording of so many messages, or of nobody knows how many.
+/// As [`watch`], for reading a recording with this number of messages, or with an unknown number.
 pub fn watch_reading<T>(
     output: &Output,
     total: Option<u64>,
@@ -88,7 +88,7 @@ fn show<T>(
     thread::scope(|scope| {
         let (finished, waiting) = mpsc::channel::<()>();
         scope.spawn(move || {
-            // The other end says nothing: it goes away when the work is done, even by a panic.
+            // Nothing is sent. The other end is dropped when the work is done, even by a panic.
             while waiting.recv_timeout(TICK) == Err(mpsc::RecvTimeoutError::Timeout) {
                 bar.set_position(done());
                 bar.tick();

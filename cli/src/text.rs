@@ -14,7 +14,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A header for each column; one that starts with `>` has its column set to the right.
+    /// A header for each column. A header that starts with `>` aligns its column to the right.
     pub fn new<T: AsRef<str>>(headers: impl IntoIterator<Item = T>) -> Self {
         let mut table = Self::default();
         let mut row = Vec::new();
@@ -71,17 +71,17 @@ pub fn number(value: f64, quantity: Quantity, units: FileUnits) -> String {
     fixed(value / units.factor(quantity), decimals)
 }
 
-/// A name with the unit of its values, as a header of a column set to the right.
+/// A name with the unit of its values, as the header of a column aligned to the right.
 pub fn header(name: &str, quantity: Quantity, units: FileUnits) -> String {
     format!(">{name} [{}]", units.symbol(quantity))
 }
 
-/// Lowest and highest value in the file's unit.
+/// The lowest and the highest value in the file's unit.
 pub fn range([low, high]: [f64; 2], quantity: Quantity, units: FileUnits) -> String {
     format!("{} .. {}", number(low, quantity, units), number(high, quantity, units))
 }
 
-/// A number of things, told.
+/// A count with its noun.
 pub fn plural(number: u64, what: &str) -> String {
     format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })
 }
@@ -98,7 +98,7 @@ pub fn short(value: f64) -> String {
 
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
-    // A rounded `-0` reads like a mistake.
+    // A rounded `-0` would look like a mistake.
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
         _ => text,

@@ -1,4 +1,4 @@
-//! The platform's place in SE(3), as it is written on the command line:
+//! The platform's pose in SE(3), in the syntax of the command line:
 //! `0,0,300mm,0.966,0.259,0,0`.
 
 use crate::pose::{Misread, Number};
@@ -9,18 +9,18 @@ use opm_core::manipulator::{Manipulator, OutsideMotion};
 use serde_json::{Value, json};
 use std::str::FromStr;
 
-/// A quaternion whose length is off one by more has a wrong number in it: three digits do.
+/// Largest deviation of a quaternion's length from one. Three digits are enough; more means a wrong number.
 const UNIT: f64 = 2e-3;
 
-/// Numbers of six digits are off the motion by less, in radians or sizes of the mechanism.
+/// Largest distance from the motion, in radians or sizes of the mechanism. Six digits are enough.
 const WRITTEN: f64 = 1e-5;
 
-/// Metres, as in mechanism files: from much farther away, rounding hides the mechanism.
+/// Largest coordinate, metres, as in mechanism files. At much larger ones, rounding hides the mechanism.
 const FARTHEST: f64 = 1e9;
 
 const NAMES: [&str; 7] = ["X", "Y", "Z", "QW", "QX", "QY", "QZ"];
 
-/// Position of the platform's reference point, and its orientation; base coordinates, metres.
+/// Position of the platform's reference point, and the platform's orientation; base coordinates, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform(Isometry3<f64>);
 
@@ -64,11 +64,11 @@ impl FromStr for Transform {
     }
 }
 
-/// Where a transform is among a manipulator's poses.
+/// The relation of a transform to a manipulator's poses.
 pub enum Located {
-    /// In the motion, but for the rounding of what was written.
+    /// It is in the motion, to within the rounding of the given numbers.
     Pose(Vec<f64>),
-    /// Outside it.
+    /// It is outside the motion.
     Outside(OutsideMotion),
 }
 
@@ -90,7 +90,7 @@ impl Transform {
 }
 
 /// The position of the platform at a pose, in metres, and its quaternion, whose scalar comes first and is not
-/// negative; null for what is no pose.
+/// negative; null if there is no pose.
 pub fn json(manipulator: &Manipulator, pose: &[f64]) -> Value {
     let Ok(platform) = manipulator.platform_pose(pose) else { return Value::Null };
     let q = platform.rotation;
@@ -99,7 +99,7 @@ pub fn json(manipulator: &Manipulator, pose: &[f64]) -> Value {
     json!({ "position": triple(&platform.translation.vector), "quaternion": quaternion })
 }
 
-/// How far a transform is outside, SI.
+/// The distance of a transform from the motion, SI.
 pub fn outside_json(outside: &OutsideMotion) -> Value {
     json!({
         "rotation": triple(&outside.rotation),

@@ -34,7 +34,7 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     output.print(&answer.json(), answer.text())
 }
 
-/// What was asked for.
+/// The request.
 struct Asked<'a> {
     loaded: &'a Loaded,
     manipulator: &'a Manipulator,
@@ -98,7 +98,7 @@ impl Asked<'_> {
     }
 }
 
-/// What there is at the pose.
+/// The results at the pose.
 struct Answer<'a> {
     asked: &'a Asked<'a>,
     at: &'a Solution,
@@ -158,7 +158,7 @@ impl<'a> Answer<'a> {
         (!self.rateless_imaginary.contains(&number)).then_some(rate)
     }
 
-    /// Names of the legs that cause a measure of a section to be small: serial, parallel.
+    /// Names of the legs that make a measure of a section small: serial, parallel.
     fn causes(&self, section: Section) -> [Vec<&str>; 2] {
         let manipulator = self.asked.manipulator;
         let name = |cause: Cause| &*manipulator.mechanism().legs[cause.leg].name;
@@ -308,7 +308,7 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// What JSON has no number for is null.
+/// Numbers that JSON cannot hold are null.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,6 +1,6 @@
 //! `opm workspace`: sweeps of the workspace.
 //!
-//! The way: flags, request, sweep, analysis, recording, print.
+//! The steps are: flags, request, sweep, analysis, recording, output.
 
 pub mod advice;
 mod report;
@@ -64,7 +64,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     output.print(&outcome.json(), outcome.text())
 }
 
-/// What the flags ask for.
+/// The request that the flags make.
 fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceRequest, Failure> {
     let mut request = WorkspaceRequest::new(args.kind);
     request.modes = Some(modes(&args.mode, manipulator)?);
@@ -88,20 +88,20 @@ pub fn modes(given: &str, manipulator: &Manipulator) -> Result<Modes, Failure> {
     }
 }
 
-/// What the flags ask for of every point.
+/// The values of every point that the flags request.
 pub fn points(CloudArgs { output: _, axes, color, scalars }: &CloudArgs) -> PointOptions {
     PointOptions { axes: axes.clone(), scalars: scalars.clone(), color: color.clone() }
 }
 
-/// Which part of a sweep is asked for, and where it goes.
+/// The requested part of a sweep, and its output file.
 struct Part<'a> {
     shard: Shard,
     path: &'a Path,
-    /// Whether it replaces what is there.
+    /// Whether it replaces an existing file.
     force: bool,
 }
 
-/// Sweeps a shard and writes its file, unless that is there.
+/// Sweeps a shard and writes its file, unless the file exists.
 fn sweep_shard(
     workspace: &Workspace,
     loaded: &Loaded,

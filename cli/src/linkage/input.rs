@@ -1,14 +1,14 @@
-//! The joint that moves a linkage, as it is written on the command line: `a1=30deg`.
+//! The joint that moves a linkage, in the syntax of the command line: `a1=30deg`.
 
 use crate::pose::{Misread, Number};
 use std::str::FromStr;
 
-/// A joint, and where it is.
+/// A joint and its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputValue {
     /// The name of the joint.
     pub name: String,
-    /// Its value, where that is given.
+    /// Its value, if given.
     pub value: Option<Number>,
 }
 

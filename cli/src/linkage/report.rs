@@ -1,4 +1,4 @@
-//! What is printed of the positions of a linkage.
+//! The printed positions of a linkage.
 
 use crate::load::Loaded;
 use crate::output::named;
@@ -77,7 +77,7 @@ impl Run<'_> {
         text
     }
 
-    /// A row a joint, a column a branch.
+    /// A table with a row for each joint and a column for each branch.
     fn table(&self, positions: &[Position]) -> Table {
         let units = self.loaded.file.units;
         let angle = |value: f64| text::number(value, Quantity::Angle, units);

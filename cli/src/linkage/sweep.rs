@@ -1,4 +1,4 @@
-//! `opm linkage --sweep`: once round, as CSV or as a recording.
+//! `opm linkage --sweep`: a closed cycle, as CSV or as a recording.
 
 use super::report::Run;
 use crate::args::{Format, LinkageArgs, Output};
@@ -84,7 +84,7 @@ impl From<csv::Error> for Stop {
     }
 }
 
-/// What is asked for.
+/// The requested sweep.
 struct Sweep<'a> {
     run: &'a Run<'a>,
     round: LinkageRound<'a>,

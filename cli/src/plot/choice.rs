@@ -1,4 +1,4 @@
-//! Which slices are shown: what is seen, what is held, what differs from tile to tile.
+//! The choice of slices: the coordinates that are shown, held, or varied from tile to tile.
 
 use super::grid::nearest;
 use super::layout::{Coordinate, Layout};
@@ -6,7 +6,7 @@ use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_core::Quantity;
 
-/// Most slices that --slice may ask for.
+/// Largest number of slices that --slice may request.
 const MOST: usize = 36;
 
 /// Whether a coordinate has several values on its grid.
@@ -14,7 +14,7 @@ pub fn several(coordinate: &Coordinate) -> bool {
     coordinate.axis.as_ref().is_some_and(|axis| axis.count > 1)
 }
 
-/// The first two of the recording's axes that vary; twice the one where only one does.
+/// The first two of the recording's axes that vary. If only one varies, it is taken twice.
 pub fn fast(layout: &Layout) -> [usize; 2] {
     let varies = |number: &&usize| {
         layout.coordinates[**number].axis.as_ref().is_none_or(|axis| axis.count > 1)
@@ -27,7 +27,7 @@ pub fn fast(layout: &Layout) -> [usize; 2] {
     [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
 }
 
-/// The value nearest to home; of what has none, the middle.
+/// The value nearest to home, or the middle value if the coordinate has no home.
 pub fn home(coordinate: &Coordinate) -> u64 {
     match (&coordinate.axis, coordinate.home) {
         (Some(axis), Some(home)) => nearest(axis, home),
@@ -36,7 +36,7 @@ pub fn home(coordinate: &Coordinate) -> u64 {
     }
 }
 
-/// What `--slice` asks for: coordinates with numbers of their grids' values.
+/// The selection of `--slice`: coordinates with the indices of their grid values.
 pub fn asked(
     layout: &Layout,
     args: &PlotArgs,
@@ -83,8 +83,8 @@ pub fn asked(
     Ok(asked)
 }
 
-/// The coordinate that has another value in each tile: the one that was given several, or one that
-/// was given none, the cloud's third axis before others.
+/// The coordinate that has another value in each tile. It is the one with several given values, or else one
+/// without given values, the cloud's third axis first.
 pub fn varied(
     layout: &Layout,
     free: &[usize],
@@ -100,7 +100,7 @@ pub fn varied(
         return Ok(Some(one));
     }
     let open = || free.iter().copied().filter(|n| !asked.iter().any(|(known, _)| known == n));
-    // The third axis of the cloud, or what its colours show.
+    // The third axis of the cloud, or the value of its colours.
     let color = layout.colored.as_deref().and_then(|name| layout.find(name));
     let third = [layout.axes.get(2).copied(), color].into_iter().flatten();
     let third = third.into_iter().find(|third| open().any(|number| number == *third));
@@ -108,7 +108,7 @@ pub fn varied(
     Ok(third.or_else(|| open().max_by_key(count)))
 }
 
-/// Tiles in a row.
+/// Number of tiles in a row.
 pub fn columns(tiles: usize) -> usize {
     match tiles {
         0..=3 => tiles.max(1),

@@ -1,4 +1,4 @@
-//! The values that joints take in a workspace, against each other.
+//! The values that joints take in a workspace, plotted against each other.
 
 use super::source::{Rate, Source};
 use crate::text::count;
@@ -7,17 +7,17 @@ use opm_plot::color::Map;
 use opm_plot::{Bar, Cloud, Content, Histogram, Measure, Scale, Section, Tile};
 use opm_study::WorkspaceKind;
 
-/// Joints that are drawn against each other: six pairs.
+/// Largest number of joints that are plotted against each other: six pairs.
 const MOST: usize = 4;
 
-/// Joint values in the making.
+/// Joint values that are being collected.
 pub struct JointCloud {
-    /// What its points are points of.
+    /// The kind of the workspace.
     kind: WorkspaceKind,
     joints: Vec<Joint>,
-    /// Joints that there is no room for.
+    /// Joints that are left out for lack of space.
     left_out: usize,
-    /// One joint alone, or every pair.
+    /// A single joint, or every pair.
     content: Vec<(usize, usize, Content)>,
     points: u64,
 }
@@ -29,7 +29,7 @@ struct Joint {
 }
 
 impl JointCloud {
-    /// None without joints that are stored.
+    /// `None` if no joints are stored.
     pub fn new(kind: WorkspaceKind, source: &Source<'_>, names: &[String]) -> Option<Self> {
         let mut joints = vec![];
         let mut ranges = vec![];
@@ -69,7 +69,7 @@ impl JointCloud {
         self.points += cloud.len() as u64;
     }
 
-    /// What has to be said of the picture.
+    /// Notes on the picture.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = vec![];
         let dots = |content: &Content| matches!(content, Content::Cloud(cloud) if cloud.has_dots());
@@ -88,7 +88,7 @@ impl JointCloud {
         notes
     }
 
-    /// What the values are called: a set of places has its share of the orientations, no joints.
+    /// The heading of the values. A set of places has its share of the orientations instead of joints.
     fn values(&self) -> &'static str {
         match self.kind {
             WorkspaceKind::Reachable | WorkspaceKind::Dexterous => "Values",

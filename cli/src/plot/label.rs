@@ -2,7 +2,7 @@
 
 use crate::text::short;
 
-/// A number to four digits at most, without trailing zeros, with a minus sign.
+/// A number with at most four digits, without trailing zeros, with a typographic minus sign.
 pub fn value_label(value: f64) -> String {
     let text = short(value);
     let text = match text.contains('.') && !text.contains('e') {

@@ -1,4 +1,4 @@
-//! What is known of the points of a recorded workspace.
+//! The layout of the points of a recorded workspace.
 
 use super::grid::{is_home, nearest};
 use super::source::Source;
@@ -10,25 +10,25 @@ use opm_study::recording::slices_together;
 use opm_study::{NO_AXIS, WorkspaceKind};
 use opm_workspace::{Axis, Grid};
 
-/// What a recorded workspace is made of.
+/// The layout of a recorded workspace.
 pub struct Layout {
-    /// What the workspace is of.
+    /// The kind of the workspace.
     pub kind: WorkspaceKind,
-    /// The recording shows the boundary.
+    /// Whether the recording has the boundary.
     pub bounded: bool,
-    /// What can be known of a point: task coordinates, stored values.
+    /// The available values of a point: task coordinates and stored values.
     pub coordinates: Vec<Coordinate>,
     /// The whole grid, in the order of the task coordinates.
     pub grid: Vec<(Quantity, Axis)>,
-    /// Home is on that grid, as near as any pose.
+    /// Whether home is on that grid, to within half a step.
     pub has_home: bool,
-    /// Names of task coordinates of which a point's value is not stored.
+    /// Names of task coordinates whose values are not stored with the points.
     pub lost: Vec<String>,
-    /// What x, y and z of the cloud are, by their numbers among the coordinates.
+    /// The coordinates that are x, y and z of the cloud, by index.
     pub axes: Vec<usize>,
     /// Names of the values stored with every point.
     pub scalars: Vec<String>,
-    /// What the recording's colours show.
+    /// The value that the recording's colours show.
     pub colored: Option<String>,
     /// The same, if it is stored with the points, and its values at the ends of the colours.
     pub color: Option<(String, [f64; 2])>,
@@ -40,17 +40,17 @@ pub struct Coordinate {
     pub quantity: Option<Quantity>,
     /// SI.
     pub home: Option<f64>,
-    /// Its values on the grid, SI; `None` of the platform's point, which is on no grid.
+    /// Its values on the grid, SI; `None` for the reference point of the platform, which is not on a grid.
     pub axis: Option<Axis>,
     pub place: Place,
 }
 
-/// Where the value of a point's coordinate is found.
+/// The source of the value of a point's coordinate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In a field of the cloud.
+    /// A field of the cloud.
     Field(String),
-    /// In the number of the slice, divided by this.
+    /// The number of the slice, divided by this.
     Slice(u64),
 }
 
@@ -124,7 +124,7 @@ impl Layout {
                 });
             }
         }
-        // The platform's point; or of an unknown mechanism, the axes as they are called.
+        // The axes are the platform's reference point; for an unknown mechanism, they keep their names.
         for (name, field) in names.iter().zip(POSITION_FIELDS).filter(|(name, _)| *name != NO_AXIS)
         {
             if layout.find(name).is_none() {
@@ -149,7 +149,7 @@ impl Layout {
         layout
     }
 
-    /// Takes the axes of a set that is no set of poses.
+    /// Takes the axes of a set whose points are not poses.
     fn add_set<'a>(
         &mut self,
         manipulator: &Manipulator,

@@ -1,4 +1,4 @@
-//! The picture of a motion: everything over time.
+//! The picture of a motion: all values over time.
 
 use super::label::value_label;
 use super::options::PanelName;
@@ -15,7 +15,7 @@ use opm_mcap::trajectory::VALID;
 use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
 use std::collections::BTreeMap;
 
-/// Nanoseconds in a second.
+/// Nanoseconds per second.
 const SECOND: f64 = 1e9;
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
@@ -55,7 +55,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     drawn(args, |size| figure.draw(size))
 }
 
-/// What `--panels` asks for.
+/// The panels that `--panels` selects.
 struct Wanted {
     groups: Option<Vec<Group>>,
     rates: Vec<Rate>,
@@ -87,7 +87,7 @@ impl Wanted {
         Ok(Self { groups: (!groups.is_empty()).then_some(groups), rates })
     }
 
-    /// Without --panels, passive joints are drawn where --values names them.
+    /// Without --panels, passive joints are drawn if --values names them.
     fn has(&self, group: Group, args: &PlotArgs) -> bool {
         match &self.groups {
             Some(groups) => groups.contains(&group),
@@ -95,14 +95,15 @@ impl Wanted {
         }
     }
 
-    /// Condition and measures are no positions: where --panels names them, no rate rules them out.
+    /// Condition number and measures are not positions: if --panels names them, they are drawn with any
+    /// rates.
     fn takes(&self, trace: &Trace) -> bool {
         let judged = matches!(trace.group, Group::Condition | Group::Singularity);
         self.rates.contains(&trace.rate) || (judged && self.groups.is_some())
     }
 }
 
-/// The rows that a panel's name stands for; none where it names columns.
+/// The rows that the name of a panel stands for; none if it names columns.
 fn rows_of(panel: PanelName) -> &'static [Group] {
     match panel {
         PanelName::Pose => &[Group::Pose],
@@ -117,16 +118,16 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
     }
 }
 
-/// Everything over time.
+/// All values over time.
 struct Motion<'a> {
     source: &'a Source<'a>,
     /// Time of the first message, in nanoseconds.
     start: u64,
     /// Time of the motion at that message, in seconds.
     offset: f64,
-    /// The traces of every topic, once it has been seen.
+    /// The traces of every topic that has been read.
     traces: Vec<Option<Vec<Trace>>>,
-    /// Time of the messages that are being read.
+    /// Time of the current messages.
     now: Option<u64>,
     /// Topics with a message at that time.
     heard: [bool; TOPICS.len()],
@@ -134,7 +135,7 @@ struct Motion<'a> {
     end: u64,
     invalid: Vec<[f64; 2]>,
     valid: bool,
-    /// What `/condition` told at that time: it is drawn where the mechanism can be.
+    /// The values of `/condition` at that time. They are drawn where the mechanism is in reach.
     measures: Vec<f64>,
     values: Vec<f64>,
 }
@@ -232,7 +233,7 @@ impl<'a> Motion<'a> {
         check_names(args, &all)?;
         let violations = violations(source);
         let mut notes = listed(&violations, told(source, &violations));
-        // Between samples, too, where the recording tells.
+        // Violations between samples are marked too, if they are recorded.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {
             notes.insert(0, "Shaded: the mechanism cannot follow.".to_owned());
@@ -243,7 +244,7 @@ impl<'a> Motion<'a> {
                 count(thinned.curve.samples())
             ));
         }
-        // Rows in order; in each, positions and what follows from them.
+        // Rows in order; each has the positions and then their derivatives.
         let mut rows: BTreeMap<(Group, u8), Vec<Trace>> = BTreeMap::new();
         for trace in all {
             let named = args.values.is_empty() || args.values.contains(&trace.name);
@@ -269,7 +270,7 @@ impl<'a> Motion<'a> {
                 return Err(Failure::work(format!("{label}: no {name} in what --panels asks for")));
             }
         }
-        // Columns that nothing is in are left out.
+        // Empty columns are left out.
         let rates: Vec<Rate> = [Rate::Position, Rate::Velocity, Rate::Acceleration]
             .into_iter()
             .filter(|rate| rows.values().flatten().any(|trace| trace.rate == *rate))
@@ -346,7 +347,7 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
     Row { names, panels }
 }
 
-/// What an axis is called.
+/// The label of an axis.
 fn axis(group: Group, quantity: Option<Quantity>, rate: Rate) -> &'static str {
     match (rate, quantity) {
         (Rate::Position, Some(Quantity::Angle)) => "angle",

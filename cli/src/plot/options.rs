@@ -1,11 +1,11 @@
-//! What is drawn, and how large, as it is written on the command line.
+//! The panels and the size of a picture, in the syntax of the command line.
 
 use crate::pose::Misread;
 use clap::ValueEnum;
 use opm_plot::Size;
 use std::str::FromStr;
 
-/// What `--panels` names: what is drawn, and of a motion what of it.
+/// A name that `--panels` takes: values to draw, or for a motion also their derivatives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PanelName {
     /// Task coordinates over time
@@ -18,24 +18,24 @@ pub enum PanelName {
     Passive,
     /// Condition number and singularity measures over time
     Condition,
-    /// Of a motion: positions
+    /// For a motion: positions
     Positions,
-    /// Of a motion: velocities, in a second column
+    /// For a motion: velocities, in a second column
     Velocities,
-    /// Of a motion: accelerations, in a further column
+    /// For a motion: accelerations, in a further column
     Accelerations,
     /// Slices of a workspace
     Slices,
 }
 
 impl PanelName {
-    /// As it is given.
+    /// The name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }
 
-/// What `--size` gives.
+/// The value of `--size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureSize(pub Size);
 

@@ -1,11 +1,11 @@
-//! Pictures of the size that is asked for.
+//! Pictures of the requested size.
 
 use super::options::PictureSize;
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_plot::{Drawing, Size, TooSmall};
 
-/// Turns a figure into a picture of the size asked for.
+/// Makes a picture of the requested size from a figure.
 pub fn drawn(
     args: &PlotArgs,
     draw: impl FnOnce(Option<Size>) -> Result<Drawing, TooSmall>,

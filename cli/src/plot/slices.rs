@@ -1,4 +1,4 @@
-//! Slices of a workspace: what is reachable while all but two coordinates are held.
+//! Slices of a workspace: its reachable part with all coordinates held except two.
 
 use super::choice::{asked, columns, fast, home, several, varied};
 use super::grid::{is_home, nearest};
@@ -14,14 +14,14 @@ use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spaci
 use opm_study::WorkspaceKind;
 use opm_workspace::{Axis, mask_boundary};
 
-/// Most slices that are chosen without --slice.
+/// Largest number of slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
-/// Share of the colours that the slices take: the brightest is left to no one.
+/// Share of the colour scale that the slices take: the brightest colours are not used.
 const COLORS: f64 = 0.95;
-/// Share of a grid's largest value below which one is zero.
+/// A value below this share of a grid's largest value counts as zero.
 const ROUNDING: f64 = 1e-12;
 
-/// Slices in the making.
+/// Slices that are being built.
 pub struct Slices<'a> {
     layout: &'a Layout,
     view: [Seen; 2],
@@ -31,9 +31,9 @@ pub struct Slices<'a> {
     varied: Option<usize>,
     /// The tiles, by the value of the varied coordinate.
     tiles: Vec<(u64, Content)>,
-    /// What colours the cells: the field, its ends, by what it is divided.
+    /// The values that colour the cells: the field, its range, its divisor.
     color: Option<Colored>,
-    /// The place of home, if it is in the picture.
+    /// The position of home, if it is in the picture.
     home: Option<[f64; 2]>,
 }
 
@@ -52,7 +52,7 @@ struct Seen {
 }
 
 impl<'a> Slices<'a> {
-    /// Decides what to show, which may take reading the recording.
+    /// Decides what to show. This may read the recording.
     pub fn new(
         layout: &'a Layout,
         source: &Source<'_>,
@@ -94,7 +94,7 @@ impl<'a> Slices<'a> {
             let range = range.map(|value| value / factor);
             Colored { field: field.clone(), measure, factor, range }
         });
-        // Where every place is reached at every orientation, there is nothing to colour.
+        // If every place is reached at every orientation, there is nothing to colour.
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
         let mut slices =
             Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
@@ -130,7 +130,7 @@ impl<'a> Slices<'a> {
             Ok(())
         })?;
         let Some([first, last]) = ends else { return Ok(vec![]) };
-        // Equal steps from home, if that is among them.
+        // The steps from home are equal, if home is among the values.
         let step = (last - first).div_ceil(CHOSEN - 1).max(1);
         let home = home(&self.layout.coordinates[varied]);
         let start =
@@ -138,7 +138,7 @@ impl<'a> Slices<'a> {
         Ok((start..=last).step_by(step as usize).collect())
     }
 
-    /// Whether there is one coordinate to see, along which a set is a bar.
+    /// Whether only one coordinate is shown, so that a set is a bar.
     fn is_bar(&self) -> bool {
         self.view[0].number == self.view[1].number
     }
@@ -240,7 +240,7 @@ impl<'a> Slices<'a> {
         }
     }
 
-    /// Which value of its grid a coordinate has at every point.
+    /// The index of a coordinate's grid value at every point.
     fn numbers(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Numbers> {
         let coordinate = &self.layout.coordinates[number];
         let axis = coordinate.axis.as_ref()?;
@@ -327,9 +327,9 @@ impl<'a> Slices<'a> {
         Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells) }
     }
 
-    /// Tiles in a row: fewer where tiles that are much wider than high would be too small.
+    /// Number of tiles in a row: fewer if tiles that are much wider than high would be too small.
     fn columns(&self) -> usize {
-        /// Room for a row of tiles, and the least height of one, roughly.
+        /// Approximate width of a row of tiles, and approximate smallest height of a tile.
         const ROOM: [f64; 2] = [800.0, 70.0];
         let most = columns(self.tiles.len());
         let [a, b] = self.view.each_ref().map(|seen| &self.layout.coordinates[seen.number]);
@@ -342,7 +342,7 @@ impl<'a> Slices<'a> {
         (1..=most).rfind(fits).unwrap_or(1)
     }
 
-    /// The boundary of what is in a tile, where the recording has it, too.
+    /// The boundary of the set in a tile, if the recording has it.
     fn boundary(&self, cells: &Cells) -> Option<Vec<Vec<[f64; 2]>>> {
         let axis = |seen: &Seen| {
             let axis = self.layout.coordinates[seen.number].axis.as_ref()?;
@@ -356,7 +356,7 @@ impl<'a> Slices<'a> {
         Some(rings.into_iter().map(|ring| ring.points).collect())
     }
 
-    /// The place of home, if it is in the tile of this value.
+    /// The position of home, if it is in the tile of this value.
     fn mark(&self, value: u64) -> Option<[f64; 2]> {
         let value_of = |number: usize| {
             let held = self.held.iter().find(|(held, _)| *held == number).map(|held| held.1);
@@ -373,7 +373,7 @@ impl<'a> Slices<'a> {
         self.home.filter(|_| here)
     }
 
-    /// What has to be said of the picture.
+    /// Notes on the picture.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = vec![];
         let coordinates = &self.layout.coordinates;
@@ -414,7 +414,7 @@ impl<'a> Slices<'a> {
     }
 }
 
-/// A value of the grid; zero where it is that but for the rounding of the ends.
+/// A value of the grid; exactly zero if it differs from zero only by the rounding of the ends.
 fn rounded(axis: &Axis, number: u64) -> f64 {
     let value = axis.value(number);
     let largest = axis.min.abs().max(axis.max.abs());

@@ -1,4 +1,4 @@
-//! A recording that is to be drawn, and what is known of its mechanism.
+//! A recording to be drawn, and its mechanism as far as it is known.
 
 use crate::args::Output;
 use crate::failure::Failure;
@@ -18,35 +18,35 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Differences of SI values below this are noise of the arithmetic.
 const NOISE: f64 = 1e-9;
-/// Messages between two looks at whether somebody pressed Ctrl-C.
+/// Number of messages between two checks for Ctrl-C.
 const PORTION: u64 = 64;
 
-/// A recording, read once.
+/// A recording that has been read once.
 pub struct Source<'a> {
-    /// What messages call it.
+    /// Its name in messages.
     pub label: String,
     path: &'a Path,
     pub recording: Recording,
-    /// The mechanism, where the recording has a file that says what it is.
+    /// The mechanism, if its file is attached to the recording.
     pub mechanism: Option<Mechanism>,
     output: &'a Output,
     progress: &'a Progress,
 }
 
-/// What moves.
+/// The moving system.
 pub struct Mechanism {
     pub file: MechanismFile,
     pub kind: Kind,
 }
 
-/// What can be computed of it.
+/// The solver for it.
 pub enum Kind {
     Manipulator(Box<Manipulator>),
     Linkage(Box<Linkage>),
     Other,
 }
 
-/// Why reading stops early.
+/// The reason why reading stops early.
 pub enum Stop {
     Read(ReadError),
     Interrupted,
@@ -59,14 +59,14 @@ impl From<ReadError> for Stop {
 }
 
 impl<'a> Source<'a> {
-    /// Reads a recording to see what is in it.
+    /// Reads a recording and collects its contents.
     pub fn open(
         path: &'a Path,
         output: &'a Output,
         progress: &'a Progress,
     ) -> Result<Self, Failure> {
         let label = path.display().to_string();
-        // It is read more than once.
+        // The file is read more than once.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
             return Err(Failure::work(format!(
                 "{label}: not a regular file, expected a recording"
@@ -86,7 +86,7 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    /// Shows every message.
+    /// Calls `visit` with every message.
     pub fn messages(
         &self,
         visit: impl FnMut(&Message<'_>) -> Result<(), Stop>,
@@ -142,7 +142,7 @@ impl<'a> Source<'a> {
         Some(Mechanism { file, kind })
     }
 
-    /// The mechanism, where it has inverse kinematics.
+    /// The mechanism, if it has inverse kinematics.
     pub fn manipulator(&self) -> Option<&Manipulator> {
         match &self.mechanism.as_ref()?.kind {
             Kind::Manipulator(manipulator) => Some(manipulator),
@@ -155,7 +155,7 @@ impl<'a> Source<'a> {
         self.manipulator().map(Manipulator::imaginary).unwrap_or_default()
     }
 
-    /// What an imaginary or other joint of this name measures, as far as the mechanism says.
+    /// The quantity of an imaginary or other joint with this name, if the mechanism is known.
     pub fn joint_quantity(&self, name: &str) -> Option<Quantity> {
         let imaginary = self.imaginary().iter().map(|joint| (&*joint.name, joint.quantity));
         let coordinates = self.manipulator().map(Manipulator::coordinates).unwrap_or_default();
@@ -167,12 +167,12 @@ impl<'a> Source<'a> {
         self.recording.topic(SLICES_TOPIC).is_some_and(|topic| topic.points.is_some())
     }
 
-    /// A metadata record; nothing where it is not there.
+    /// A metadata record; empty if it does not exist.
     pub fn metadata(&self, name: &str) -> Metadata {
         self.recording.metadata(name).cloned().unwrap_or_default()
     }
 
-    /// What is drawn: the mechanism's name, or the file's.
+    /// The title: the name of the mechanism, or of the file.
     pub fn title(&self) -> String {
         let run = self.metadata("run");
         let name = self.mechanism.as_ref().map(|mechanism| &mechanism.file.mechanism.name);
@@ -184,7 +184,7 @@ impl<'a> Source<'a> {
         self.mechanism.as_ref().map_or(FileUnits::SI, |mechanism| mechanism.file.units)
     }
 
-    /// What has to be said below every picture of this recording.
+    /// Notes below every picture of this recording.
     pub fn notes(&self) -> Vec<String> {
         if self.recording.complete {
             return vec![];
@@ -192,7 +192,7 @@ impl<'a> Source<'a> {
         vec!["The recording is unfinished: this is what it holds so far.".to_owned()]
     }
 
-    /// Says which units the picture is in, and why.
+    /// Notes which units the picture has, and why.
     pub fn units_line(&self) -> String {
         let units = self.units();
         let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| units.symbol(q));
@@ -202,7 +202,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Values named `name`, and by what their SI values are divided to be in the picture's unit.
+    /// The name and unit of values named `name`, and the divisor from SI values to the picture's unit.
     pub fn measure(&self, name: &str, quantity: Option<Quantity>, rate: Rate) -> (Measure, f64) {
         let units = self.units();
         let name = name.to_owned();
@@ -216,7 +216,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Which derivative by time.
+/// The order of the derivative by time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rate {
     Position,

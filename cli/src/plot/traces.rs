@@ -1,4 +1,4 @@
-//! The topics of a motion, and what each of their values is.
+//! The topics of a motion, and the meaning of their values.
 
 use super::source::{Kind, Rate, Source, quantity};
 use opm_core::Quantity;
@@ -9,10 +9,10 @@ use opm_mcap::trajectory::{
 };
 use opm_plot::Curve;
 
-/// Field of `/condition` whose size spans powers of ten.
+/// Field of `/condition` whose values span several powers of ten.
 const CONDITION: &str = "condition";
 
-/// What a curve belongs to: the rows of the picture, from top to bottom.
+/// The group of a curve: the rows of the picture, from top to bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     Pose,
@@ -56,18 +56,18 @@ pub const TOPICS: [Topic; 8] = {
     ]
 };
 
-/// A value over time.
+/// The curve of a value over time.
 pub struct Trace {
     pub name: String,
     pub group: Group,
     pub quantity: Option<Quantity>,
     pub rate: Rate,
-    /// By what SI values are divided.
+    /// The divisor of the SI values.
     pub factor: f64,
     pub curve: Curve,
 }
 
-/// `valid` is not a curve, but what is shaded.
+/// `valid` is not drawn as a curve, but as shading.
 pub fn skipped(topic: usize, name: &str) -> bool {
     TOPICS[topic].kind == TopicKind::Condition && name == VALID
 }
@@ -123,7 +123,7 @@ fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
     }
 }
 
-/// What the mechanism says of a joint coordinate. In a linkage, all joints belong together.
+/// The properties of a joint coordinate. In a linkage, all joints belong to one group.
 fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
     let Some(mechanism) = &source.mechanism else { return (None, None) };
     let legs = mechanism.file.mechanism.legs.iter();

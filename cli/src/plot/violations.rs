@@ -1,4 +1,4 @@
-//! Where a motion could not be followed, as its recording tells.
+//! Violations of a motion, read from its recording.
 
 use super::label::value_label;
 use super::source::{Rate, Source, quantity};
@@ -6,19 +6,19 @@ use crate::text::count;
 use opm_mcap::Metadata;
 use opm_plot::axis::label;
 
-/// Violations that the notes list.
+/// Number of violations that the notes list.
 const LISTED: usize = 8;
 
-/// What the mechanism could not follow, as its recording tells.
+/// A violation, read from a recording.
 pub struct Violation {
     pub start: f64,
     pub end: f64,
-    /// What, and by how much.
+    /// The violation and its size, in words.
     text: String,
 }
 
 impl Violation {
-    /// From a metadata record; `None` of one without a time.
+    /// Reads a metadata record; `None` if it has no time.
     fn new(source: &Source<'_>, record: &Metadata) -> Option<Self> {
         let number = |key: &str| record.get(key)?.parse::<f64>().ok().filter(|n| n.is_finite());
         let word = |key: &str| record.get(key).map(String::as_str);
@@ -58,13 +58,13 @@ pub fn violations(source: &Source<'_>) -> Vec<Violation> {
     found
 }
 
-/// How many there were: a recording may hold the first of many.
+/// The number of all violations: a recording may hold only the first of many.
 pub fn told(source: &Source<'_>, violations: &[Violation]) -> usize {
     let told = source.metadata("result").get("violations").and_then(|count| count.parse().ok());
     told.unwrap_or(0).max(violations.len())
 }
 
-/// Notes that say what the marks are, of the `told` violations that there were.
+/// Notes that explain the marks; `told` is the number of all violations.
 pub fn listed(violations: &[Violation], told: usize) -> Vec<String> {
     let note = |(number, violation): (usize, &Violation)| {
         let Violation { start, end, text } = violation;

@@ -1,4 +1,4 @@
-//! The picture of a workspace: slices of it, and what the imaginary joints do in it.
+//! The picture of a workspace: slices of it, and the values of its imaginary joints.
 
 use super::cloud::JointCloud;
 use super::label::value_label;
@@ -32,7 +32,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
         return Err(Failure::work(format!("{label}: nothing to draw: {nothing}")));
     }
     let (view, joints) = chosen(&layout, source, args)?;
-    // What has no axis on a grid has no slices, unless somebody wants to see them.
+    // A set without an axis on a grid has no slices, unless they are requested.
     let default = args.panels.is_empty() && layout.kind != WorkspaceKind::Imaginary;
     let mut slices = match default || asked(PanelName::Slices) {
         true => Some(Slices::new(&layout, source, args, view)?),
@@ -82,7 +82,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     drawn(args, |size| figure.draw(size))
 }
 
-/// What `--values` names: two coordinates to see the slices along, and stored values.
+/// The selection of `--values`: the two coordinates that the slices show, and stored values.
 fn chosen(
     layout: &Layout,
     source: &Source<'_>,
@@ -120,7 +120,7 @@ fn chosen(
     Ok((view, joints))
 }
 
-/// How to record what is not there.
+/// Advice how to record missing values.
 fn missing(source: &Source<'_>) -> String {
     let names: Vec<&str> = source.imaginary().iter().map(|joint| &*joint.name).collect();
     match &names[..] {
@@ -166,7 +166,7 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
     Heading { title, lines, notes: vec![] }
 }
 
-/// A grid axis as the heading tells it.
+/// The text of a grid axis in the heading.
 fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
     let (measure, factor) = source.measure(&axis.name, Some(quantity), Rate::Position);
     let [min, max] = [axis.min, axis.max].map(|value| value_label(value / factor));

@@ -1,4 +1,4 @@
-//! What is printed of a motion when it is over.
+//! The printed summary of a motion.
 
 use crate::text::{self, Table, count, short};
 use opm_core::Quantity;
@@ -9,10 +9,10 @@ use opm_study::{CoordinateRanges, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// Violations in text: a person reads no more.
+/// Number of violations in text; nobody reads more.
 const MOST_SHOWN: usize = 20;
 
-/// A motion that was followed, to be printed.
+/// The results of a followed motion, for printing.
 pub struct Report<'a> {
     pub request: MotionRequest<'a>,
     pub summary: &'a MotionSummary,

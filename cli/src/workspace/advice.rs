@@ -1,4 +1,4 @@
-//! Notes and warnings about a workspace: what may not be meant, and which flags help.
+//! Notes and warnings about a workspace: options that may be a mistake, and flags that help.
 
 use crate::args::Output;
 use crate::text::count;
@@ -7,7 +7,7 @@ use opm_core::numeric::number::readable;
 use opm_study::{Analysis, Workspace, WorkspaceKind};
 use opm_workspace::{Axis, Grid, Sections};
 
-/// Says which grid was fitted, and where the workspace goes on beyond it.
+/// Prints which grid was fitted, and where the workspace extends beyond it.
 pub fn of_fitted(workspace: &Workspace, output: &Output) {
     output.note(format_args!("grid fitted to the workspace: {}", grid_flags(workspace.grid())));
     for name in workspace.unbounded().unwrap_or_default() {
@@ -17,7 +17,7 @@ pub fn of_fitted(workspace: &Workspace, output: &Output) {
     }
 }
 
-/// Warns of what may not be meant, before the sweep.
+/// Warns of options that may be a mistake, before the sweep.
 pub fn before(workspace: &Workspace, output: &Output) {
     let (kind, manipulator) = (workspace.kind(), workspace.manipulator());
     if kind.sections() != Sections::Whole && !manipulator.workspace_factorises() {
@@ -31,7 +31,7 @@ pub fn before(workspace: &Workspace, output: &Output) {
     }
 }
 
-/// Warns where there is nothing in reach.
+/// Warns if nothing is in reach.
 pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
     if analysis.count.reachable == 0 {
         let kind = workspace.kind();
@@ -42,7 +42,7 @@ pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
     }
 }
 
-/// What is to be said where a set that is over orientations is asked for at home's alone.
+/// The warning for a set over orientations that is requested at the home orientation only.
 fn one_orientation(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     let upper = &grid.axes()[grid.lower()..];
     if kind.required_visits(grid).is_none() || upper.iter().any(|axis| axis.count > 1) {
@@ -54,9 +54,9 @@ fn one_orientation(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     Some(format!("--kind {kind} has one orientation alone; for more give {names}"))
 }
 
-/// How to ask for fewer orientations where no place is in reach at all of them.
+/// Advice to request fewer orientations if no place is in reach at all of them.
 fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
-    /// Values of a coordinate, and how far it goes from home if it is an angle.
+    /// Values of a coordinate, and its largest distance from home if it is an angle.
     const VALUES: u64 = 5;
     const HALF: f64 = 20.0;
     let axes = || grid.axes().iter().zip(grid.coordinates()).skip(grid.lower());
@@ -64,7 +64,7 @@ fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     if kind != WorkspaceKind::Dexterous || orientations == 1 {
         return None;
     }
-    // A part of the range, about home where that is in it.
+    // A part of the range, around home if home is in it.
     let flags = axes().filter(|(axis, _)| axis.count > 1).map(|(axis, c)| {
         let (unit, scale, most) = match c.quantity {
             Quantity::Angle => ("deg", 1_f64.to_degrees(), HALF),
@@ -82,7 +82,7 @@ fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     Some(format!("these are {number} orientations; ask for fewer, for example {flags}"))
 }
 
-/// The flags that ask for a grid, in SI.
+/// The flags for a grid, in SI.
 pub fn grid_flags(grid: &Grid) -> String {
     let flags: Vec<String> = (grid.axes().iter())
         .map(|Axis { name, min, max, count }| match count {

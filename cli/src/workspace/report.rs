@@ -1,4 +1,4 @@
-//! What is printed of a workspace: text for people, and JSON.
+//! The printed results of a workspace: text for people, and JSON.
 
 use crate::text::{self, Table, count, plural, short};
 use opm_core::Quantity;
@@ -8,33 +8,33 @@ use opm_workspace::{Axis, ConditionLimit, GridSet, Outline, Sections, Shard};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// Components that are listed one by one.
+/// Number of components that are listed one by one.
 const LISTED: usize = 6;
 
-/// What it took to count.
+/// The effort of the count.
 #[derive(Clone, Copy, Debug)]
 pub enum Effort {
-    /// A sweep of so many poses and so long.
+    /// A sweep of this number of poses, with its duration.
     Counted { poses: u64, seconds: f64 },
-    /// Sweeps of others, whose times nobody added up.
+    /// Sweeps of shards, whose times are unknown.
     Merged { shards: u64 },
-    /// A sweep some time ago.
+    /// An earlier sweep.
     Earlier,
 }
 
-/// What came of a run, to be printed.
+/// The results of a run, for printing.
 pub struct Outcome<'a> {
     pub workspace: &'a Workspace,
     pub analysis: &'a Analysis,
     pub effort: Effort,
-    /// The part of the workspace that this is of, if it is not the whole.
+    /// The part of the workspace, if it is not the whole.
     pub shard: Option<Shard>,
     /// The units of the mechanism file.
     pub units: FileUnits,
 }
 
 impl Outcome<'_> {
-    /// What was counted: by a shard poses, whatever they are of when all are merged.
+    /// The name of the counted points. A shard counts poses, whatever the kind of workspace is.
     fn counted(&self) -> WorkspaceKind {
         match (self.shard, self.workspace.kind().sections()) {
             (Some(_), Sections::Whole) => WorkspaceKind::Grid,
@@ -142,7 +142,7 @@ impl Outcome<'_> {
         text
     }
 
-    /// The time of the count; `None` where it was counted elsewhere.
+    /// The time of the count; `None` if it was counted elsewhere.
     fn seconds(&self) -> Option<f64> {
         match self.effort {
             Effort::Counted { seconds, .. } => Some(seconds),
@@ -150,7 +150,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// Poses a second.
+    /// Poses per second.
     fn rate(&self) -> Option<f64> {
         match self.effort {
             Effort::Counted { poses, seconds } => Some(poses as f64 / seconds),
@@ -159,7 +159,7 @@ impl Outcome<'_> {
     }
 }
 
-/// Adds what is known to the JSON of a workspace.
+/// Adds the known results to the JSON of a workspace.
 fn analysis_json(analysis: &Analysis, json: &mut Value) {
     if let Some(visits) = &analysis.visits {
         json["orientations"] = visits.slices().into();
@@ -196,7 +196,7 @@ fn boundary_json(set: &GridSet, outlines: &[Outline]) -> Value {
     json!({ "axes": [name(0), name(1)], "slices": slices })
 }
 
-/// What is known of the points, line by line.
+/// The known results for the points, line by line.
 fn analysis_text(analysis: &Analysis, units: FileUnits) -> String {
     let mut text = String::new();
     if let Some(visits) = &analysis.visits {

@@ -1,4 +1,4 @@
-//! Work on a workspace, on some threads, while a bar shows how far it has come.
+//! Work on a workspace, on several threads, while a bar shows the progress.
 
 use super::advice;
 use super::report::Effort;
@@ -14,7 +14,7 @@ use opm_workspace::{Cancelled, Progress, Shard};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Instant;
 
-/// Where the work is done, and who hears of it.
+/// The thread pool of the work, and the output for its progress.
 pub struct Work<'a> {
     pub output: &'a Output,
     pub pool: &'a ThreadPool,
@@ -22,7 +22,7 @@ pub struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Fits a grid, where none is given.
+    /// Fits a grid if none is given.
     pub fn fit(&self, request: CheckedRequest) -> Result<Workspace, Failure> {
         if request.grid().is_some() {
             return request.fit(self.progress).map_err(StudyError::from).map_err(Failure::from);
@@ -35,7 +35,7 @@ impl Work<'_> {
         Ok(workspace)
     }
 
-    /// Counts the poses of a shard, and sums up their conditioning, if that is asked for.
+    /// Counts the poses of a shard, and sums up their conditioning if it is requested.
     pub fn count(
         &self,
         workspace: &Workspace,
@@ -61,7 +61,7 @@ impl Work<'_> {
         Ok((ShardCount { count: found, conditioning }, Effort::Counted { poses, seconds }))
     }
 
-    /// Finds what else is asked of a workspace whose poses are counted.
+    /// Computes the other requested results of a workspace whose poses are counted.
     pub fn analyse(
         &self,
         workspace: &Workspace,
@@ -105,7 +105,7 @@ impl Work<'_> {
         Ok(self.watch("recording", poses, job)?)
     }
 
-    /// Does a job on the threads while a bar shows how far it has come.
+    /// Runs a job on the threads while a bar shows the progress.
     fn watch<T: Send>(&self, label: &'static str, poses: u64, job: impl FnOnce() -> T + Send) -> T {
         let before = self.progress.done();
         let done = || self.progress.done() - before;
@@ -113,7 +113,7 @@ impl Work<'_> {
     }
 }
 
-/// A pool of so many threads, or of one a processor.
+/// A pool with this number of threads, or with one per processor.
 pub fn threads(number: Option<u16>) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(number.map_or(0, usize::from));
     builder.build().map_err(|error| Failure::at("threads", error))

@@ -138,7 +138,7 @@ fn legs_that_cannot_be_solved_are_named() {
         shipped.lines().find(|line| line.contains(&mark)).unwrap().to_owned()
     };
     let (planar, spherical, slider) = (line("phi21"), line("theta21"), line("S1"));
-    // Without its values at home, which would no longer fit another type.
+    // The values at home are removed, since they would not fit another type.
     let typed = |line: &str, kind: &str, more: &str| {
         let (head, _) = line.split_once(", home").unwrap();
         let from = if line.contains("revolute") { "revolute" } else { "prismatic" };
@@ -198,12 +198,12 @@ fn legs_that_cannot_be_solved_are_named() {
         let file = folder.write("bad.toml", shipped.replacen(&**from, &to, 1));
         let run = opm(&["ik", &file, "--pose", ""]);
         run.fails(1, parts);
-        // In the first leg, which is the file's first.
+        // The error is in the first leg, which is the file's first.
         let place = run.stderr.split_once("bad.toml:").unwrap().1;
         let number: usize = place.split(':').next().unwrap().parse().unwrap();
         assert!((14..24).contains(&number), "{}", run.stderr);
     }
-    // More freedoms than motors: what is loose is told.
+    // There are more freedoms than actuated joints: the message names the free motion.
     let extra = planar.replace("phi21", "extra").replace("point = [", "point = [1");
     let loose = shipped.replacen(&*planar, &format!("{planar}\n{extra}"), 1);
     let file = folder.write("loose.toml", loose);

@@ -34,7 +34,7 @@ impl Csv {
         self.cell(row, name).parse().unwrap_or(f64::NAN)
     }
 
-    /// The columns alone, as text.
+    /// The selected columns, as text.
     fn select(&self, names: &[&str], rows: &[usize]) -> String {
         let mut text = names.join(",") + "\n";
         for &row in rows {
@@ -130,7 +130,7 @@ fn columns_may_come_in_any_order_and_number() {
     assert_eq!(found.header, expected);
     let poses: Vec<_> = found.rows.iter().map(|row| row[..5].join(" ")).collect();
     assert_eq!(poses, ["0.02 0.0 0.0 0.1 0.0", "-0.01 0.0 0.0 0.2 0.0"]);
-    // Each row is what the single pose gives.
+    // Each row equals the result for its pose alone.
     let alone = opm(&["ik", PLANO, "--pose", "x=0.02,xi=0.1", "--format", "json"]).json();
     let solution = &alone["solutions"][0];
     for (name, alone) in [("S2", &solution["joints"]), ("theta13", &solution["imaginary"])] {
@@ -173,8 +173,8 @@ fn a_file_appears_when_it_is_whole() {
     assert_eq!(keys(&summary), expected);
     assert_eq!([&summary["poses"], &summary["reachable"]].map(number), [3.0, 2.0]);
 
-    // A bad row, before or after rows enough to be on their way to the disk: what was there stays as it
-    // was, and nothing is left of the others.
+    // A bad row may come before or after enough rows to be on their way to the disk. An existing file stays
+    // as it was, and no other file is left.
     let before = folder.read("out.csv");
     for rows in [1, 20_000] {
         let bad = folder.write("bad.csv", "x\n".to_owned() + &"0\n".repeat(rows) + "zero\n");

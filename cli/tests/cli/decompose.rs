@@ -201,7 +201,7 @@ fn frames_that_do_not_fit_are_refused_where_they_stand() {
     ];
     for (name, task, message) in pairs {
         let shipped = opm(&["examples", name]).text().to_owned();
-        // The mark is before the key; the place is that of its value.
+        // The marker is before the key; the position in the message is that of the value.
         let plain = task.replace('^', "");
         let head = format!("[task]\n{plain}\n\n[platform]");
         let text = shipped.replacen("[platform]", &head, 1);

@@ -45,12 +45,12 @@ fn the_pose_that_the_joints_came_from_is_among_the_assemblies() {
         assert_eq!(keys(&at["imaginary"]), ["theta11", "theta12", "theta13"]);
         for a in assemblies {
             assert!(number(&a["residual"]) < 1e-12);
-            // The joints that were given, in every assembly.
+            // Every assembly has the given joint values.
             for (name, value) in found["actuated"].as_object().unwrap() {
                 let off = (number(&a["joints"][name]) - number(value)).rem_euclid(TAU);
                 assert!(off.min(TAU - off) < 1e-9, "{name}");
             }
-            // One of them, by inverse kinematics again.
+            // One of them is confirmed by inverse kinematics.
             let pose: Vec<String> = (a["pose"].as_object().unwrap().iter())
                 .map(|(name, value)| format!("{name}={value}"))
                 .collect();
@@ -88,7 +88,7 @@ fn without_a_closed_form_it_says_so() {
     assert!(run.stderr.contains("no closed form"), "{}", run.stderr);
     let found = json(&["fk", name, "--joints", &joints, "--quiet"]);
     assert!((number(&found["assemblies"][0]["pose"]["w"]) - 0.31).abs() < 1e-9);
-    // Beyond what Newton's method can do from there: the work failed.
+    // Newton's method does not converge from there: the work failed.
     let far = opm(&["fk", name, "--joints", "S1=1,S2=0,S3=0,S4=0"]);
     far.fails(1, &[name, "no assembly found from this start"]);
     let start = opm(&["fk", name, "--joints", "S1=0,S2=0,S3=0,S4=0", "--near", "w=2"]);
@@ -146,7 +146,7 @@ fn the_helical_manipulator_is_linear() {
     let joints = joints_at(HELICAL, "x=50mm,y=-30mm,phi=400deg", "home");
     let found = json(&["fk", HELICAL, "--joints", &joints]);
     let [assembly] = &found["assemblies"].as_array().unwrap()[..] else { panic!("{found}") };
-    // A screw's turns are counted.
+    // Revolutions of a screw joint are counted.
     for (name, value) in [("x", 0.05), ("y", -0.03), ("phi", 400.0_f64.to_radians())] {
         assert!((number(&assembly["pose"][name]) - value).abs() < 1e-12, "{name}: {assembly}");
     }

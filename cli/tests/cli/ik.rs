@@ -92,7 +92,7 @@ fn a_transform_is_a_pose_and_back() {
     }
     let found = ik(&[PLANO, "--pose", "x=10mm,y=-20mm,xi=60deg"]);
     let quaternion = found["transform"]["quaternion"].as_array().unwrap();
-    // Half the angle about y.
+    // The quaternion has half the angle about y.
     for (part, expected) in quaternion.iter().zip([0.75_f64.sqrt(), 0.0, 0.5, 0.0]) {
         assert!((number(part) - expected).abs() < EXACT);
     }
@@ -119,11 +119,11 @@ fn a_transform_outside_the_motion_is_told_how_far() {
     let text =
         "outside the manipulator's motion by 20 mm along (0, 0, 1)\nnearest pose: x = 10.000";
     assert!(run.text().contains(text), "{}", run.stdout);
-    // Three translations and a turn about z: a tilt is outside.
+    // The motion has three translations and a rotation about z: a tilt is outside.
     let tilted = "0,340mm,-150mm,0.996195,0.0871557,0,0";
     let run = opm(&["ik", "schoenflies-4dof", "--transform", tilted]);
     assert!(run.text().contains("motion by 9.99999 deg about (1, 0, 0)\n"), "{}", run.stdout);
-    // Six digits are as good as in the motion.
+    // A transform with six digits counts as in the motion.
     let rounded = "0,0,0,0.996195,0,0.0871557,0";
     assert_eq!(ik(&[PLANO, "--transform", rounded])["reachable"], true);
 }

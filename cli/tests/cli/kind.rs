@@ -45,7 +45,7 @@ fn reachable_and_dexterous_places_are_those_of_the_poses() {
     let folder = Folder::new();
     let cloud = folder.arg("poses.mcap");
     opm(&[&["workspace", PLANO, "-o", &cloud, "--quiet"], &GRID[..]].concat()).text();
-    // How many poses the recording has at each place.
+    // The number of poses that the recording has at each place.
     let mut visits: BTreeMap<[u32; 2], u64> = BTreeMap::new();
     read::<ReadError>(cloud.as_ref(), |message| {
         if message.topic == SLICES_TOPIC {
@@ -74,7 +74,7 @@ fn reachable_and_dexterous_places_are_those_of_the_poses() {
         let [area] = areas(&found)[..] else { panic!("{:?}", found["boundary"]) };
         let rings = &found["boundary"]["slices"][0]["rings"];
         assert!((2.0 * area - shoelace(rings)).abs() < 1e-12, "{area}");
-        // Of the share of the box to which the lines run, one step less across than there are values.
+        // The lines enclose a share of the box, which is one step narrower than the number of values.
         assert!((area / number(&found["measure"]["value"]) - 1.0).abs() < 0.15, "{area}");
 
         let mut seen = 0;
@@ -125,7 +125,7 @@ fn boundaries_are_recorded_with_their_slices() {
             let at = slice["at"]["phi"].as_f64().unwrap();
             let expected: Vec<[f64; 3]> = ring.iter().map(|&[x, y]| [at, y, x]).collect();
             let found: Vec<[f64; 3]> = line.points.iter().map(|p| [p.x, p.y, p.z]).collect();
-            // Reading JSON may round.
+            // JSON numbers may be rounded when read.
             let near = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-12);
             assert!(found.len() == expected.len() && found.iter().zip(&expected).all(near));
         }

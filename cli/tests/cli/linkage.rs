@@ -64,7 +64,7 @@ fn a_turn_keeps_the_arcs_that_the_file_states() {
     assert!(text.starts_with("a1,b3,a2,a3,b1,b2,tau.leg1,branch,within_limits\n"));
     let rows = rows(text);
     assert_eq!(rows.len(), 73);
-    // Arcs on both sides of the imaginary joint, its angle at home, arcs beside the joint opposite.
+    // Arcs on both sides of the imaginary joint, its angle at home, and arcs beside the opposite joint.
     for (arcs, home, beside, opposite) in
         [([30.0, 75.0], 100.0, [70.0, 60.0], 2), ([35.0, 70.0], 80.0, [65.0, 80.0], 5)]
     {
@@ -78,7 +78,7 @@ fn a_turn_keeps_the_arcs_that_the_file_states() {
         };
         let home = home * PI / 180.0;
         let across = angle(beside, law(arcs, home));
-        // The senses in which the two angles count are the axes' own: one choice of signs fits all.
+        // The axes define the senses of the two angles: one choice of signs fits all positions.
         let worst = |signs: [f64; 2]| {
             let off = |row: &Vec<f64>| {
                 let near = law(arcs, home + signs[0] * row[6]);

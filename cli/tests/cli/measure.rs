@@ -46,7 +46,7 @@ fn the_upper_section_is_measured_over_every_orientation() {
     assert_eq!((&found["units"], &found["reached"]), (&"rad^3".into(), &true.into()));
     assert_eq!(keys(&found["over"]), ["zeta", "xi", "psi"]);
     assert_eq!(found["weights"], serde_json::json!(["sin xi"]));
-    // A cap of the platform's own tilt: 2 pi (1 - cos 40 deg) of axes, each with a whole turn.
+    // A cap of the platform's own tilt: 2 pi (1 - cos 40 deg) of axes, each with a full revolution.
     let cap = measure(&[PLANO, "--section", "upper", "--over", "xi=0:40deg"]);
     let expected = 4.0 * PI * PI * (1.0 - (40_f64).to_radians().cos());
     assert!((number(&cap["whole"]) - expected).abs() < 1e-9);
@@ -68,7 +68,8 @@ fn a_square_in_the_workspace_is_its_area() {
 /// Text is in the units of the file: a rectangle that is all in reach, of lengths, angles and both.
 #[test]
 fn text_is_in_the_units_of_the_file() {
-    // Of all orientations the sphere's area in square degrees is weighed by the sine, a turn is 360 degrees.
+    // For all orientations, the sphere's area in square degrees is weighed by the sine, and a revolution is
+    // 360 degrees.
     let sphere = 4.0 * PI * (180.0 / PI).powi(2);
     for (args, unit, area) in [
         (&[HELICAL, "--over", "x=-10mm:10mm", "--over", "phi=0:30deg"][..], "mm deg", 600.0),
@@ -97,7 +98,7 @@ fn it_measures_what_is_swept() {
     for mode in ["home", "any"] {
         let over = ["--over", "x=-200mm:200mm", "--over", "y=-100mm:250mm", "--over", "xi=20deg"];
         let found = measure(&[&[PLANO, "--mode", mode], &over[..]].concat());
-        // The middles of cells.
+        // The centres of cells.
         let grid =
             ["--grid", "x=-199mm:199mm:200", "--grid", "y=-99mm:249mm:175", "--grid", "xi=20deg"];
         let args = [&["workspace", PLANO, "--mode", mode, "--format", "json"], &grid[..]].concat();

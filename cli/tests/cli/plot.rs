@@ -116,7 +116,7 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
     for unit in ["(mm)", "(deg)", "(mm/s)", "(deg/s)"] {
         assert!(axes.iter().any(|axis| axis.ends_with(unit)), "{axes:?}");
     }
-    // The motion file: x = 30 mm · sin(0.2 turns/s · t), sampled a hundred times a second.
+    // The motion file: x = 30 mm · sin(0.2 rev/s · t), sampled a hundred times per second.
     let panel = class(document.root(), "panel")[0];
     let points = pieces(paths(named(panel, "curve", "x"))[0]).concat();
     assert_eq!(points.len(), 1001);
@@ -137,7 +137,7 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
     let named = ["Imaginary joints", "Passive joints"];
     assert!(titles(&document).iter().all(|t| named.iter().any(|n| t.starts_with(n))));
 
-    // No row is dropped in silence.
+    // No row is dropped silently.
     let panels = "imaginary,actuated,accelerations";
     let refused = opm(&["plot", &file, "-o", &folder.arg("none.svg"), "--panels", panels]);
     refused.fails_with_one_line(1, &["no imaginary in what --panels asks for"]);
@@ -173,7 +173,7 @@ fn violations_are_marked() {
     assert!(pieces(paths(curve)[0]).len() > 1, "a gap");
     let pose = named(panels[0], "curve", "x");
     assert_eq!(pieces(paths(pose)[0]).len(), 1, "the pose goes on");
-    // Out of reach nothing is measured. Nothing but out of reach stops S1.
+    // Out of reach nothing is measured. S1 has a gap only out of reach.
     let measures = panels.iter().find(|panel| label(**panel) == "Singularity measures").unwrap();
     let spans = |panel, name| -> Vec<[i64; 2]> {
         let pieces = pieces(paths(named(panel, "curve", name))[0]);
@@ -310,7 +310,7 @@ fn a_png_has_twice_the_pixels_and_the_same_bytes_each_time() {
         fs::read(output).unwrap()
     });
     assert_eq!(first, second);
-    // PNG: eight bytes, then the chunk IHDR begins with width and height.
+    // PNG: after eight bytes, the chunk IHDR begins with width and height.
     assert_eq!(first[..8], *b"\x89PNG\r\n\x1a\n");
     let side = |at: usize| u32::from_be_bytes(first[at..at + 4].try_into().unwrap());
     assert_eq!((side(16), side(20)), (1800, 800));

@@ -28,8 +28,8 @@ pub fn opm_reading(input: &str, args: &[&str]) -> Run {
         .expect("the program starts");
     let mut stdin = child.stdin.take().expect("a pipe");
     std::thread::scope(|scope| {
-        // Beside the reading, or both would wait for each other. A program that stops reading
-        // early closes its end: no failure of the test's.
+        // Writing runs beside reading, or both would wait for each other. A program that stops reading
+        // early closes its end, which is not a failure of the test.
         scope.spawn(move || stdin.write_all(input.as_bytes()));
         Run::new(args, &child.wait_with_output().expect("the program ends"))
     })
@@ -53,14 +53,14 @@ impl Run {
         }
     }
 
-    /// What it printed, if it succeeded.
+    /// The standard output of a run that succeeded.
     #[track_caller]
     pub fn text(&self) -> &str {
         assert_eq!(self.code, Some(0), "opm {}: {}", self.args, self.stderr);
         &self.stdout
     }
 
-    /// The one JSON object that it printed.
+    /// The single JSON object that the run printed.
     #[track_caller]
     pub fn json(&self) -> Value {
         let value: Value = serde_json::from_str(self.text()).expect("one JSON value");
@@ -68,7 +68,8 @@ impl Run {
         value
     }
 
-    /// It failed with this code, said all of `parts`, line by line as its own, and printed nothing.
+    /// Asserts that it failed with this code, that its messages contain all of `parts` and begin with its
+    /// name line by line, and that it printed nothing.
     #[track_caller]
     pub fn fails(&self, code: i32, parts: &[&str]) -> &Self {
         let Self { args, stderr, stdout, .. } = self;
@@ -83,7 +84,7 @@ impl Run {
         self
     }
 
-    /// It failed as [`Run::fails`] says, with one line.
+    /// Asserts as [`Run::fails`], and that there is a single line.
     #[track_caller]
     pub fn fails_with_one_line(&self, code: i32, parts: &[&str]) {
         self.fails(code, parts);
@@ -119,7 +120,7 @@ impl Folder {
         std::fs::read_to_string(self.path(name)).expect("a file")
     }
 
-    /// The names of the files there are.
+    /// The names of the existing files.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).expect("a folder");
         let mut names: Vec<String> = entries

@@ -43,7 +43,7 @@ fn merged_shards_are_the_one_run_byte_for_byte() {
         (&[], &[]),
         (&["--mode", "any"], &["--axes", "tip", "--scalars", "S1,theta11"]),
         (&["--mode", "-+ +- -- -"], &["--color", "theta12"]),
-        // A colour whose range is found by going through the points.
+        // The range of this colour is found from the points.
         (&[], &["--color", "phi14", "--axes", "x,y,zeta"]),
         (&limit, &["--color", "S1"]),
     ];
@@ -57,7 +57,7 @@ fn merged_shards_are_the_one_run_byte_for_byte() {
         let whole = opm(&[&run[..], &flags, cloud, &json].concat()).json();
         assert!(whole["reachable"].as_u64() > Some(5), "{whole}");
         let of = [1, 3, 8, 40, 2][number];
-        // In any order.
+        // The order of the files does not matter.
         let parts: Vec<String> = (1..=of).rev().map(|i| shard(&folder, i, of, &flags)).collect();
         let parts: Vec<&str> = parts.iter().map(|part| &**part).collect();
         let merge = ["merge", "-o", &joined, "--threads", "2"];
@@ -91,7 +91,7 @@ fn merged_shards_are_the_one_run_of_every_kind() {
     let long = ["--grid", "x=-0.25:0.25:2001", "--grid", "xi=-1:1:33"];
     let cuts = ["--grid", "theta11=-0.7:0.9:17", "--grid", "theta12=-0.7:0.7:5"];
     let lower = [&GRID[..4], &cuts].concat();
-    // What a shard is asked for, what is asked when all are there, what only the recording is asked for.
+    // Options of a shard, options of the merge, and options of the recording alone.
     let cases: [[&[&str]; 4]; 10] = [
         [&["--kind", "constant-orientation"], &tilted, &[], &[]],
         [&["--kind", "orientation", "--mode", "any"], &sphere, &[], &["--color", "psi"]],
@@ -123,7 +123,7 @@ fn merged_shards_are_the_one_run_of_every_kind() {
                 let found = opm(&[&run[..], &["--shard", &shard, "-o", part]].concat()).json();
                 filled += u64::from(found["reachable"].as_u64() > Some(0));
                 if of == 2 {
-                    // There already: the same is told of it.
+                    // The file exists already: the output is the same.
                     let again = opm(&[&run[..], &["--shard", &shard, "-o", part]].concat()).json();
                     assert_eq!(timeless(again), timeless(found), "{run:?} {shard}");
                 }
@@ -212,7 +212,7 @@ fn a_shard_that_is_there_is_not_swept_again() {
     assert_eq!(timeless(again.json()), timeless(found));
     assert_eq!(again.json()["seconds"], Value::Null);
 
-    // Another run, another part, another file: none of them is lost to a wrong name.
+    // A file of another run, another part or another kind is not overwritten because of a wrong name.
     let other = |args: &[&str], problem: &str| {
         opm(args).fails_with_one_line(1, &["part-2.mcap: ", problem, "--force"]);
         assert!(fs::read(&part).unwrap() == before);
@@ -261,7 +261,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     let told = shard(&others, 2, 2, &[&SMALL[..], &["--conditioning"]].concat());
     refused(&[&one, &told], &["a shard of another run: it has conditioning, \"0.09"]);
 
-    // A comment more in the mechanism.
+    // The mechanism file has one more comment.
     let others = Folder::new();
     let text = opm(&["examples", PLANO]).text().to_owned() + "# more\n";
     let mechanism = others.write(&format!("{PLANO}.toml"), text);
@@ -277,7 +277,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     refused(&[&one, &text], &["text.mcap", "is not an MCAP file"]);
     refused(&[&one, "nowhere.mcap"], &["nowhere.mcap: "]);
     let bytes = fs::read(&two).unwrap();
-    // Before it says which one it is.
+    // The file ends before it says which shard it is.
     let begun = others.write("begun.mcap", &bytes[..100]);
     refused(&[&one, &begun], &["begun.mcap: cut short"]);
     let short = others.write("short.mcap", &bytes[..bytes.len() / 2]);
@@ -327,7 +327,7 @@ fn missing_shards_are_made(flags: &[&str]) {
     assert!(opm(&[&["merge"], &all[..]].concat()).text().contains("merged from 5 shards"));
 }
 
-/// Tables, too, are those of one run; a name of another kind says what there is.
+/// Tables, too, equal those of a single run. A name of another kind gives a message with the known names.
 #[test]
 fn the_ending_of_a_name_decides_what_points_are_written_as() {
     let folder = Folder::new();

@@ -125,7 +125,7 @@ fn strict_fails_after_everything_is_written() {
 fn a_table_is_followed_like_its_formula() {
     let folder = Folder::new();
     let x = |t: f64| 0.05 * (2.0 * PI * 0.2 * t).sin();
-    // Wrapped at half a turn: a full turn in ten seconds.
+    // The angles wrap at half a revolution; the motion is a full revolution in ten seconds.
     let phi = |t: f64| (0.2 * PI * t + PI).rem_euclid(2.0 * PI) - PI;
     let rows: String = (0..=400)
         .map(|i| f64::from(i) / 40.0)
@@ -137,7 +137,7 @@ fn a_table_is_followed_like_its_formula() {
     let still = folder.write("still.toml", text);
     let [by_table, at_rest] = [&table, &still].map(|motion| json(HELICAL, motion, &["--quiet"]));
     assert_eq!(by_table["samples"], 1001);
-    // The helical joint counts whole turns: such an angle is taken as it stands, jump and all.
+    // The helical joint counts whole revolutions: its angle is taken as it is, including the jump.
     let slide = &by_table["imaginary"]["S"]["position"];
     assert!(number(&slide[1]) < 0.0201 * PI * 1.2, "{slide}");
     assert_eq!(at_rest["imaginary"]["S"]["position"], json!([0.0, 0.0]));
@@ -148,7 +148,7 @@ fn a_table_is_followed_like_its_formula() {
     let table = folder.write("turn.csv", format!("t,zeta\n{rows}"));
     let found = json(PLANO, &table, &["--quiet"]);
     let turned = &found["joints"]["s4.z"]["velocity"];
-    // Unwrapped, it turns on at the same speed all the time.
+    // Unwrapped, it rotates at a constant speed.
     for end in 0..2 {
         assert!((number(&turned[end]) - 0.2 * PI).abs() < 1e-6, "{turned}");
     }
@@ -162,7 +162,7 @@ fn rate_and_mode_win_over_the_file() {
     let found = json(PLANO, &motion, &[]);
     assert_eq!((&found["mode"], &found["samples"]), (&json!("-+ ++ ++ +"), &json!(11)));
     let found = json(PLANO, &motion, &["--mode", "home", "--rate", "2.5"]);
-    // At 0, 0.4, 0.8 and the end.
+    // The samples are at 0, 0.4, 0.8 and the end.
     assert_eq!((&found["mode"], &found["samples"]), (&json!("++ ++ ++ +"), &json!(4)));
 }
 

@@ -161,7 +161,7 @@ fn text_is_in_the_units_of_the_file() {
     };
     assert!(line("imaginary").contains("62.832  mm/s"), "20 mm/rad, half a turn a second");
     assert!(line("phi1 ").contains("180.0000  deg/s"), "{}", text.stdout);
-    // 20 mm/rad times sin 45 degrees, a degree.
+    // 20 mm/rad times sin 45 degrees, per degree.
     assert!(line("S1 [mm]").ends_with("0.2468"), "{}", text.stdout);
 }
 

@@ -128,7 +128,7 @@ fn the_helical_workspace_is_three_strips() {
     let expected = expected.count();
     assert!(expected > 1000);
     assert_eq!(found["reachable"], expected);
-    // A box of 1 m by 1 m: the measure is the share.
+    // The box is 1 m by 1 m, so the measure equals the share.
     assert_eq!(keys(&found["measure"]), ["value", "units", "method"]);
     let share = expected as f64 / f64::from(count * count);
     assert!((number(&found["measure"]["value"]) - share).abs() < EXACT);
@@ -148,7 +148,7 @@ fn without_a_grid_one_is_fitted_and_told() {
     assert!(number(&found["reachable"]) > 1e5, "a workspace worth looking at: {found}");
     assert!(number(&found["measure"]["value"]) > 0.0);
     assert_eq!(found["measure"]["units"], "m^2 rad^3");
-    // The flags that it tells give the same run.
+    // The flags that it prints give the same run.
     let flags = run.stderr.lines().find(|line| line.contains("--grid")).expect("a note");
     let flags: Vec<&str> = flags.split_whitespace().skip_while(|word| *word != "--grid").collect();
     let again = workspace(&[&[PLANO], &flags[..]].concat());
@@ -202,10 +202,10 @@ fn a_recording_holds_every_point_with_its_joints() {
         let fields = ["x", "y", "z", "zeta", "theta12", "S1", "phi24"];
         let slices = points(&folder, "cloud.mcap", "/workspace/slices", &fields);
         assert_eq!(found["reachable"], slices.len());
-        // Few enough for the overview to hold them all.
+        // There are few enough points for the overview to hold all of them.
         assert_eq!(points(&folder, "cloud.mcap", "/workspace/cloud", &fields), slices);
 
-        // Each point's joints are those of inverse kinematics at its pose; of any mode, one of them.
+        // The joints of each point equal inverse kinematics at its pose, in one of the modes for `any`.
         let mut input = "x,y,xi,zeta,psi\n".to_owned();
         for point in &slices {
             input += &format!("{},{},{},{},0.1\n", point[0], point[1], point[2], point[3]);

@@ -1,4 +1,4 @@
-//! What is found of a workspace: counts, the set of its points, its shape, its conditioning.
+//! The results for a workspace: counts, the set of its points, its shape, its conditioning.
 
 use crate::error::StudyError;
 use crate::kind::WorkspaceKind;
@@ -8,39 +8,39 @@ use opm_workspace::{
     Components, ConditioningIndex, Count, GridSet, Outline, Progress, Visits, boundary,
 };
 
-/// What is known of a workspace. All of it follows from the poses in reach.
+/// The results for a workspace. All of them follow from the poses in reach.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Analysis {
     /// What the workspace consists of.
     pub kind: WorkspaceKind,
-    /// How many points it has, out of how many. Of a set of places or orientations, these are counted.
+    /// The number of points, and the number that was tested. A set of places or orientations counts these.
     pub count: Count,
-    /// The points, where they are held in memory.
+    /// The points, if they are held in memory.
     pub set: Option<GridSet>,
-    /// Of places, in how many orientations each is reached.
+    /// The number of orientations in which each place is reached, for a set of places.
     pub visits: Option<Visits>,
-    /// The conditioning of the poses, where it is asked for.
+    /// The conditioning of the poses, if it was requested.
     pub conditioning: Option<ConditioningIndex>,
-    /// Components and boundary, where they are asked for.
+    /// Components and boundary, if they were requested.
     pub shape: Option<Shape>,
 }
 
 /// The connected components of a set, and its boundary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Points of each component, the largest first.
+    /// The number of points of each component, the largest first.
     pub components: Vec<u64>,
-    /// Closed lines around the set, slice by slice; `None` where the set does not vary in two coordinates,
-    /// or in three, or where a boundary says nothing.
+    /// Closed lines around the set, slice by slice. `None` if the set varies in neither two nor three
+    /// coordinates, or if a boundary has no meaning for its kind.
     pub boundary: Option<Vec<Outline>>,
 }
 
 impl Workspace {
-    /// Counts the poses, and finds all that is asked of the workspace.
+    /// Counts the poses, and computes every requested result.
     ///
     /// # Errors
-    /// A set that does not fit in memory; that it was cancelled.
+    /// The set does not fit in memory, or the work was cancelled.
     pub fn analyse(&self, progress: &Progress) -> Result<Analysis, StudyError> {
         let count = self.sweep().count(progress)?;
         let conditioning = self.index(&self.sweep(), progress)?;
@@ -51,16 +51,16 @@ impl Workspace {
 }
 
 impl Analysis {
-    /// An analysis that has counted, and no more.
+    /// An analysis with a count and nothing else.
     pub fn of_count(kind: WorkspaceKind, count: Count) -> Self {
         Self { kind, count, set: None, visits: None, conditioning: None, shape: None }
     }
 
-    /// What follows from the points of a workspace whose poses are counted. The poses are gone through once
-    /// more if [`Workspace::needs_points`]; then the count is that of the points.
+    /// The results that follow from the points of a workspace whose poses are counted. The poses are visited
+    /// once more if [`Workspace::needs_points`]; the count is then that of the points.
     ///
     /// # Errors
-    /// A set that does not fit in memory, or poses that cannot be had; that it was cancelled.
+    /// The set does not fit in memory, the poses cannot be read, or the work was cancelled.
     pub fn of_points(
         workspace: &Workspace,
         count: Count,
@@ -90,12 +90,12 @@ impl Analysis {
         Ok(analysis)
     }
 
-    /// The boundary, slice by slice, where it is known.
+    /// The boundary, slice by slice, if it is known.
     pub fn boundary(&self) -> Option<&[Outline]> {
         self.shape.as_ref()?.boundary.as_deref()
     }
 
-    /// The points in reach as a share of those that could be; `None` if there are none.
+    /// The points in reach as a share of all points that were tested; `None` if there are none.
     pub fn fraction(&self) -> Option<f64> {
         let Count { poses, reachable, .. } = self.count;
         (poses > 0).then(|| reachable as f64 / poses as f64)

@@ -1,5 +1,5 @@
-//! The values that a recording stores of every point: which there are, which are asked for, which suit the
-//! workspace.
+//! The values that a recording stores with every point: those that exist, those that are requested, and
+//! those that suit the workspace.
 
 use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
@@ -21,7 +21,7 @@ pub enum Column {
     Imaginary(usize),
     /// An actuated joint.
     Actuated(usize),
-    /// The platform's point: x, y or z.
+    /// The position of the platform's reference point: x, y or z.
     Tip(usize),
     /// One over the condition number.
     InverseCondition,
@@ -46,10 +46,10 @@ impl NamedColumn {
     }
 }
 
-/// Which values of the points are asked for, by name. What is not given suits the workspace.
+/// The values of the points that are requested, by name. Defaults suit the workspace.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PointOptions {
-    /// The three values that are x, y and z of a point, or [`TIP`]; none if not given.
+    /// The three values that are x, y and z of a point, or [`TIP`]; empty if not given.
     pub axes: Vec<String>,
     /// Further values that are stored.
     pub scalars: Option<Vec<String>>,
@@ -57,7 +57,7 @@ pub struct PointOptions {
     pub color: Option<String>,
 }
 
-/// Values of points that are asked for, and that the points of a kind of workspace have.
+/// Requested values, checked: the points of the kind of workspace have them.
 #[derive(Clone, Debug)]
 pub struct PointChoice {
     kind: WorkspaceKind,
@@ -71,7 +71,7 @@ impl PointOptions {
     /// Finds the values by their names.
     ///
     /// # Errors
-    /// A name that is not known, or that no scalar can have; other than three axes.
+    /// A name is unknown or not allowed for a scalar, or the number of axes is not three.
     pub fn choose(
         &self,
         kind: WorkspaceKind,
@@ -135,7 +135,7 @@ fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn,
     Ok(NamedColumn::new(name, Column::Coordinate(number)))
 }
 
-/// Every value that the points of a kind have.
+/// Every value that the points of a kind of workspace have.
 fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
     let lower = manipulator.task().lower_count;
     let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
@@ -177,21 +177,21 @@ pub(crate) fn is_field(name: &str) -> bool {
     POSITION_FIELDS.contains(&name) || COLOR_FIELDS.contains(&name)
 }
 
-/// What every point of a recording consists of.
+/// The values of every point of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PointColumns {
-    /// What x, y and z of the cloud are.
+    /// The values that are x, y and z of the cloud.
     pub axes: [NamedColumn; 3],
     /// Further values that are stored.
     pub scalars: Vec<NamedColumn>,
-    /// What the colour shows.
+    /// The value that the colour shows.
     pub color: NamedColumn,
-    /// Whether somebody chose the scalars.
+    /// Whether the scalars were requested rather than chosen by default.
     pub(crate) scalars_chosen: bool,
 }
 
 impl PointColumns {
-    /// The values of poses of a grid; what was not asked for suits the grid.
+    /// The values of poses of a grid; defaults suit the grid.
     pub fn of_poses(choice: PointChoice, grid: &Grid) -> Self {
         let tallest = tallest(grid);
         let axis = |i: usize| NamedColumn::new(&grid.axes()[i].name, Column::Coordinate(i));
@@ -203,10 +203,10 @@ impl PointColumns {
                 let flat = (0..grid.axes().len()).rfind(|number| !several(number));
                 return [axis(a), axis(b), axis(flat.unwrap_or(tallest))];
             }
-            // What varies, then what does not; every pair of subspaces has at least three coordinates.
+            // Varying coordinates come first. Every pair of subspaces has at least three coordinates.
             let fixed = (0..grid.axes().len()).filter(|number| !several(number));
             let mut order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
-            // Places stand on the ground, the tallest orientation above them.
+            // The coordinates of the place are horizontal, and the coordinate of `tallest` is vertical.
             if varying.len() > 2 && varying[0] < grid.lower() {
                 order.retain(|&number| number != tallest);
                 order.insert(2, tallest);
@@ -215,19 +215,19 @@ impl PointColumns {
         });
         let scalars_chosen = choice.scalars.is_some();
         let scalars = choice.scalars.unwrap_or_else(|| {
-            // What the colour shows can be read off, too.
+            // The value that the colour shows is stored as a number, too.
             let known = axes.contains(&color) || is_field(&color.name);
             if known { vec![] } else { vec![color.clone()] }
         });
         Self { axes, scalars, color, scalars_chosen }
     }
 
-    /// The values of the points of a set in memory; what was not asked for suits the set.
+    /// The values of the points of a set in memory; defaults suit the set.
     pub fn of_set(choice: PointChoice, set: &GridSet) -> Self {
         let PointChoice { kind, known, .. } = choice;
         let varying = set.varying();
         let axis = |i: usize| NamedColumn::new(&set.axes()[i].axis.name, Column::Coordinate(i));
-        // What varies first, then what does not.
+        // Varying coordinates come first.
         let fixed = (0..set.axes().len()).filter(|i| !varying.contains(i));
         let order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
         let is_imaginary = |named: &&NamedColumn| matches!(named.column, Column::Imaginary(_));
@@ -247,9 +247,9 @@ impl PointColumns {
         let scalars_chosen = choice.scalars.is_some();
         let scalars = choice.scalars.unwrap_or_else(|| {
             let mut scalars: Vec<NamedColumn> = match kind == WorkspaceKind::Imaginary {
-                // By their names as well, for pictures of more than three.
+                // They are stored by name as well, for pictures of more than three joints.
                 true => imaginary().collect(),
-                // Nothing of a point is lost.
+                // Every coordinate of a point is stored.
                 false => varying.iter().map(|&i| axis(i)).filter(|c| !axes.contains(c)).collect(),
             };
             if !axes.contains(&color) && !scalars.contains(&color) {
@@ -261,7 +261,7 @@ impl PointColumns {
         Self { axes, scalars, color, scalars_chosen }
     }
 
-    /// The values of a row: axes, scalars, and the colour where it is none of these.
+    /// The values of a row: axes, scalars, and the colour if it is not among these.
     pub fn columns(&self) -> Vec<Column> {
         let listed = || self.axes.iter().chain(&self.scalars);
         let mut columns: Vec<Column> = listed().map(|named| named.column).collect();
@@ -272,7 +272,7 @@ impl PointColumns {
     }
 }
 
-/// The coordinate that a picture of the workspace is tallest in: the tilt where it varies, else the
+/// The coordinate that is vertical in a picture of the workspace: the tilt if it varies, else the
 /// slowest varying one of the upper section, else of the lower.
 fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;

@@ -22,24 +22,24 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// A request that cannot be met.
+    /// The request cannot be met.
     #[error(transparent)]
     Request(#[from] RequestError),
-    /// It was told to stop.
+    /// The work was cancelled.
     #[error("interrupted")]
     Cancelled,
-    /// A set that does not fit in memory.
+    /// A set does not fit in memory.
     #[error("{0}")]
     Set(SetError),
-    /// A motion that cannot be followed.
+    /// A motion cannot be followed.
     #[error("{}", crate::text::located(motion, error))]
     Trajectory {
         /// The name of the motion.
         motion: String,
-        /// Why not.
+        /// The cause.
         error: TrajectoryError,
     },
-    /// A linkage whose loop does not close at a value that its input should have.
+    /// The loop of a linkage does not close at a value within the range of its input.
     #[error("{joint} = {value}: the loop does not close in {branch}")]
     OpenLoop {
         /// The joint that moves the linkage.
@@ -49,7 +49,7 @@ pub enum StudyError {
         /// The branch.
         branch: String,
     },
-    /// A motion that lasts longer than the clock of a recording can tell.
+    /// A motion lasts longer than the clock of a recording can count.
     #[error("{motion}: lasts {duration:e} s, expected at most {most:e} s")]
     LongMotion {
         /// The name of the motion.
@@ -59,69 +59,69 @@ pub enum StudyError {
         /// How long it may last, seconds.
         most: f64,
     },
-    /// It was told to stop while a recording was written; what there is of it can be read.
+    /// The work was cancelled while a recording was written. The unfinished file can be read.
     #[cfg(feature = "recording")]
     #[error("interrupted; what was recorded is in {}", partial.display())]
     CancelledRecording {
         /// The unfinished file.
         partial: PathBuf,
     },
-    /// A file that cannot be written, or a value that cannot be stored.
+    /// A file cannot be written, or a value cannot be stored.
     #[cfg(feature = "recording")]
     #[error("{}", located(place, error))]
     Record {
         /// The file.
         place: String,
-        /// Why not.
+        /// The cause.
         error: RecordError,
     },
-    /// A file that cannot be read.
+    /// A file cannot be read.
     #[cfg(feature = "recording")]
     #[error("{}", located(place, error))]
     Read {
         /// The file.
         place: String,
-        /// Why not.
+        /// The cause.
         error: ReadError,
     },
-    /// A pose that the sweep counts, and inverse kinematics does not reach.
+    /// A pose is counted by the sweep, but inverse kinematics does not reach it.
     #[error("the sweep counts the pose {pose:?}, but inverse kinematics does not reach it")]
     LostPose {
         /// The task coordinates.
         pose: Vec<f64>,
     },
-    /// A file that is not the shard it should be.
+    /// A file is not the expected shard.
     #[cfg(feature = "recording")]
     #[error(transparent)]
     Shard(#[from] ShardError),
-    /// It was told to stop while a shard was written; what there is of it is of no use.
+    /// The work was cancelled while a shard was written. The unfinished file is of no use.
     #[cfg(feature = "recording")]
     #[error("interrupted; {} is no whole shard: sweep it again", partial.display())]
     CancelledShard {
         /// The unfinished file.
         partial: PathBuf,
     },
-    /// A condition number that is asked for where there is none.
+    /// A condition number is requested, but not defined.
     #[error(transparent)]
     Condition(ConditionError),
-    /// No shards at all.
+    /// There are no shards.
     #[error("there are no shards to join")]
     NoShards,
-    /// A recording of a set, of which the points are not known.
+    /// A set is to be recorded, but its points are not known.
     #[error("there is no set to record: its points have to be analysed first")]
     NoSet,
-    /// Shards that are missing.
+    /// Shards are missing.
     #[cfg(feature = "recording")]
     #[error(transparent)]
     MissingShards(#[from] MissingShards),
-    /// Whoever takes what is read has gone.
+    /// The receiver of the data has stopped.
     #[error("nobody takes what is read")]
     Closed,
 }
 
 #[cfg(feature = "recording")]
 impl StudyError {
-    /// A file that cannot be written.
+    /// The error for a file that cannot be written.
     pub(crate) fn record(place: impl std::fmt::Display, error: RecordError) -> Self {
         Self::Record { place: place.to_string(), error }
     }

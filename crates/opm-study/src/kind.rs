@@ -65,7 +65,7 @@ impl WorkspaceKind {
         Self::Lower,
     ];
 
-    /// The name by which a kind is asked for, and which recordings store.
+    /// The name of a kind in requests and recordings.
     pub fn name(self) -> &'static str {
         match self {
             Self::Grid => "grid",
@@ -101,7 +101,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// Which sections of the mechanism have to close: the grid has their coordinates.
+    /// The sections of the mechanism that have to close. The grid has their coordinates.
     pub fn sections(self) -> Sections {
         match self {
             Self::Upper => Sections::Upper,
@@ -120,19 +120,19 @@ impl WorkspaceKind {
         matches!(self, Self::Grid | Self::ConstantOrientation | Self::Orientation)
     }
 
-    /// Whether its points are places, of which the share of orientations in reach is known.
+    /// Whether its points are places. The share of orientations in reach is then known for each.
     pub fn is_of_places(self) -> bool {
         matches!(self, Self::Reachable | Self::Dexterous)
     }
 
-    /// Whether its points have a boundary. Orientations have one, but it says nothing of the imaginary
-    /// joints that they are asked for.
+    /// Whether its points have a boundary. The orientations of `Imaginary` have one, but it says nothing about
+    /// the imaginary joints.
     pub fn has_boundary(self) -> bool {
         self != Self::Imaginary
     }
 
-    /// In how many slices of the grid a point has to be reached to belong to the set; `None` where every
-    /// point of the grid decides for itself.
+    /// The number of slices of the grid in which a point has to be reached to belong to the set; `None` if
+    /// every point of the grid is decided on its own.
     pub fn required_visits(self, grid: &Grid) -> Option<u64> {
         match self {
             Self::Reachable | Self::Imaginary => Some(1),
@@ -145,7 +145,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// Numbers of the axes of a grid whose coordinates its points have.
+    /// Indices of the axes of a grid whose coordinates its points have.
     pub fn axes(self, grid: &Grid) -> Range<usize> {
         let (lower, all) = (grid.lower(), grid.axes().len());
         match self {
@@ -159,7 +159,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// Numbers of the axes of which a grid of this kind has one value each.
+    /// Indices of the axes that have a single value in a grid of this kind.
     pub fn held_axes(self, grid: &Grid) -> Range<usize> {
         match self {
             Self::ConstantOrientation => grid.lower()..grid.axes().len(),
@@ -173,7 +173,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// What its points are called, in the plural.
+    /// The name of its points, in the plural.
     pub fn point_name(self) -> &'static str {
         match self {
             Self::Reachable | Self::Dexterous => "places",
@@ -183,7 +183,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// What the points that belong to the set are called.
+    /// The adjective for the points that belong to the set.
     pub fn member_name(self) -> &'static str {
         match self {
             Self::Upper | Self::Lower => "closing",
@@ -196,7 +196,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// What it is called at the head of a text.
+    /// The title of a text about it.
     pub fn title(self) -> &'static str {
         match self {
             Self::Grid => "workspace",
@@ -210,7 +210,7 @@ impl WorkspaceKind {
         }
     }
 
-    /// The sentence about a set without points; `limited` says whether the condition number has a limit.
+    /// The sentence about an empty set; `limited` says whether the condition number has a limit.
     pub fn nothing(self, limited: bool) -> String {
         let well = if limited {
             ", within the limits and well conditioned"
@@ -264,7 +264,7 @@ mod tests {
         assert!(error.starts_with("\"Grid\" is no kind of workspace, expected one of grid, "));
     }
 
-    /// The rules of the sets that slices decide together.
+    /// These are the sets for which several slices decide together.
     #[test]
     fn a_dexterous_place_is_reached_in_every_slice_and_a_reachable_one_in_any() {
         let manipulator = example();

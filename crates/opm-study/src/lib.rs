@@ -1,9 +1,9 @@
-//! Studies of overconstrained parallel manipulators: what there is to ask of a workspace or a motion, what
-//! is found of it, and what a recording of it stores.
+//! Studies of overconstrained parallel manipulators: requests of workspaces and motions, their results, and
+//! the contents of their recordings.
 //!
 //! This crate stands between the engines (`opm-core` computes poses, `opm-workspace` sweeps grids of them,
 //! `opm-mcap` writes files) and the front ends (the command line, Python). It reads no flags and prints
-//! nothing. Every front end goes the same way:
+//! nothing. Every front end takes the same steps:
 //!
 //! ```text
 //! WorkspaceRequest -> check -> fit -> Workspace -> analyse -> Analysis -> WorkspaceRecording
@@ -55,15 +55,15 @@
 //! | | |
 //! |---|---|
 //! | [`WorkspaceKind`] | kinds of workspace, and which points belong to each |
-//! | [`WorkspaceRequest`] | what is asked for; [`RequestError`] names the [`RequestOption`] that is wrong |
-//! | [`Workspace`] | what is asked for, once nothing is left open |
-//! | [`Analysis`] | what is found: counts, set, shape, conditioning |
+//! | [`WorkspaceRequest`] | a request; [`RequestError`] names the [`RequestOption`] that is wrong |
+//! | [`Workspace`] | a request that is checked and complete |
+//! | [`Analysis`] | the results: counts, set, shape, conditioning |
 //! | [`PointOptions`] | which values a recording stores of every point |
 //! | [`MotionRequest`], [`LinkageRound`] | motions of a platform, rounds of a single loop |
 //! | [`recording`] | recordings, tables and shards, in files: with the feature `recording`, which is on by default |
 //!
-//! Work runs on the current thread pool of rayon. [`opm_workspace::Progress`] says how far it has come, and
-//! stops it.
+//! Work runs on the current thread pool of rayon. [`opm_workspace::Progress`] reports how far it has come,
+//! and can cancel it.
 
 mod analysis;
 mod columns;

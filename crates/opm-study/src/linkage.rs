@@ -1,36 +1,37 @@
-//! Single loops, moved once round by one of their joints.
+//! Closed cycles of single-loop linkages, driven by one joint.
 
 use crate::error::StudyError;
 use opm_core::linkage::{Input, InputRange, Linkage, Position};
 use std::f64::consts::PI;
 
-/// One round of a linkage: one turn of an input that can make it; else to the end of its range, back in
-/// the branch that meets there, and so on until the linkage is home.
+/// One closed cycle of a linkage. An input that can make a full revolution makes one. Otherwise it goes to
+/// the end of its range, back in the branch that meets the first one there, and so on until the linkage is
+/// home.
 pub struct LinkageRound<'a> {
     /// The linkage.
     pub linkage: &'a Linkage,
     /// The joint that moves it.
     pub input: &'a Input<'a>,
-    /// Positions, home at both ends: two or more.
+    /// Number of positions, two or more. The first and the last are home.
     pub count: u32,
 }
 
-/// What a round comes to.
+/// The totals of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RoundSummary {
-    /// Positions.
+    /// Number of positions.
     pub positions: u64,
-    /// Positions within all limits.
+    /// Number of positions within all limits.
     pub within_limits: u64,
-    /// Whether the input made a full turn.
+    /// Whether the input made a full revolution.
     pub is_turn: bool,
 }
 
 impl LinkageRound<'_> {
-    /// Gives every position of the round, in order, with its number.
+    /// Calls `take` with every position of the cycle and its number, in order.
     ///
     /// # Errors
-    /// What `take` gives; or a position at which the loop does not close.
+    /// An error of `take`, or a position at which the loop does not close.
     pub fn each<E: From<StudyError>>(
         &self,
         mut take: impl FnMut(u32, &Position) -> Result<(), E>,
@@ -54,7 +55,7 @@ impl LinkageRound<'_> {
     }
 }
 
-/// The range of an input, interval by interval; of a full turn, the one around home.
+/// The range of an input, interval by interval. For a full revolution it is the interval centred at home.
 pub fn input_intervals(input: &Input<'_>) -> Vec<[f64; 2]> {
     let home = input.coordinate().home;
     match input.range() {

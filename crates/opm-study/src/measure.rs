@@ -4,12 +4,12 @@ use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::Axis;
 
-/// How large a counted set is.
+/// The size of a counted set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// In the unit.
+    /// The value, in the unit.
     pub value: f64,
-    /// The product of units that it is in; `1` if there is none.
+    /// The unit, a product; `1` if there is none.
     pub unit: String,
 }
 
@@ -31,7 +31,7 @@ pub(crate) fn grid_measure<'a>(
     Measure { value: value / factor, unit }
 }
 
-/// The unit of a product of so many values of each quantity, and how many SI units it is.
+/// The unit of a product with this many factors of each quantity, and its value in SI units.
 pub fn unit_product(powers: &[(Quantity, usize)], units: FileUnits) -> (String, f64) {
     let (mut symbols, mut factor) = (Vec::new(), 1.0);
     for &(quantity, power) in powers.iter().filter(|(_, power)| *power > 0) {

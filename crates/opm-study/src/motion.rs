@@ -12,35 +12,35 @@ use std::panic::resume_unwind;
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread;
 
-/// Samples a second, of a motion that does not say how many.
+/// Samples per second of a motion without a rate of its own.
 pub const DEFAULT_RATE: f64 = 100.0;
 
 /// Longest motion, seconds: the stamps of a recording count seconds in 32 bits.
 const LONGEST: f64 = 4e9;
 
-/// Samples that are handed over at a time; in between, the work can be stopped.
+/// Number of samples in a batch. The work can be cancelled between two batches.
 const BATCH: usize = 256;
 
-/// Batches that may wait for whoever takes them.
+/// Number of batches that may wait for the receiver.
 const WAITING: usize = 4;
 
-/// A motion that a manipulator is to follow.
+/// A motion for a manipulator to follow.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionRequest<'a> {
     /// The manipulator.
     pub manipulator: &'a Manipulator,
     /// The motion of its platform.
     pub motion: &'a PlatformMotion,
-    /// What messages call the motion.
+    /// The name of the motion in messages.
     pub label: &'a str,
     /// The working mode.
     pub mode: Mode,
-    /// Samples a second.
+    /// Samples per second.
     pub rate: f64,
 }
 
 impl<'a> MotionRequest<'a> {
-    /// A motion with the working mode and the rate that it asks for itself, else those of home and
+    /// A request with the motion's own working mode and rate. If it has none, they are the mode of home and
     /// [`DEFAULT_RATE`].
     pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
@@ -48,22 +48,22 @@ impl<'a> MotionRequest<'a> {
         Self { manipulator, motion, label, mode, rate }
     }
 
-    /// Asks for another working mode.
+    /// Selects another working mode.
     #[must_use]
     pub fn mode(self, mode: Mode) -> Self {
         Self { mode, ..self }
     }
 
-    /// Asks for other samples a second.
+    /// Sets the number of samples per second.
     #[must_use]
     pub fn rate(self, rate: f64) -> Self {
         Self { rate, ..self }
     }
 
-    /// The trajectory, checked, with no sample yet.
+    /// The trajectory, checked, before its first sample.
     ///
     /// # Errors
-    /// A motion that cannot be sampled, or lasts too long.
+    /// The motion cannot be sampled, or lasts too long.
     pub fn trajectory(&self) -> Result<Trajectory<'a>, StudyError> {
         let Self { manipulator, motion, label, mode, rate } = *self;
         if motion.duration > LONGEST {
@@ -77,12 +77,12 @@ impl<'a> MotionRequest<'a> {
         StudyError::Trajectory { motion: self.label.to_owned(), error }
     }
 
-    /// Follows the motion from end to end on a thread of its own, and gives every sample, with its number
-    /// and with what changed up to it, to `take` on this one. `go_on` hears how many samples are done, and
-    /// says whether to continue.
+    /// Follows the motion from end to end on a thread of its own. On this thread, calls `take` with every
+    /// sample, its number, and the transitions up to it. `go_on` gets the number of finished samples and
+    /// returns whether to continue.
     ///
     /// # Errors
-    /// A pose that cannot be computed with; what `take` gives; that it was told to stop.
+    /// A pose is not finite, `take` fails, or the work was cancelled.
     pub fn follow(
         &self,
         trajectory: Trajectory<'_>,
@@ -109,7 +109,7 @@ impl<'a> MotionRequest<'a> {
                 if !go_on(number) {
                     return Err(StudyError::Cancelled);
                 }
-                // Once the follower has come to its end it needs no more room.
+                // When the follower has finished, it needs no more buffers.
                 let _ = back.send(batch);
             }
             let followed = follower.join().unwrap_or_else(|panic| resume_unwind(panic));
@@ -121,10 +121,10 @@ impl<'a> MotionRequest<'a> {
     }
 }
 
-/// Samples on their way from the thread that follows the motion to the one that takes them.
+/// A batch of samples, from the thread that follows the motion to the one that receives them.
 type Batch = Vec<(Sample, Vec<Change>)>;
 
-/// Sends all samples, batch by batch, in batches that come back; the violations that last to the end.
+/// Sends all samples in batches that are reused. Returns the violations that last to the end.
 fn follow(
     mut trajectory: Trajectory<'_>,
     ahead: &SyncSender<Batch>,
@@ -146,7 +146,7 @@ fn follow(
             length += 1;
         }
         batch.truncate(length);
-        // Nobody listens any more once the work has failed or was stopped.
+        // The receiver has gone if the work failed or was cancelled.
         if length == 0 || ahead.send(batch).is_err() {
             return Ok(trajectory.open().copied().collect());
         }

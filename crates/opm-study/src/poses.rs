@@ -1,4 +1,4 @@
-//! Where the poses of a workspace come from: a sweep, or the files in which sweeps of its shards left them.
+//! Sources of the poses of a workspace: a sweep, or the files of its shards.
 
 #[cfg(feature = "recording")]
 mod shards;
@@ -11,12 +11,12 @@ pub(crate) use shards::runs_of;
 use crate::error::StudyError;
 use opm_workspace::{Grid, Hits, Poses, Progress, Sweep};
 
-/// Gives the reachable poses of a grid, in order, as often as asked for.
+/// A source of the reachable poses of a grid, in order. It can be read several times.
 #[non_exhaustive]
 pub enum PoseSource<'a> {
-    /// By sweeping.
+    /// A sweep of the grid.
     Sweep(Sweep<'a>),
-    /// From the files of all shards.
+    /// The files of all shards.
     #[cfg(feature = "recording")]
     Shards(ShardPoses<'a>),
 }

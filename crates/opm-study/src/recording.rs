@@ -1,7 +1,7 @@
-//! Recordings: what is stored of a workspace, of a motion, of a linkage, of a shard, and the files it is
-//! written to.
+//! Recordings: the data that are stored for a workspace, a motion, a linkage or a shard, and the files that
+//! hold them.
 //!
-//! The same study gives the same bytes, whichever front end asks for it.
+//! The same study gives the same bytes from every front end.
 
 mod describe;
 mod linkage;
@@ -26,23 +26,23 @@ use std::path::{Path, PathBuf};
 /// The program that writes the files.
 pub(crate) const PROGRAM: &str = concat!("opm ", env!("CARGO_PKG_VERSION"));
 
-/// A file that goes into a recording.
+/// A file that is attached to a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment<'a> {
-    /// Its own name, without folders.
+    /// The file name, without folders.
     pub name: &'a str,
-    /// What is in it.
+    /// The text of the file.
     pub text: &'a str,
 }
 
-/// The name that a file has until it is whole.
+/// The name of a file until it is complete.
 pub fn partial(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".partial");
     name.into()
 }
 
-/// Refuses a name that does not end in `.mcap`, for content that is written as MCAP alone.
+/// Checks that a name ends in `.mcap`, for content that is written as MCAP only.
 ///
 /// # Errors
 /// [`RequestError::ContentIsMcap`], or [`RequestError::StandardOutput`]
@@ -56,7 +56,7 @@ fn check_mcap(path: &Path, wrong: impl FnOnce() -> RequestError) -> Result<(), R
     if is_mcap { Ok(()) } else { Err(wrong()) }
 }
 
-/// Refuses standard output: a recording has another name until it is whole.
+/// Refuses standard output: a recording has a temporary name until it is complete.
 fn refuse_standard_output(path: &Path) -> Result<(), RequestError> {
     if path == Path::new("-") { Err(RequestError::StandardOutput) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! Requests of a workspace: what is asked for, before anything is computed.
+//! Requests of a workspace: its options, before anything is computed.
 
 mod fit;
 
@@ -12,12 +12,12 @@ use opm_workspace::{
 };
 use std::sync::Arc;
 
-/// Characteristic lengths that can be computed with, metres: the square of one, and that of a mechanism
-/// over it, must be numbers.
+/// Range of characteristic lengths, metres. Neither the square of a length nor the square of a mechanism's
+/// size over it may overflow.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
 
-/// What is asked of a workspace. A request says nothing of the mechanism, so that one request can be made
-/// of many.
+/// The options of a workspace. A request does not depend on the mechanism, so that one request can be used
+/// for many mechanisms.
 ///
 /// ```
 /// use opm_study::{WorkspaceKind, WorkspaceRequest};
@@ -37,23 +37,23 @@ pub struct WorkspaceRequest {
     /// The axes of the grid; a coordinate that is not given stays at home. With no axis at all, the grid
     /// is fitted to the workspace.
     pub axes: Vec<Axis>,
-    /// The working modes that count; the mode of home if not given.
+    /// The working modes that count; by default the mode of home.
     pub modes: Option<Modes>,
     /// The largest condition number at which a pose counts.
     pub max_condition: Option<f64>,
-    /// Characteristic length of condition numbers, metres; the spread of the joint axes if not given.
+    /// Characteristic length of condition numbers, metres; by default the spread of the joint axes.
     pub length: Option<f64>,
-    /// Whether the global conditioning index is asked for.
+    /// Whether the global conditioning index is requested.
     pub conditioning: bool,
-    /// Whether the boundary and the connected components are asked for. All kinds but
-    /// [`WorkspaceKind::Grid`] are asked for them in any case.
+    /// Whether the boundary and the connected components are requested. All kinds except
+    /// [`WorkspaceKind::Grid`] compute them in any case.
     pub shape: bool,
-    /// What a recording stores of every point.
+    /// The values that a recording stores with every point.
     pub points: PointOptions,
 }
 
 impl WorkspaceRequest {
-    /// A request of a kind of workspace, in the working mode of home, over a grid that is fitted to it.
+    /// A request for a kind of workspace, in the working mode of home, over a grid that is fitted to it.
     pub fn new(kind: WorkspaceKind) -> Self {
         Self { kind, ..Self::default() }
     }
@@ -65,14 +65,14 @@ impl WorkspaceRequest {
         self
     }
 
-    /// Asks for other working modes than that of home.
+    /// Selects other working modes than that of home.
     #[must_use]
     pub fn modes(mut self, modes: Modes) -> Self {
         self.modes = Some(modes);
         self
     }
 
-    /// Asks for poses with a condition number of at most this.
+    /// Limits the condition number of the poses that count.
     #[must_use]
     pub fn max_condition(mut self, most: f64) -> Self {
         self.max_condition = Some(most);
@@ -86,31 +86,31 @@ impl WorkspaceRequest {
         self
     }
 
-    /// Asks for the global conditioning index.
+    /// Requests the global conditioning index.
     #[must_use]
     pub fn conditioning(mut self) -> Self {
         self.conditioning = true;
         self
     }
 
-    /// Asks for the boundary and the connected components.
+    /// Requests the boundary and the connected components.
     #[must_use]
     pub fn shape(mut self) -> Self {
         self.shape = true;
         self
     }
 
-    /// Sets what a recording stores of every point.
+    /// Sets the values that a recording stores with every point.
     #[must_use]
     pub fn points(mut self, points: PointOptions) -> Self {
         self.points = points;
         self
     }
 
-    /// Checks the request for a manipulator, as far as that takes no work.
+    /// Checks the request for a manipulator, without fitting a grid.
     ///
     /// # Errors
-    /// What is wrong, and with which option.
+    /// The problem, with the option that is wrong.
     pub fn check(
         self,
         manipulator: impl Into<Arc<Manipulator>>,
@@ -142,10 +142,10 @@ impl WorkspaceRequest {
         })
     }
 
-    /// Checks the request, and fits a grid where none is given.
+    /// Checks the request, and fits a grid if none is given.
     ///
     /// # Errors
-    /// What is wrong with the request, or that it was cancelled.
+    /// The request is wrong, or the work was cancelled.
     pub fn resolve(
         self,
         manipulator: impl Into<Arc<Manipulator>>,
@@ -155,7 +155,7 @@ impl WorkspaceRequest {
     }
 }
 
-/// A request that suits its manipulator. What is left to do is to fit a grid, where none was given.
+/// A request that is checked for its manipulator. If it has no grid, one is still to be fitted.
 #[derive(Clone, Debug)]
 pub struct CheckedRequest {
     manipulator: Arc<Manipulator>,
@@ -176,17 +176,17 @@ impl CheckedRequest {
         self.kind
     }
 
-    /// The grid that was given; `None` where one will be fitted.
+    /// The grid that was given; `None` if one will be fitted.
     pub fn grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
     }
 
-    /// What a recording stores of every point.
+    /// The values that a recording stores with every point.
     pub fn points(&self) -> &PointChoice {
         &self.points
     }
 
-    /// Refuses a characteristic length that nothing uses: there is no condition number in the request.
+    /// Refuses a characteristic length if the request has no condition number that uses it.
     ///
     /// # Errors
     /// [`RequestError::UnusedLength`]
@@ -195,11 +195,11 @@ impl CheckedRequest {
         if self.length_given && !used { Err(RequestError::UnusedLength) } else { Ok(()) }
     }
 
-    /// Fits a grid to the workspace, where none was given: the working space of all poses is searched for
-    /// its extent.
+    /// Fits a grid to the workspace if none was given. The extent of the workspace of all poses is searched
+    /// for.
     ///
     /// # Errors
-    /// That it was cancelled.
+    /// The work was cancelled.
     pub fn fit(self, progress: &Progress) -> Result<Workspace, Cancelled> {
         let Self { manipulator, kind, modes, limit, length, conditioning, shape, .. } = self;
         let (grid, unbounded) = match self.grid {
@@ -250,7 +250,7 @@ fn condition_limit(most: f64, length: f64) -> Result<ConditionLimit, RequestErro
     }
 }
 
-/// Refuses what has no meaning with a kind.
+/// Refuses options that have no meaning for a kind of workspace.
 fn check_kind(
     kind: WorkspaceKind,
     manipulator: &Manipulator,
@@ -269,7 +269,7 @@ fn check_kind(
     Ok(())
 }
 
-/// The grid with these axes, if it is one for workspaces of this kind.
+/// The grid with these axes, checked for workspaces of this kind.
 fn grid(
     kind: WorkspaceKind,
     manipulator: &Manipulator,

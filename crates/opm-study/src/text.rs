@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::{Display, Write};
 
-/// A whole number with its digits in groups of three.
+/// A whole number, with digits in groups of three.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
@@ -16,7 +16,7 @@ pub fn count(number: u64) -> String {
     text
 }
 
-/// An error and what caused it, on one line.
+/// An error and its causes, on one line.
 pub fn chain(error: &(dyn Error + '_)) -> String {
     let mut text = error.to_string();
     let mut source = error.source();
@@ -27,7 +27,7 @@ pub fn chain(error: &(dyn Error + '_)) -> String {
     text
 }
 
-/// An error with the place where it happened, for instance a file. A place that the error names itself
+/// An error with the place where it happened, for instance a file. If the error names the place itself, it
 /// is not repeated.
 pub fn located(place: impl Display, error: &(dyn Error + '_)) -> String {
     let (place, text) = (place.to_string(), chain(error));

@@ -1,4 +1,4 @@
-//! Workspaces that are fully defined: what there is to be swept and analysed.
+//! Workspaces that are fully defined and can be swept and analysed.
 
 use crate::error::StudyError;
 use crate::kind::WorkspaceKind;
@@ -12,8 +12,8 @@ use opm_workspace::{
 };
 use std::sync::Arc;
 
-/// A workspace as it is defined: of which manipulator and kind, over which grid, in which working modes,
-/// and what is asked of it. A [`WorkspaceRequest`](crate::WorkspaceRequest) makes one.
+/// The definition of a workspace: manipulator, kind, grid, working modes, and the requested results. A
+/// [`WorkspaceRequest`](crate::WorkspaceRequest) makes one.
 #[derive(Clone, Debug)]
 pub struct Workspace {
     pub(crate) manipulator: Arc<Manipulator>,
@@ -33,12 +33,12 @@ impl Workspace {
         &self.manipulator
     }
 
-    /// What it consists of.
+    /// The kind of workspace: what it consists of.
     pub fn kind(&self) -> WorkspaceKind {
         self.kind
     }
 
-    /// The poses that are decided.
+    /// The grid of the poses that are tested.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -66,18 +66,18 @@ impl Workspace {
         self.length
     }
 
-    /// Characteristic length of the conditioning index, where that is asked for.
+    /// Characteristic length of the conditioning index, if the index is requested.
     pub fn conditioning_length(&self) -> Option<f64> {
         self.conditioning.then_some(self.length)
     }
 
-    /// Of a grid that was fitted, the coordinates along which the workspace goes on beyond it; `None` of a
+    /// The coordinates along which the workspace extends beyond a fitted grid; `None` for a
     /// grid that was given.
     pub fn unbounded(&self) -> Option<&[String]> {
         self.unbounded.as_deref()
     }
 
-    /// The same workspace, asked for its boundary and its connected components too.
+    /// The same workspace, with its boundary and its connected components requested too.
     #[must_use]
     pub fn with_shape(self, shape: bool) -> Self {
         Self { shape, ..self }
@@ -90,7 +90,7 @@ impl Workspace {
         asked(self) == asked(other) && self.grid == other.grid
     }
 
-    /// The sweep of its grid.
+    /// The sweep of the grid.
     pub fn sweep(&self) -> Sweep<'_> {
         let sweep = Sweep::new(&self.manipulator, &self.grid, self.modes);
         match self.limit {
@@ -99,26 +99,26 @@ impl Workspace {
         }
     }
 
-    /// Its poses, by sweeping.
+    /// The poses, from a sweep.
     pub fn poses(&self) -> PoseSource<'_> {
         PoseSource::Sweep(self.sweep())
     }
 
-    /// Whether its points have to be held in memory, or its poses gone through again: for its shape, or
-    /// where its points are not poses of the grid.
+    /// Whether the points have to be held in memory, or the poses visited again. This is so for a shape, and
+    /// if the points are not poses of the grid.
     pub fn needs_points(&self) -> bool {
         self.wants_shape() || !self.kind.is_of_poses()
     }
 
-    /// Whether the boundary and the components are asked for.
+    /// Whether the boundary and the components are requested.
     pub(crate) fn wants_shape(&self) -> bool {
         self.shape || self.kind != WorkspaceKind::Grid
     }
 
-    /// Sums up the conditioning of the poses of its sweep, or of a shard of that, if it is asked for.
+    /// Sums up the conditioning of the poses of the sweep, or of a shard of it, if it is requested.
     ///
     /// # Errors
-    /// That it was cancelled.
+    /// The work was cancelled.
     pub fn index(
         &self,
         sweep: &Sweep<'_>,
@@ -128,11 +128,11 @@ impl Workspace {
         Ok(self.conditioning_length().map(index).transpose()?)
     }
 
-    /// In how many slices of the grid a sweep, or a shard of it, reaches each point of the kind; `None` of
-    /// a kind whose points are points of the grid. Those of all shards add up.
+    /// The number of slices of the grid in which a sweep, or a shard of it, reaches each point; `None` for
+    /// a kind whose points are points of the grid. The numbers of all shards add up.
     ///
     /// # Errors
-    /// More points than fit in memory; that it was cancelled.
+    /// The points do not fit in memory, or the work was cancelled.
     pub fn visits(
         &self,
         sweep: &Sweep<'_>,
@@ -156,16 +156,16 @@ impl Workspace {
         }
     }
 
-    /// In how many slices a point has to be reached to belong to the set: see
+    /// The number of slices in which a point has to be reached to belong to the set: see
     /// [`WorkspaceKind::required_visits`].
     pub fn required_visits(&self) -> Option<u64> {
         self.kind.required_visits(&self.grid)
     }
 
-    /// The set of the points that `holds` says are in, by their numbers.
+    /// The set of the points for whose numbers `holds` is true.
     ///
     /// # Errors
-    /// A set that does not fit in memory.
+    /// The set does not fit in memory.
     pub fn set(&self, holds: impl Fn(u64) -> bool) -> Result<GridSet, SetError> {
         let axis = |i: usize| SetAxis {
             axis: self.grid.axes()[i].clone(),
@@ -174,8 +174,8 @@ impl Workspace {
         GridSet::of(self.kind.axes(&self.grid).map(axis).collect(), holds)
     }
 
-    /// The counted share of the box that the axes of a kind of set span, over those with more than one
-    /// value. `None` of values of imaginary joints, which are not on a grid. The measures of shards add up.
+    /// The reachable share of the box that the axes of the set span, over the axes with more than one
+    /// value. `None` for values of imaginary joints, which are not on a grid. The measures of shards add up.
     pub fn measure(&self, kind: WorkspaceKind, count: &Count, units: FileUnits) -> Option<Measure> {
         if kind == WorkspaceKind::Imaginary {
             return None;

@@ -1,4 +1,4 @@
-//! What is wrong with a request: typed, with the option that it is about.
+//! Errors in requests: typed, each with the option that is wrong.
 
 use crate::kind::WorkspaceKind;
 use crate::names::{INVERSE_CONDITION, TIP};
@@ -53,7 +53,7 @@ impl RequestOption {
 /// How a front end spells an option. [`RequestOption::name`] is how this crate does.
 pub type Spelling = fn(RequestOption) -> &'static str;
 
-/// What a set has too many of for a recording.
+/// A quantity of which a set can have too many for a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SetPart {
     /// Slices, one for each value of the slowest axis.
@@ -62,7 +62,7 @@ pub enum SetPart {
     Values,
 }
 
-/// What is wrong with a request.
+/// A problem with a request.
 ///
 /// ```
 /// use opm_study::{RequestError, RequestOption, WorkspaceKind};
@@ -79,15 +79,15 @@ pub enum SetPart {
 #[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]
 #[non_exhaustive]
 pub enum RequestError {
-    /// A limit on the condition number that is below one, or not a number.
+    /// The limit on the condition number is below one, or not a number.
     MaxCondition(f64),
-    /// A characteristic length that cannot be computed with.
+    /// The characteristic length is out of range.
     Length(f64),
-    /// A characteristic length without a condition number that uses it.
+    /// A characteristic length is given, but no condition number uses it.
     UnusedLength,
-    /// A grid that is not one of the manipulator.
+    /// The grid does not fit the manipulator.
     Grid(GridError),
-    /// An axis with several values of a coordinate that the kind holds at one.
+    /// An axis has several values, but the kind of workspace holds its coordinate at one value.
     Held {
         /// The kind.
         kind: WorkspaceKind,
@@ -96,27 +96,27 @@ pub enum RequestError {
         /// Its number of values.
         count: u64,
     },
-    /// A limit on the condition number of a section alone.
+    /// The condition number is limited, but the kind is of one section alone.
     SectionCondition {
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// More than one working mode, where the points differ from mode to mode.
+    /// Several working modes are requested, but the points of the kind differ from mode to mode.
     SeveralModes {
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// A workspace of imaginary joints that the mechanism does not have.
+    /// A workspace of imaginary joints is requested, but the mechanism has no imaginary joints.
     NoImaginaryJoints {
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// A conditioning index of points that are not poses.
+    /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// A name that is not one of a value of the points.
+    /// A name is not that of a value of the points.
     UnknownColumn {
         /// The option that has the name.
         option: RequestOption,
@@ -124,63 +124,63 @@ pub enum RequestError {
         name: String,
         /// The kind.
         kind: WorkspaceKind,
-        /// The names that there are.
+        /// The known names.
         known: Vec<String>,
     },
-    /// A name that is not one of a task coordinate.
+    /// A name is not that of a task coordinate.
     UnknownCoordinate {
         /// The name.
         name: String,
-        /// The names that there are.
+        /// The known names.
         known: Vec<String>,
     },
-    /// A scalar with the name of a field that every cloud has.
+    /// A scalar has the name of a field that every cloud has.
     ReservedField {
         /// The name.
         name: String,
     },
-    /// A scalar that is given twice.
+    /// A scalar is given twice.
     RepeatedScalar {
         /// The name.
         name: String,
     },
-    /// Other than three different axes of a cloud.
+    /// The axes of a cloud are not three different ones.
     CloudAxes {
         /// The names that are given.
         given: Vec<String>,
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// Standard output for a recording, which has another name until it is whole.
+    /// A recording cannot go to standard output: until it is complete it has a temporary name.
     StandardOutput,
-    /// A file name whose ending is not that of a format for points.
+    /// The ending of the file name is not that of a format for points.
     FileEnding {
         /// The file.
         path: PathBuf,
     },
-    /// A file name that does not end in `.mcap`, of a set of a kind that is written as MCAP only.
+    /// The file name does not end in `.mcap`, but this kind of set is written as MCAP only.
     KindIsMcap {
         /// The file.
         path: PathBuf,
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// A file name that does not end in `.mcap`, of something else that is written as MCAP only.
+    /// The file name does not end in `.mcap`, but this content is written as MCAP only.
     ContentIsMcap {
         /// The file.
         path: PathBuf,
-        /// What is written.
+        /// The content.
         content: &'static str,
     },
-    /// More slices than a recording may have.
+    /// There are more slices than a recording may have.
     TooManySlices {
-        /// What there are too many of.
+        /// The quantity that is too large.
         part: SetPart,
-        /// How many there are.
+        /// Its value.
         given: u64,
         /// The slowest axis.
         axis: String,
-        /// How many there may be.
+        /// Its largest allowed value.
         most: u64,
     },
 }
@@ -205,7 +205,7 @@ impl RequestError {
         }
     }
 
-    /// What is wrong, without the option; other options in the text are spelled as the front end does.
+    /// The problem, without the option. Other options in the text are spelled as the front end spells them.
     pub fn problem(&self, spell: Spelling) -> String {
         let with = |kind: &WorkspaceKind| format!("{} {kind}", spell(RequestOption::Kind));
         match self {

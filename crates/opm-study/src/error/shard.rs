@@ -1,40 +1,40 @@
-//! What is wrong with the files of shards.
+//! Errors in the files of shards.
 
 use opm_workspace::Shard;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
 
-/// A file that is not the shard that it should be.
+/// A file that is not the expected shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {problem}")]
 pub struct ShardError {
     /// The file.
     pub file: String,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: ShardProblem,
 }
 
-/// What is wrong with the file of a shard.
+/// A problem with the file of a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShardProblem {
-    /// It is the recording of something else.
+    /// It is a recording of another kind.
     #[error("not a shard of a workspace")]
     NoShard,
-    /// It ends before it says what it is.
+    /// It ends before its description.
     #[error("cut short, before it says which shard it is: sweep that one again")]
     CutShortEarly,
-    /// It is not whole.
+    /// It is incomplete.
     #[error("cut short: sweep this shard again")]
     CutShort,
-    /// It lacks what a shard has.
+    /// It lacks data that every shard has.
     #[error("not a shard that this program knows")]
     UnknownShard,
-    /// It describes no workspace of its mechanism.
+    /// Its description does not fit its mechanism.
     #[error("not a run that this program knows")]
     UnknownRun,
-    /// Another program wrote it, and may count otherwise.
+    /// Another version of the program wrote it, and may have other counts.
     #[error("written by {by}, but this is {this}")]
     Program {
         /// The program.
@@ -42,7 +42,7 @@ pub enum ShardProblem {
         /// This program.
         this: &'static str,
     },
-    /// Poses that are out of order.
+    /// Its poses are out of order.
     #[error("pose {pose} comes after {end}")]
     Order {
         /// The pose.
@@ -50,7 +50,7 @@ pub enum ShardProblem {
         /// The end of the poses before it.
         end: u64,
     },
-    /// Nothing tells which mechanism it is of.
+    /// It does not contain its mechanism.
     #[error("no mechanism file is attached")]
     NoMechanism,
     /// It is another part.
@@ -64,29 +64,29 @@ pub enum ShardProblem {
     /// It is a part of another workspace.
     #[error("a shard of another run: {}", difference(key, found.as_deref(), expected.as_deref()))]
     OtherRun {
-        /// What the workspaces differ in.
+        /// The property in which the workspaces differ.
         key: String,
-        /// What the file says of it.
+        /// The value in the file.
         found: Option<String>,
-        /// What it should say.
+        /// The expected value.
         expected: Option<String>,
     },
     /// It is a part of a workspace of another mechanism.
     #[error("a shard of another run: its mechanism file differs")]
     OtherMechanism,
-    /// A range of an imaginary joint that is not one.
+    /// It has an invalid range of an imaginary joint.
     #[error("a range of {text:?}")]
     Range {
         /// The range.
         text: String,
     },
-    /// A conditioning index that is not that of its poses.
+    /// Its conditioning index does not belong to its poses.
     #[error("its conditioning index is not that of its poses")]
     Conditioning,
-    /// Poses that are not those that it says it has.
+    /// Its poses do not agree with its description.
     #[error("its poses are not those that it says")]
     Poses,
-    /// It is one of another number of parts than the first file.
+    /// Its total number of parts differs from that of the first file.
     #[error("shard {shard}, but {} is {first}", file.display())]
     OtherNumber {
         /// The part.
@@ -114,12 +114,12 @@ fn difference(key: &str, found: Option<&str>, expected: Option<&str>) -> String 
     }
 }
 
-/// Shards that there is no file of.
+/// Shards whose files are missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingShards {
     /// Their numbers, as ranges with both ends.
     pub ranges: Vec<[u64; 2]>,
-    /// How many shards there should be.
+    /// The total number of shards.
     pub of: u64,
 }
 
@@ -139,7 +139,7 @@ impl MissingShards {
         Self { ranges, of }
     }
 
-    /// How many are missing.
+    /// The number of missing shards.
     pub fn count(&self) -> u64 {
         self.ranges.iter().map(|[from, to]| to - from + 1).sum()
     }

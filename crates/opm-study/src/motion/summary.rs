@@ -1,51 +1,51 @@
-//! What a motion comes to: ranges of all joints, the worst condition number, violations.
+//! The summary of a motion: ranges of all joints, the worst condition number, violations.
 
 use opm_core::manipulator::Manipulator;
 use opm_core::trajectory::{Sample, Violation};
 
-/// Violations that are kept; their number is counted in any case.
+/// Number of violations that are kept. All are counted.
 pub const MOST_LISTED: usize = 10_000;
 
-/// Lowest and highest value.
+/// The lowest and the highest value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range([f64; 2]);
 
 impl Range {
-    /// Of no value.
+    /// The range of no value.
     const NONE: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
 
     fn add(&mut self, value: f64) {
         self.0 = [self.0[0].min(value), self.0[1].max(value)];
     }
 
-    /// Both ends; `None` where there was no value.
+    /// Both ends; `None` if there was no value.
     pub fn get(self) -> Option<[f64; 2]> {
         (self.0[0] <= self.0[1]).then_some(self.0)
     }
 }
 
-/// Of a coordinate: its position, its velocity and its acceleration.
+/// The ranges of a coordinate: position, velocity and acceleration.
 pub type CoordinateRanges = [Range; 3];
 
-/// What a motion comes to.
+/// The summary of a motion.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct MotionSummary {
-    /// Samples.
+    /// Number of samples.
     pub samples: u64,
-    /// Samples in reach.
+    /// Number of samples in reach.
     pub reached: u64,
-    /// Samples in reach and within all limits.
+    /// Number of samples in reach and within all limits.
     pub valid: u64,
     /// Ranges of every joint coordinate.
     pub joints: Vec<CoordinateRanges>,
     /// Ranges of every imaginary joint.
     pub imaginary: Vec<CoordinateRanges>,
-    /// The worst condition number, and when, seconds.
+    /// The worst condition number, and its time in seconds.
     pub condition: Option<[f64; 2]>,
-    /// What the mechanism cannot follow, in the order of time: [`MOST_LISTED`] at most.
+    /// Violations, where the mechanism cannot follow, in the order of time: [`MOST_LISTED`] at most.
     pub violations: Vec<Violation>,
-    /// How many violations there were.
+    /// The number of all violations.
     pub violation_count: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The poses that shards have stored in their files.
+//! The poses that are stored in the files of shards.
 
 use crate::error::StudyError;
 use opm_mcap::{ReadError, Recording, read};
@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread;
 
-/// Messages that are read ahead: bounds the memory that runs wait in.
+/// Number of messages that are read ahead. This bounds the memory of waiting runs.
 const AHEAD: usize = 4;
 
-/// The poses that all shards of a workspace have stored.
+/// The poses that are stored in the files of all shards of a workspace.
 pub struct ShardPoses<'a> {
     grid: &'a Grid,
     files: Vec<PathBuf>,
 }
 
 impl<'a> ShardPoses<'a> {
-    /// From the files of all shards, in their order.
+    /// The poses in the files of all shards, which are in order.
     pub(crate) fn new(grid: &'a Grid, files: Vec<PathBuf>) -> Self {
         Self { grid, files }
     }
@@ -40,7 +40,7 @@ impl<'a> ShardPoses<'a> {
                     let send = |runs| sender.send(runs).map_err(|_| StudyError::Closed);
                     let sent = runs_of(file, |runs| send(runs.into_iter().map(Ok).collect()));
                     if let Err(error) = sent {
-                        // Whoever took the runs may have gone.
+                        // The receiver of the runs may have stopped.
                         let _ = send(vec![Err(error)]);
                         return;
                     }
@@ -56,7 +56,7 @@ pub(crate) fn runs_of(
     file: &Path,
     mut visit: impl FnMut(Vec<Run>) -> Result<(), StudyError>,
 ) -> Result<Recording, StudyError> {
-    /// Why reading ended.
+    /// The error that ended the reading.
     enum Stop {
         Unread(ReadError),
         Study(StudyError),

@@ -1,4 +1,4 @@
-//! What a recording says of the workspace it is of, and the workspace read back from that.
+//! The description of a workspace in its recording, and the workspace that is read back from it.
 
 use super::{Attachment, PROGRAM, record};
 use crate::kind::WorkspaceKind;
@@ -9,13 +9,13 @@ use opm_mcap::Metadata;
 use opm_workspace::{Axis, ConditionLimit, ConditioningIndex, Count, Grid, Modes};
 use std::sync::Arc;
 
-/// The key of the characteristic length of a conditioning index, and the beginning of those of its parts.
+/// The key of the characteristic length of a conditioning index, and the prefix of the keys of its parts.
 const CONDITIONING: &str = "conditioning";
 
 /// The parts of a conditioning index; `sum` counts units of 2⁻⁶⁰.
 const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
 
-/// What is known of a workspace before it is swept.
+/// The properties of a workspace that are known before it is swept.
 pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
     let mut run = record([
         ("program", PROGRAM.to_owned()),
@@ -35,7 +35,7 @@ pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
     run
 }
 
-/// As [`describe`], with all that the shards of the workspace have in common.
+/// As [`describe`], with everything that the shards of the workspace have in common.
 pub fn describe_sharded(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
     let mut run = describe(workspace, mechanism);
     if let Some(length) = workspace.conditioning_length() {
@@ -44,7 +44,7 @@ pub fn describe_sharded(workspace: &Workspace, mechanism: Attachment<'_>) -> Met
     run
 }
 
-/// The workspace of which this is the description; `None` where it is not one of this manipulator.
+/// The workspace with this description; `None` if it does not fit this manipulator.
 pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Workspace> {
     let kind: WorkspaceKind = run.get("kind")?.parse().ok()?;
     let sections = kind.sections();
@@ -86,7 +86,7 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
     })
 }
 
-/// What was found of a workspace.
+/// The results for a workspace.
 pub fn result(workspace: &Workspace, count: &Count) -> Metadata {
     let mut result = record([
         ("reachable", count.reachable.to_string()),
@@ -100,7 +100,7 @@ pub fn result(workspace: &Workspace, count: &Count) -> Metadata {
     result
 }
 
-/// The ranges of the imaginary joints, to the last digit.
+/// The ranges of the imaginary joints, with all digits.
 pub fn ranges(workspace: &Workspace, count: &Count) -> Metadata {
     let ranges = workspace.manipulator.imaginary().iter().zip(&count.imaginary);
     ranges
@@ -116,7 +116,7 @@ pub fn range_key(joint: &str) -> String {
     format!("range.{joint}")
 }
 
-/// A conditioning index to the last digit.
+/// A conditioning index, with all digits.
 pub fn conditioning(index: &ConditioningIndex) -> Metadata {
     let ConditioningIndex { length: _, poses, min, max, sum } = index;
     let parts = [poses.to_string(), min.to_string(), max.to_string(), sum.to_string()];
@@ -124,7 +124,7 @@ pub fn conditioning(index: &ConditioningIndex) -> Metadata {
     keys.into_iter().zip(parts).collect()
 }
 
-/// The conditioning index of which these are the parts.
+/// The conditioning index that has these parts.
 pub fn conditioning_of(result: &Metadata, length: f64) -> Option<ConditioningIndex> {
     let [poses, min, max, sum] =
         CONDITIONING_PARTS.map(|key| result.get(&format!("{CONDITIONING}.{key}")));

@@ -1,4 +1,4 @@
-//! The recording of a round of a linkage.
+//! The recording of a closed cycle of a linkage.
 
 use super::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use super::{Attachment, record};
@@ -11,13 +11,13 @@ use opm_mcap::{RecordError, Trajectory, TrajectoryRecorder};
 use serde_json::json;
 use std::path::Path;
 
-/// How long a recorded round lasts, in nanoseconds.
+/// Duration of a recorded cycle, in nanoseconds.
 const ROUND: u64 = 10_000_000_000;
 
-/// Records a round of a linkage, ten seconds long.
+/// Records a closed cycle of a linkage, ten seconds long.
 ///
 /// # Errors
-/// A file that cannot be written, or a position at which the loop does not close.
+/// The file cannot be written, or the loop does not close at a position.
 pub fn record_linkage(
     round: &LinkageRound<'_>,
     mechanism_file: Attachment<'_>,

@@ -12,13 +12,13 @@ use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A recording of a motion under way.
+/// A recording of a motion that is being written.
 pub struct MotionRecorder<'a> {
     request: MotionRequest<'a>,
     recorder: TrajectoryRecorder<PartialFile>,
     scene: Scene,
     place: String,
-    /// Of the last message, nanoseconds.
+    /// The time of the last message, nanoseconds.
     last: u64,
     /// Whether the upper and the lower section have a parallel singularity measure.
     parallel: [bool; 2],
@@ -26,11 +26,11 @@ pub struct MotionRecorder<'a> {
 }
 
 impl<'a> MotionRecorder<'a> {
-    /// Opens the file before the work starts, so that a wrong path costs no time. `files` are those of the
-    /// mechanism and of the motion.
+    /// Opens the file before the work starts, so that a wrong path costs no time. `files` are the files of
+    /// the mechanism and of the motion.
     ///
     /// # Errors
-    /// A file that is not MCAP, or cannot be written.
+    /// The file name is not that of an MCAP file, or the file cannot be written.
     pub fn create(
         path: &Path,
         request: MotionRequest<'a>,
@@ -50,7 +50,7 @@ impl<'a> MotionRecorder<'a> {
     /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::follow`].
     ///
     /// # Errors
-    /// A pose that cannot be computed with, or a file that cannot be written; that it was told to stop.
+    /// A pose is not finite, the file cannot be written, or the work was cancelled.
     pub fn follow(
         mut self,
         trajectory: Trajectory<'_>,
@@ -64,7 +64,7 @@ impl<'a> MotionRecorder<'a> {
         Ok(summary)
     }
 
-    /// Records a sample, and what changed up to it.
+    /// Records a sample, and the transitions up to it.
     fn sample(
         &mut self,
         number: u64,
@@ -73,7 +73,7 @@ impl<'a> MotionRecorder<'a> {
     ) -> Result<(), StudyError> {
         let MotionRequest { motion, rate, .. } = self.request;
         let clock = |time: f64| ((time - motion.start) * 1e9).round().max(0.0) as u64;
-        // A sample's own stamp, free of the rounding of its time.
+        // The stamp is computed from the sample's number, so that it is free of the rounding of the time.
         let now = clock(motion.start + number as f64 / rate);
         let now = now.min(clock(motion.end())).max(self.last);
         self.record(now, sample, changes, clock)
@@ -93,7 +93,7 @@ impl<'a> MotionRecorder<'a> {
         for change in changes {
             let line = match change {
                 Change::Begins(violation) => ViolationReport::new(violation, manipulator).what(),
-                // A singularity has been told when it began.
+                // A singularity is recorded when it begins.
                 Change::Ends(violation) if violation.is_singularity() => continue,
                 Change::Ends(violation) => {
                     format!("no longer: {}", ViolationReport::new(violation, manipulator).si())
@@ -122,7 +122,7 @@ impl<'a> MotionRecorder<'a> {
         self.measures.clear();
         self.measures.push(sample.condition);
         for (parallel, measures) in self.parallel.into_iter().zip([sample.upper, sample.lower]) {
-            // Out of reach there is nothing to measure: a gap for whoever plots it.
+            // Out of reach the measures are not defined; plots show a gap.
             let told = |measure: f64| if sample.reached { measure } else { f64::NAN };
             self.measures.push(told(measures.serial));
             if parallel {
@@ -168,7 +168,7 @@ impl<'a> MotionRecorder<'a> {
     }
 }
 
-/// What the recording is of.
+/// The description of the recorded motion.
 fn recorded<'a>(
     request: &MotionRequest<'_>,
     files: [Attachment<'a>; 2],
@@ -222,7 +222,7 @@ pub fn violation_fields(told: &ViolationReport<'_>) -> Vec<(&'static str, Value)
     fields
 }
 
-/// The names of the measures in `/condition`, in the order in which a [`MotionRecorder`] gathers them.
+/// The names of the measures in `/condition`, in the order in which a [`MotionRecorder`] collects them.
 fn measures(parallel: [bool; 2]) -> Vec<String> {
     let mut names = vec!["condition".to_owned()];
     for (parallel, section) in parallel.into_iter().zip(["upper", "lower"]) {
@@ -234,7 +234,7 @@ fn measures(parallel: [bool; 2]) -> Vec<String> {
     names
 }
 
-/// Which of the sections, upper and lower, have as many inputs as motions, or more.
+/// Whether the upper and the lower section have at least as many inputs as freedoms.
 fn parallel(manipulator: &Manipulator) -> [bool; 2] {
     let mut measured = manipulator.singularities();
     manipulator.measure_singularities(&manipulator.jacobians(), &mut measured);

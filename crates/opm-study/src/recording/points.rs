@@ -1,4 +1,4 @@
-//! The points of a cloud of poses: rows of values, or packed as a recording stores them.
+//! The points of a cloud of poses: rows of values, or packed in the form of recordings.
 
 use crate::columns::{Column, NamedColumn, PointColumns, is_field};
 use crate::error::StudyError;
@@ -9,7 +9,7 @@ use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
 use opm_workspace::{ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
 
-/// What the points of a recording of poses consist of.
+/// The values of the points in a recording of poses.
 #[derive(Clone)]
 pub struct Cloud<'a> {
     workspace: &'a Workspace,
@@ -26,8 +26,8 @@ impl<'a> Cloud<'a> {
         &self.workspace.manipulator
     }
 
-    /// The same with every task coordinate as a value of a point, where nobody chose the values: rows of
-    /// a table know nothing of slices. A mesh tool's x, y and z are the axes.
+    /// The same with every task coordinate as a value of a point, if no values were requested: rows of
+    /// a table have no slices. For mesh tools, x, y and z are the axes.
     pub fn with_every_coordinate(mut self, format: TableFormat) -> Self {
         if self.shown.scalars_chosen {
             return self;
@@ -47,7 +47,7 @@ impl<'a> Cloud<'a> {
         self
     }
 
-    /// How often the grid is swept to record it.
+    /// The number of sweeps of the grid that recording it takes.
     pub fn passes(&self) -> u64 {
         match self.shown.color.column {
             Column::Actuated(number) if self.limits(number).is_none() => 3,
@@ -66,13 +66,13 @@ impl<'a> Cloud<'a> {
         manipulator.coordinates()[manipulator.actuated()[actuated]].limits
     }
 
-    /// What a recorder has to know of the points.
+    /// The layout of the points, for a recorder.
     pub fn layout(&self, color_range: [f64; 2]) -> CloudLayout {
         let of_base = matches!(self.shown.axes[0].column, Column::Tip(_));
         layout(&self.shown, color_range, if of_base { "base" } else { "task" })
     }
 
-    /// Where a pose is in the cloud.
+    /// The position of a pose in the cloud.
     pub fn place(&self, pose: &[f64]) -> [f64; 3] {
         let tip = || {
             let manipulator = self.manipulator();
@@ -94,8 +94,8 @@ impl<'a> Cloud<'a> {
         self.shown.columns()
     }
 
-    /// The values at the ends of the colours: of a task coordinate the grid's, of a joint its
-    /// limits or what there is; of condition numbers what there is.
+    /// The values at the ends of the colour scale. A task coordinate has those of the grid; a joint has its
+    /// limits or the range that occurs; condition numbers have the range that occurs.
     pub fn color_range(
         &self,
         poses: &PoseSource<'_>,
@@ -131,7 +131,7 @@ impl<'a> Cloud<'a> {
     }
 }
 
-/// What a recorder has to know of points with these values.
+/// The layout of points with these values, for a recorder.
 pub fn layout(shown: &PointColumns, color_range: [f64; 2], frame: &str) -> CloudLayout {
     CloudLayout {
         axes: shown.axes.each_ref().map(|named| named.name.clone()),
@@ -149,15 +149,15 @@ pub struct Portion {
     pub packed: Vec<u8>,
 }
 
-/// Packs points, into buffers that are used again: those of the system are cleared first, page by page,
-/// which takes a third as long as everything else.
+/// Packs points into buffers that are reused. New buffers from the system would first be cleared page by
+/// page, which takes a third as long as everything else.
 pub struct Packing {
     packer: Packer,
     buffers: Mutex<Vec<Vec<u8>>>,
 }
 
 impl Packing {
-    /// For the points of this layout.
+    /// A packer for the points of this layout.
     pub fn new(layout: &CloudLayout) -> Result<Self, RecordError> {
         Ok(Self { packer: Packer::new(layout)?, buffers: Mutex::default() })
     }
@@ -168,7 +168,7 @@ impl Packing {
         buffers.pop().unwrap_or_default()
     }
 
-    /// Takes back the buffer of points that are written.
+    /// Takes back the buffer of points that have been written.
     pub fn reuse(&self, portion: Portion) {
         let mut buffer = portion.packed;
         buffer.clear();
@@ -176,7 +176,7 @@ impl Packing {
     }
 }
 
-/// Points of a cloud in the making, in portions of one slice.
+/// Points of a cloud that is being built, in portions of one slice.
 pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
@@ -187,17 +187,17 @@ pub struct Points<'a> {
     pose: Vec<f64>,
     row: Vec<f64>,
     portions: Vec<Portion>,
-    /// A pose that the sweep found and inverse kinematics did not, or a value that is no number.
+    /// A pose that the sweep found and inverse kinematics did not, or a value that is not a number.
     wrong: Option<StudyError>,
 }
 
-/// Buffers for what inverse kinematics finds.
+/// Buffers for the results of inverse kinematics.
 enum Joints<'a> {
-    /// No column asks for joints.
+    /// No column needs joint values.
     Unused,
     One(ActuatedJoints),
     Any(Box<(AllModes, Solution)>),
-    /// With a limit on the condition number, which decides on the mode, or with a column that asks for
+    /// There is a limit on the condition number, which selects the mode, or a column that needs
     /// that number.
     Limited(Box<(Conditioned<'a>, Solution)>),
 }
@@ -233,7 +233,7 @@ impl<'a> Points<'a> {
         self.line(hits.slice, hits.first, hits.others);
     }
 
-    /// The points of a slice that have these first coordinates, and all others in common.
+    /// The points of a slice that have these first coordinates and share all others.
     pub fn line(&mut self, slice: u64, first: &[f64], others: &[f64]) {
         let mut pose = std::mem::take(&mut self.pose);
         pose.clear();
@@ -252,7 +252,7 @@ impl<'a> Points<'a> {
         self.pose = pose;
     }
 
-    /// Points that have nothing but coordinates.
+    /// Points whose values are all coordinates.
     fn plain_line(&mut self, packer: &Packer, slice: u64, first: &[f64], pose: &[f64]) {
         let value = |column: &Column| match *column {
             Column::Coordinate(number) => pose[number],
@@ -282,7 +282,7 @@ impl<'a> Points<'a> {
         portion.values.clear();
     }
 
-    /// Makes the last portion one of this slice.
+    /// Makes sure that the last portion belongs to this slice.
     fn open(&mut self, slice: u64) {
         if self.portions.last().is_none_or(|last| last.slice != slice) {
             let packed = self.packing.map_or_else(Vec::new, Packing::buffer);
@@ -350,7 +350,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The points so far; the next ones start anew.
+    /// Takes the points so far; the next ones start a new buffer.
     pub fn take(&mut self) -> Result<Vec<Portion>, StudyError> {
         self.pack();
         self.wrong.take().map_or_else(|| Ok(std::mem::take(&mut self.portions)), Err)

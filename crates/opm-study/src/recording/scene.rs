@@ -1,4 +1,4 @@
-//! The bodies of a mechanism as a recording wants them: plain numbers, and colours.
+//! The bodies of a mechanism in the form of recordings: plain numbers, and colours.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
@@ -8,7 +8,7 @@ use opm_core::skeleton::{Body, Configuration, ImaginaryJoints, Material, Seat, S
 use opm_mcap::scene::{self, Shape};
 use opm_mcap::trajectory::{Coordinate, Frame, Role};
 
-/// The bodies, and room for where they are.
+/// The bodies, and a buffer for their poses.
 pub struct Scene {
     skeleton: Skeleton,
     placed: Vec<Isometry3<f64>>,
@@ -26,7 +26,7 @@ impl Scene {
         Self::new(manipulator.mechanism(), ImaginaryJoints { decomposition, imaginary })
     }
 
-    /// What the bodies look like.
+    /// The shapes and colours of the bodies.
     pub fn bodies(&self) -> Vec<scene::Body> {
         let body = |body: &Body| scene::Body {
             frame: body.name.clone(),
@@ -41,7 +41,7 @@ impl Scene {
         self.skeleton.bodies().iter().map(body).collect()
     }
 
-    /// Where the bodies are, but for the base.
+    /// The poses of all bodies except the base.
     pub fn frames(&mut self, posture: &Configuration<'_>) -> &[Frame] {
         self.skeleton.place(posture, &mut self.placed);
         self.frames.clear();
@@ -77,8 +77,8 @@ pub fn imaginary_coordinates(joints: &[ImaginaryJoint]) -> Vec<Coordinate> {
     joints.iter().map(coordinate).collect()
 }
 
-/// A joint's name; what it lets its bodies do; its centre and its axis in this body's frame, in
-/// metres, with all their digits.
+/// A joint: its name, its type, its centre and its axis in this body's frame, in
+/// metres, with all digits.
 fn note(seat: &Seat) -> (String, String) {
     let Seat { joint, motion, centre: c, axis: a } = seat;
     let value = format!("{} {} {} {} {} {} {}", motion.name(), c.x, c.y, c.z, a.x, a.y, a.z);
@@ -99,7 +99,7 @@ fn shape(solid: &Solid) -> Shape {
     }
 }
 
-/// Colours that people with colour-blindness tell apart (Okabe and Ito's), and greys.
+/// Colours that are distinct for people with colour blindness (by Okabe and Ito), and greys.
 fn color(material: Material) -> [f64; 4] {
     match material {
         Material::Base => [0.30, 0.30, 0.33, 1.0],

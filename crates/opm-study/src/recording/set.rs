@@ -1,4 +1,4 @@
-//! The points of a set in memory as a recording has them, and boundaries as lines in space.
+//! The points of a set in memory in the form of recordings, and boundaries as lines in space.
 
 use super::points::layout;
 use crate::analysis::Analysis;
@@ -18,14 +18,14 @@ pub struct SetCloud<'a> {
     analysis: &'a Analysis,
     set: &'a GridSet,
     shown: PointColumns,
-    /// Points of a slice, in the set or not.
+    /// Number of points of a slice, in the set or not.
     slice: u64,
-    /// How many slices there are.
+    /// Number of slices.
     pub slices: u64,
 }
 
 impl<'a> SetCloud<'a> {
-    /// The points of the set that an analysis has; what was not asked for suits the set.
+    /// The points of the set of an analysis. Values that were not requested suit the set.
     pub fn new(
         workspace: &'a Workspace,
         analysis: &'a Analysis,
@@ -50,7 +50,7 @@ impl<'a> SetCloud<'a> {
         Ok(Self { workspace, analysis, set, shown, slice, slices })
     }
 
-    /// What a recorder has to know of the points.
+    /// The layout of the points, for a recorder.
     pub fn layout(&self) -> CloudLayout {
         let color_range = match self.shown.color.column {
             Column::Coordinate(i) => {
@@ -72,7 +72,7 @@ impl<'a> SetCloud<'a> {
         names.join(",")
     }
 
-    /// Gives the slice and the values of every point, in the order of [`CloudLayout::columns`].
+    /// Calls `visit` with the slice and the values of every point, in the order of [`CloudLayout::columns`].
     pub fn points(
         &self,
         mut visit: impl FnMut(u64, &[f64]) -> Result<(), StudyError>,
@@ -116,7 +116,7 @@ impl<'a> SetCloud<'a> {
         manipulator.imaginary().iter().map(|joint| joint.leg).map(value).collect()
     }
 
-    /// The boundary in the cloud's axes.
+    /// The boundary in the axes of the cloud.
     pub fn boundary(&self) -> Option<BoundaryLines> {
         let coordinates: Option<Vec<_>> = (self.shown.axes.iter())
             .map(|named| match named.column {
@@ -137,8 +137,8 @@ impl<'a> SetCloud<'a> {
     }
 }
 
-/// The boundary of a set as lines in space: `place` says where a point is, and `slice` with which slice
-/// of a recording that of a value of the set's third axis is shown.
+/// The boundary of a set as lines in space. `place` gives the position of a point. `slice` gives the slice of
+/// the recording in which a value of the set's third axis is shown.
 fn boundary_lines(
     set: &GridSet,
     outlines: &[Outline],
@@ -168,7 +168,7 @@ fn boundary_lines(
     lines
 }
 
-/// The boundary of poses: the recording has `together` of the grid's slices in one.
+/// The boundary of poses. A slice of the recording consists of `together` slices of the grid.
 pub fn pose_boundary(
     grid: &Grid,
     analysis: &Analysis,
@@ -177,7 +177,7 @@ pub fn pose_boundary(
 ) -> Option<BoundaryLines> {
     let (set, outlines) = (analysis.set.as_ref()?, analysis.boundary()?);
     let third = set.varying().get(2).copied().filter(|&axis| axis >= grid.lower());
-    // The third axis is the slowest, so that what is shown does not go back.
+    // The third axis is the slowest, so that the slices come in order of time.
     let before = |axis: usize| grid.axes()[grid.lower()..axis].iter().map(|a| a.count).product();
     let stride: u64 = third.map_or(0, before);
     Some(boundary_lines(set, outlines, place, |number| number * stride / together))

@@ -10,34 +10,34 @@ use opm_mcap::{Metadata, PartialFile, RecordError, Recording, ShardRecorder};
 use opm_workspace::{ConditioningIndex, Count, Progress, Shard, Sweep};
 use std::path::{Path, PathBuf};
 
-/// What the sweep of a shard found, or those of all shards together.
+/// The result of the sweep of a shard, or of all shards together.
 #[derive(Clone, Debug)]
 pub struct ShardCount {
-    /// How many poses are in reach.
+    /// The number of poses in reach.
     pub count: Count,
-    /// How they are conditioned, where that is asked for.
+    /// Their conditioning, if it was requested.
     pub conditioning: Option<ConditioningIndex>,
 }
 
-/// A file that is open for a shard.
+/// An open file for a shard.
 #[derive(Debug)]
 pub struct ShardRecording {
     path: PathBuf,
     file: PartialFile,
 }
 
-/// Which part of which workspace a shard is, and what was found of it.
+/// The content of a shard: the workspace, the part of it, and the result.
 #[derive(Clone, Copy)]
 pub struct ShardFindings<'a> {
     /// The file of the mechanism.
     pub mechanism: Attachment<'a>,
-    /// What the mechanism was called when the shard was asked for: a path, or the name of an example.
+    /// The name of the mechanism in the request: a path, or the name of an example.
     pub mechanism_label: &'a str,
     /// The whole workspace.
     pub workspace: &'a Workspace,
     /// The part.
     pub shard: Shard,
-    /// What was found of the part.
+    /// The result for the part.
     pub found: &'a ShardCount,
 }
 
@@ -45,7 +45,7 @@ impl ShardRecording {
     /// Opens a file before the work starts.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub fn create(path: &Path) -> Result<Self, StudyError> {
         Ok(Self { path: path.to_owned(), file: create(path)? })
     }
@@ -53,7 +53,7 @@ impl ShardRecording {
     /// Sweeps the shard again, and stores its poses.
     ///
     /// # Errors
-    /// A file that cannot be written; that it was cancelled: then [`partial`] names the unfinished file,
+    /// The file cannot be written, or the work was cancelled. Then [`partial`] names the unfinished file,
     /// which is not a shard.
     pub fn write(
         self,
@@ -84,14 +84,14 @@ impl ShardRecording {
     }
 }
 
-/// Writes the numbers of the poses; runs that go on from row to row are written as one.
+/// Writes the numbers of the poses. Runs that continue from row to row are written as one.
 fn write_runs(
     recorder: &mut ShardRecorder,
     sweep: &Sweep<'_>,
     progress: &Progress,
     failed: impl Fn(RecordError) -> StudyError + Sync,
 ) -> Result<(), StudyError> {
-    // The last run so far, to which the next one may belong.
+    // The last run so far; the next one may continue it.
     let mut open = [0; 2];
     sweep.points(
         progress,
@@ -114,21 +114,21 @@ fn write_runs(
     if start < end { recorder.push(start, end).map_err(failed) } else { Ok(()) }
 }
 
-/// The file of a shard, all of which was read.
+/// The file of a shard, completely read.
 pub struct StoredShard {
     path: PathBuf,
     shard: Shard,
     recording: Recording,
-    /// The first pose and one more than the last.
+    /// The range of the poses: the first one, and one past the last.
     poses: Option<[u64; 2]>,
     reachable: u64,
 }
 
 impl StoredShard {
-    /// Reads a file, and checks that it is the file of a shard, and whole.
+    /// Reads a file, and checks that it is the file of a shard and complete.
     ///
     /// # Errors
-    /// A file that cannot be read, or is something else.
+    /// The file cannot be read, or is not the file of a shard.
     pub fn open(path: &Path) -> Result<Self, StudyError> {
         let wrong = |problem| -> StudyError {
             ShardError { file: path.display().to_string(), problem }.into()
@@ -167,7 +167,7 @@ impl StoredShard {
         &self.path
     }
 
-    /// Which part of the workspace it is.
+    /// The part of the workspace that it is.
     pub fn shard(&self) -> Shard {
         self.shard
     }
@@ -175,7 +175,7 @@ impl StoredShard {
     /// The mechanism file that is attached.
     ///
     /// # Errors
-    /// There is none.
+    /// No mechanism file is attached.
     pub fn mechanism(&self) -> Result<Attachment<'_>, ShardError> {
         let attached = self.recording.attachments.first();
         let attached = attached.and_then(|attached| {
@@ -186,20 +186,20 @@ impl StoredShard {
         attached.ok_or_else(|| self.wrong(ShardProblem::NoMechanism))
     }
 
-    /// What the mechanism was called when the shard was asked for.
+    /// The name of the mechanism in the request.
     pub fn mechanism_label(&self) -> Option<&str> {
         self.record("shard").get("file").map(String::as_str)
     }
 
-    /// What it says of the whole workspace.
+    /// Its description of the whole workspace.
     pub(super) fn run(&self) -> &Metadata {
         self.record("run")
     }
 
-    /// What it found, if it is this shard of this workspace.
+    /// Its result, if it is this shard of this workspace.
     ///
     /// # Errors
-    /// It is another shard, or is not whole.
+    /// It is another shard, or incomplete.
     pub fn count_of(
         &self,
         workspace: &Workspace,
@@ -231,7 +231,7 @@ impl StoredShard {
         Ok(())
     }
 
-    /// What it found, once it is known to be of this workspace.
+    /// Its result, once it is known to belong to this workspace.
     pub(super) fn count(&self, workspace: &Workspace) -> Result<ShardCount, ShardError> {
         let length = workspace.conditioning_length();
         let conditioning = length.map(|length| self.conditioning(length)).transpose()?;

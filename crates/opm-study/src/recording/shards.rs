@@ -1,4 +1,4 @@
-//! All shards of a workspace: checked, and joined to what one sweep would have found.
+//! All shards of a workspace: checked, and joined to the result of a single sweep.
 
 use super::describe::described;
 use super::shard::{ShardCount, StoredShard};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The shards of one workspace.
 pub struct Shards {
-    /// In the order of their numbers; one or more.
+    /// The files, in the order of their numbers; one or more.
     parts: Vec<StoredShard>,
 }
 
@@ -22,13 +22,13 @@ impl Shards {
     /// The shards of these files, in any order.
     ///
     /// # Errors
-    /// There are none; or another program wrote them.
+    /// There are none, or another program wrote them.
     pub fn new(mut parts: Vec<StoredShard>) -> Result<Self, StudyError> {
         parts.sort_by_key(StoredShard::shard);
         let first = parts.first().ok_or(StudyError::NoShards)?;
         match first.run().get("program") {
             Some(program) if program == PROGRAM => Ok(Self { parts }),
-            // Another program may count or record otherwise.
+            // Another program may count or record differently.
             other => {
                 let by = other.map_or("nobody", |program| program).to_owned();
                 Err(first.wrong(ShardProblem::Program { by, this: PROGRAM }).into())
@@ -46,10 +46,10 @@ impl Shards {
         self.parts.iter().map(StoredShard::path)
     }
 
-    /// The mechanism file that is attached to the first shard, and what the mechanism was called.
+    /// The mechanism file that is attached to the first shard, and the name of the mechanism.
     ///
     /// # Errors
-    /// There is none.
+    /// No mechanism file is attached.
     pub fn mechanism(&self) -> Result<(Attachment<'_>, &str), ShardError> {
         let attached = self.first().mechanism()?;
         Ok((attached, self.first().mechanism_label().unwrap_or(attached.name)))
@@ -58,7 +58,7 @@ impl Shards {
     /// The workspace that they are parts of.
     ///
     /// # Errors
-    /// They are not of this manipulator.
+    /// They belong to another manipulator.
     pub fn workspace(
         &self,
         manipulator: impl Into<Arc<Manipulator>>,
@@ -67,10 +67,10 @@ impl Shards {
         workspace.ok_or_else(|| self.first().wrong(ShardProblem::UnknownRun))
     }
 
-    /// What all shards found, if they are the parts of one workspace, each of them once.
+    /// The joined result of all shards, if they are the parts of one workspace, each of them once.
     ///
     /// # Errors
-    /// They are not; or some are missing.
+    /// They are not, or some are missing.
     pub fn join(&self, workspace: &Workspace) -> Result<ShardCount, StudyError> {
         let first = self.first();
         let mechanism = first.mechanism()?.text;

@@ -19,16 +19,16 @@ use opm_workspace::{Grid, Poses, Progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// More slices than this play for longer than a quarter of an hour.
+/// Largest number of slices. More would play for longer than a quarter of an hour.
 const PLAYABLE: u64 = 10_000;
 
-/// Points between two looks at whether the recording was told to stop.
+/// Number of points between two checks for cancellation.
 const PORTION: u64 = 1 << 12;
 
-/// A file that is open for the recording of a workspace.
+/// An open file for the recording of a workspace.
 ///
-/// It is opened before the work starts, so that a wrong path costs no time, and gets its name when it is
-/// whole.
+/// It is opened before the work starts, so that a wrong path costs no time. It gets its name when it is
+/// complete.
 #[derive(Debug)]
 pub struct WorkspaceRecording {
     path: PathBuf,
@@ -37,16 +37,16 @@ pub struct WorkspaceRecording {
     points: PointChoice,
 }
 
-/// What is known of a workspace: what a recording is made of.
+/// The content of a recording: everything that is known about a workspace.
 #[derive(Clone, Copy)]
 pub struct Findings<'a> {
     /// The file of the mechanism.
     pub mechanism: Attachment<'a>,
     /// The workspace.
     pub workspace: &'a Workspace,
-    /// Its poses.
+    /// The poses of the workspace.
     pub poses: &'a PoseSource<'a>,
-    /// What was found of it.
+    /// The results.
     pub analysis: &'a Analysis,
 }
 
@@ -58,7 +58,7 @@ enum Format {
 }
 
 impl Format {
-    /// The format that the ending of a file name asks for.
+    /// The format that the ending of a file name stands for.
     fn of(path: &Path) -> Result<Self, RequestError> {
         refuse_standard_output(path)?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -71,8 +71,8 @@ impl Format {
     }
 }
 
-/// Refuses a name of no known ending, or that is not for sets of a kind; and for MCAP a grid whose slowest
-/// axis alone has more values than a recording may have slices.
+/// Refuses a name with an unknown ending, or one that is not allowed for sets of this kind. For MCAP, also
+/// refuses a grid whose slowest axis has more values than a recording may have slices.
 fn check(path: &Path, kind: WorkspaceKind, grid: Option<&Grid>) -> Result<(), RequestError> {
     if !kind.is_of_poses() {
         return check_mcap(path, || RequestError::KindIsMcap { path: path.to_owned(), kind });
@@ -89,16 +89,16 @@ fn check(path: &Path, kind: WorkspaceKind, grid: Option<&Grid>) -> Result<(), Re
 }
 
 impl WorkspaceRecording {
-    /// Opens a file for the workspace that is asked for; the ending of its name says in which format.
+    /// Opens a file for the requested workspace. The ending of the name selects the format.
     ///
     /// # Errors
-    /// A name or a grid that a recording cannot have; a file that cannot be written.
+    /// The name or the grid is not allowed for a recording, or the file cannot be written.
     pub fn create(path: &Path, request: &CheckedRequest) -> Result<Self, StudyError> {
         check(path, request.kind(), request.grid())?;
         Self::open(path, request.points().clone())
     }
 
-    /// Opens a file for a workspace, of whose points these values are stored.
+    /// Opens a file for a workspace. These values are stored with every point.
     ///
     /// # Errors
     /// As [`WorkspaceRecording::create`].
@@ -116,7 +116,7 @@ impl WorkspaceRecording {
         Ok(Self { path: path.to_owned(), file: create(path)?, format, points })
     }
 
-    /// How many poses are decided anew to write it: every pass goes through the whole grid.
+    /// The number of poses that are tested again to write it. Every pass visits the whole grid.
     pub fn work(&self, workspace: &Workspace) -> u64 {
         if !workspace.kind.is_of_poses() {
             return 0;
@@ -127,10 +127,10 @@ impl WorkspaceRecording {
         passes * workspace.grid.poses()
     }
 
-    /// Writes the recording of a workspace, and gives its path.
+    /// Writes the recording of a workspace, and returns its path.
     ///
     /// # Errors
-    /// A file that cannot be written, or poses that cannot be had; that it was cancelled.
+    /// The file cannot be written, the poses cannot be read, or the work was cancelled.
     pub fn write(
         self,
         findings: &Findings<'_>,
@@ -157,7 +157,7 @@ impl WorkspaceRecording {
         match format {
             Format::Mcap => job.mcap(file)?,
             Format::Table(format) => job.table(file, format).inspect_err(|_| {
-                // Nothing reads part of a table.
+                // An incomplete table is of no use.
                 let _ = fs::remove_file(partial(&path));
             })?,
         }
@@ -210,7 +210,7 @@ fn record_set(
     recorder.finish(&result(workspace, &analysis.count)).map_err(failed)
 }
 
-/// A recording of poses in the making.
+/// A recording of poses that is being written.
 struct PoseRecording<'a> {
     findings: &'a Findings<'a>,
     cloud: &'a Cloud<'a>,
@@ -265,7 +265,7 @@ impl PoseRecording<'_> {
         table.finish().map_err(failed)
     }
 
-    /// What is to be said of a recording that was cancelled: where it is.
+    /// The error for a recording that was cancelled. It names the unfinished file.
     fn interrupted(&self, error: StudyError) -> StudyError {
         match error {
             StudyError::Cancelled => StudyError::CancelledRecording { partial: partial(self.path) },
@@ -296,7 +296,7 @@ impl PoseRecording<'_> {
         }
         let interrupted = |error| self.interrupted(error);
         let every = recorder.overview_every();
-        // Of all points, how many there were, and which is the overview's next.
+        // The number of points so far, and the number of the next point of the overview.
         let (mut seen, mut next) = (0, 0);
         let mut overview = Points::new(cloud, &columns, Some(&packing));
         let first = &grid.axes()[0];
@@ -310,7 +310,7 @@ impl PoseRecording<'_> {
                     for poses in runs {
                         let end = seen + (poses.to - poses.from);
                         if next < end {
-                            // A run is in one row.
+                            // All poses of a run are in one row.
                             grid.pose_into(poses.from, &mut pose);
                             let place = poses.from % first.count;
                             chosen.clear();
@@ -349,8 +349,8 @@ impl PoseRecording<'_> {
     }
 }
 
-/// How many of the grid's slices make one of the recording's: whole axes, the faster ones first, until
-/// a person can play what is left.
+/// The number of the grid's slices that make up one slice of the recording. Whole axes are joined, the faster
+/// ones first, until a person can play the rest.
 pub fn slices_together(grid: &Grid) -> u64 {
     let upper = &grid.axes()[grid.lower()..];
     let mut together = 1;

@@ -1,16 +1,16 @@
-//! How fine a fitted grid is, for each kind of workspace.
+//! Resolutions of fitted grids, for each kind of workspace.
 
 use crate::kind::WorkspaceKind;
 use opm_core::manipulator::Manipulator;
 use opm_workspace::{Axis, Grid, Sections};
 
-/// Values along each axis of the lower section and of the upper section; one value is home's.
+/// Numbers of values along each axis of the lower and of the upper section. A single value is that of home.
 type Resolution = [f64; 2];
 
-/// The resolution for so many coordinates of the lower and of the upper section; `None` where it is that
-/// of the grid of poses.
+/// The resolution for these numbers of coordinates of the lower and of the upper section. `None` if it is
+/// that of the grid of poses.
 fn resolution(kind: WorkspaceKind, [lower, upper]: [usize; 2]) -> Option<Resolution> {
-    // A picture worth looking at, and no more than a second or so.
+    // Fine enough for a picture, and coarse enough to take about a second.
     let share = |points: f64, axes: usize| points.powf(1.0 / axes.max(1) as f64);
     match kind {
         WorkspaceKind::Grid | WorkspaceKind::Reachable | WorkspaceKind::Dexterous => None,
@@ -24,7 +24,7 @@ fn resolution(kind: WorkspaceKind, [lower, upper]: [usize; 2]) -> Option<Resolut
     }
 }
 
-/// The grid of a kind over a workspace, from the grid that is fitted to its poses.
+/// The grid for a kind of workspace, made from the grid that is fitted to its poses.
 pub fn fit(kind: WorkspaceKind, manipulator: &Manipulator, poses: Grid) -> Grid {
     let lower = manipulator.task().lower_count;
     let upper = poses.axes().len() - lower;
