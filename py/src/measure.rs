@@ -46,7 +46,7 @@ const STOPS: [(Stop, &str); 4] = [
 ];
 
 /// A measure as it crosses processes: bounds and whole, boxes, why it stopped, units, ranges.
-type ViolationReport = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
+type MeasureState = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// A value, or lowest and highest value.
 #[derive(FromPyObject)]
@@ -363,7 +363,7 @@ impl Measure {
         html::of(slf, "measure")
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, ViolationReport>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, MeasureState>> {
         let this = slf.get();
         let Measured { lower, upper, whole, boxes, .. } = this.found;
         let (stop, units) = (this.stop().to_owned(), this.units.clone());
