@@ -128,7 +128,7 @@ fn every_problem_of_a_file_has_its_line() {
     assert!(lines.iter().any(|line| line.starts_with(&format!("{prefix}{arm}:"))));
 }
 
-/// The shipped list of joints with one leg spoilt in turn: which leg, where it is in the file, and why.
+/// The shipped list of joints with one wrong leg at a time: the message names leg, place in the file and cause.
 #[test]
 fn legs_that_cannot_be_solved_are_named() {
     let folder = Folder::new();

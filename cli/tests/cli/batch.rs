@@ -5,7 +5,7 @@ use crate::{HELICAL, PLANO};
 use std::f64::consts::TAU;
 use std::process::Stdio;
 
-/// The reference vectors have 16 digits; closed forms lose a few near the rim.
+/// The reference vectors have 16 digits; closed forms lose a few near the boundary of reach.
 const REFERENCE: f64 = 1e-9;
 
 /// A table with a header, by name.

@@ -98,7 +98,7 @@ fn the_text_explains_and_says_what_has_no_closed_form() {
 }
 
 /// Three legs like the helical manipulator's first two, but the first has its slider along the
-/// cylinder's axis and its turn about it as one cylindrical joint, which can be divided.
+/// cylinder's axis and its rotation about it as one cylindrical joint, which can be divided.
 #[test]
 fn a_divided_joint_goes_by_its_coordinates() {
     let folder = Folder::new();

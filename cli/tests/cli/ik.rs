@@ -15,7 +15,7 @@ fn ik(args: &[&str]) -> Value {
     opm(&all).json()
 }
 
-/// Same angle, whole turns aside.
+/// Whether two angles are equal modulo a revolution.
 #[track_caller]
 fn assert_angle(found: &Value, expected: f64) {
     let off = (number(found) - expected).rem_euclid(TAU);

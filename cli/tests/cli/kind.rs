@@ -269,7 +269,7 @@ fn the_global_index_is_the_mean_of_the_recorded_ones() {
     }
 }
 
-/// What varies is on the axes of the cloud, and seen; home's orientation alone is told.
+/// Varying coordinates are the axes of the cloud. A single orientation, that of home, gives a warning.
 #[test]
 fn what_varies_is_seen() {
     let folder = Folder::new();
@@ -362,7 +362,7 @@ fn imaginary_joints_have_no_measure() {
     assert!(found["measure"].is_null() && found["boundary"].is_null());
 }
 
-/// A limit on the condition number is told in the picture, and colours span what there is.
+/// The picture names the limit on the condition number, and its colours span the recorded values.
 #[test]
 fn a_picture_tells_the_condition() {
     let folder = Folder::new();

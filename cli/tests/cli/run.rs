@@ -68,8 +68,8 @@ impl Run {
         value
     }
 
-    /// Asserts that it failed with this code, that its messages contain all of `parts` and begin with its
-    /// name line by line, and that it printed nothing.
+    /// Asserts that it failed with this code, that its messages contain all of `parts`, and that it printed
+    /// nothing.
     #[track_caller]
     pub fn fails(&self, code: i32, parts: &[&str]) -> &Self {
         let Self { args, stderr, stdout, .. } = self;

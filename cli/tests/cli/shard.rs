@@ -28,7 +28,7 @@ fn shard(folder: &Folder, number: u64, of: u64, flags: &[&str]) -> String {
     output
 }
 
-/// What a run printed, but for its times.
+/// The output of a run, without its times.
 fn timeless(mut value: Value) -> Value {
     for key in ["seconds", "poses_per_second"] {
         value[key] = Value::Null;
@@ -295,7 +295,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     opm(&["merge"]).fails(2, &["PART.mcap"]);
 }
 
-/// The commands that are told make what is missing.
+/// The printed commands make the missing shards.
 #[cfg(unix)]
 #[test]
 fn missing_shards_are_named_with_their_commands() {

@@ -1,4 +1,4 @@
-//! `opm trajectory`: motions as they are followed, told and recorded.
+//! `opm trajectory`: motions are followed, reported and recorded.
 
 use crate::run::{Folder, Run, keys, number, opm};
 use crate::{HELICAL, PLANO};

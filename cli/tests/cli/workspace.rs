@@ -345,7 +345,7 @@ fn a_shard_without_poses_says_so() {
     assert!(text.contains("no poses of its own") && !text.contains("NaN"), "{text}");
 }
 
-/// Whoever reads a table knows nothing of slices or of what is held.
+/// A table has no slices, and no record of the coordinates that are held.
 #[test]
 fn a_table_has_every_coordinate() {
     let folder = Folder::new();
