@@ -45,7 +45,7 @@ impl Csv {
     }
 }
 
-/// Vectors from an independent implementation, every pose through the program.
+/// Every pose of the vectors from an independent implementation agrees.
 #[test]
 fn reference_vectors_of_the_plano_spherical_manipulator() {
     let golden =

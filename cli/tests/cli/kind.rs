@@ -165,7 +165,7 @@ fn sections_alone_are_counted_recorded_and_drawn() {
     }
 }
 
-/// What is counted is called by its name: only three kinds have poses.
+/// The counted points have the name of their kind: only three kinds have poses.
 #[test]
 fn pictures_say_what_they_count() {
     let folder = Folder::new();
@@ -310,7 +310,7 @@ fn a_set_of_one_coordinate_is_a_bar() {
     }
 }
 
-/// A cross is home: of a slice at other values, of a joint that has no axis in the picture either, it is not.
+/// A cross marks home. A slice at other values has none, and neither has a joint without an axis in the picture.
 #[test]
 fn only_a_slice_at_home_has_a_cross() {
     let folder = Folder::new();

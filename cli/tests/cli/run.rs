@@ -1,4 +1,4 @@
-//! The vocabulary of these tests: run the program, look at what comes out.
+//! Helpers of these tests: they run the program and inspect its output.
 
 use serde_json::Value;
 use std::io::Write;
@@ -35,7 +35,7 @@ pub fn opm_reading(input: &str, args: &[&str]) -> Run {
     })
 }
 
-/// How a run ended.
+/// The result of a run.
 pub struct Run {
     args: String,
     pub code: Option<i32>,
@@ -93,7 +93,7 @@ impl Run {
     }
 }
 
-/// A folder of its own for a test.
+/// A temporary folder for a test.
 pub struct Folder(TempDir);
 
 impl Folder {
