@@ -310,7 +310,7 @@ fn a_set_of_one_coordinate_is_a_bar() {
     }
 }
 
-/// A cross marks home. A slice at other values has none, and neither has a joint without an axis in the picture.
+/// A cross marks home. A slice at other values has none, nor has a joint without an axis in the picture.
 #[test]
 fn only_a_slice_at_home_has_a_cross() {
     let folder = Folder::new();
