@@ -151,7 +151,7 @@ pub struct IkArgs {
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
-    /// Working mode: `home`, or one group of signs for each leg, as "++ ++ ++ +"
+    /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Output file for the CSV; standard output if it is - or not given
@@ -193,7 +193,7 @@ pub struct VelocityArgs {
     /// Rates of the task coordinates per second, for example zeta=1,x=10mm; other rates are 0
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub rates: Pose,
-    /// Working mode: `home`, or one group of signs for each leg, as "++ ++ ++ +"
+    /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Characteristic length of the condition number, instead of the spread of the joint axes

@@ -128,7 +128,8 @@ fn every_problem_of_a_file_has_its_line() {
     assert!(lines.iter().any(|line| line.starts_with(&format!("{prefix}{arm}:"))));
 }
 
-/// The shipped list of joints with one leg spoilt in turn: which leg, where it is in the file, and why.
+/// The shipped list of joints, with one wrong leg at a time. The message names the leg, its place in the file
+/// and the cause.
 #[test]
 fn legs_that_cannot_be_solved_are_named() {
     let folder = Folder::new();
@@ -268,7 +269,7 @@ fn a_full_standard_output_is_a_failure() {
     }
 }
 
-/// What is written as MCAP alone is not given another name; nothing is left.
+/// Content that is written as MCAP only is refused under other names, and no file is left.
 #[test]
 fn what_is_written_as_mcap_is_not_called_otherwise() {
     let folder = Folder::new();
@@ -286,7 +287,7 @@ fn what_is_written_as_mcap_is_not_called_otherwise() {
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 }
 
-/// A place is named once.
+/// A message names a place once.
 #[test]
 fn messages_name_the_file_once() {
     let folder = Folder::new();

@@ -5,7 +5,7 @@ use crate::{HELICAL, PLANO};
 use std::f64::consts::TAU;
 use std::process::Stdio;
 
-/// The reference vectors have 16 digits; closed forms lose a few near the rim.
+/// The reference vectors have 16 digits; closed forms lose a few near the boundary of reach.
 const REFERENCE: f64 = 1e-9;
 
 /// A table with a header, by name.
@@ -45,7 +45,7 @@ impl Csv {
     }
 }
 
-/// Vectors from an independent implementation, every pose through the program.
+/// Every pose of the vectors from an independent implementation agrees.
 #[test]
 fn reference_vectors_of_the_plano_spherical_manipulator() {
     let golden =

@@ -1,4 +1,4 @@
-//! `opm decompose`, against what the paper says of its mechanisms.
+//! `opm decompose` agrees with the paper about its mechanisms.
 
 use crate::run::{Folder, keys, number, opm};
 use crate::{HELICAL, PLANO};
@@ -98,7 +98,7 @@ fn the_text_explains_and_says_what_has_no_closed_form() {
 }
 
 /// Three legs like the helical manipulator's first two, but the first has its slider along the
-/// cylinder's axis and its turn about it as one cylindrical joint, which can be divided.
+/// cylinder's axis and its rotation about it as one cylindrical joint, which can be divided.
 #[test]
 fn a_divided_joint_goes_by_its_coordinates() {
     let folder = Folder::new();
@@ -170,8 +170,8 @@ fn frames_are_printed_and_can_be_set() {
     }
 }
 
-/// What a `[task]` says is held against the geometry, and blamed at its line and column, whatever
-/// the subcommand.
+/// Every subcommand checks a `[task]` against the geometry, and reports errors at their line and
+/// column.
 #[test]
 fn frames_that_do_not_fit_are_refused_where_they_stand() {
     let folder = Folder::new();

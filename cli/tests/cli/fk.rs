@@ -9,7 +9,7 @@ fn json(args: &[&str]) -> Value {
     opm(&[args, &["--format", "json"]].concat()).json()
 }
 
-/// `S1=...,S2=...` of what inverse kinematics give at a pose.
+/// The joint values of inverse kinematics at a pose, as `S1=...,S2=...`.
 fn joints_at(mechanism: &str, pose: &str, mode: &str) -> String {
     let found = json(&["ik", mechanism, "--pose", pose, "--mode", mode]);
     let joints = &found["solutions"][0]["joints"];
@@ -158,7 +158,7 @@ fn the_helical_manipulator_is_linear() {
     }
 }
 
-/// Limits do not take assemblies away: they are marked.
+/// Assemblies beyond the limits are marked, not removed.
 #[test]
 fn assemblies_beyond_limits_are_marked() {
     let folder = Folder::new();

@@ -15,7 +15,7 @@ fn ik(args: &[&str]) -> Value {
     opm(&all).json()
 }
 
-/// Same angle, whole turns aside.
+/// Whether two angles are equal modulo a revolution.
 #[track_caller]
 fn assert_angle(found: &Value, expected: f64) {
     let off = (number(found) - expected).rem_euclid(TAU);
@@ -64,7 +64,7 @@ fn one_solution_has_every_joint() {
     }
 }
 
-/// The place of a pose in SE(3), given back, is that pose; here with R = Rz(zeta) Ry(xi) Rz(psi).
+/// The transform of a pose, given to --transform, returns that pose; here with R = Rz(zeta) Ry(xi) Rz(psi).
 #[test]
 fn a_transform_is_a_pose_and_back() {
     for (file, pose) in [
@@ -103,7 +103,7 @@ fn a_transform_is_a_pose_and_back() {
     }
 }
 
-/// A transform off the plane of the lower section: by how much, and along what.
+/// A transform off the plane of the lower section gives the distance and the direction.
 #[test]
 fn a_transform_outside_the_motion_is_told_how_far() {
     let transform = ["--transform", "10mm,0,20mm,0.8,0,0.6,0"];

@@ -1,4 +1,4 @@
-//! `opm inspect`: whole recordings, cut ones, and what is none.
+//! `opm inspect`: complete recordings, truncated ones, and other files.
 
 use crate::PLANO;
 use crate::run::{Folder, keys, number, opm};

@@ -165,7 +165,7 @@ fn sections_alone_are_counted_recorded_and_drawn() {
     }
 }
 
-/// What is counted is called by its name: only three kinds have poses.
+/// The counted points have the name of their kind: only three kinds have poses.
 #[test]
 fn pictures_say_what_they_count() {
     let folder = Folder::new();
@@ -269,7 +269,7 @@ fn the_global_index_is_the_mean_of_the_recorded_ones() {
     }
 }
 
-/// What varies is on the axes of the cloud, and seen; home's orientation alone is told.
+/// Varying coordinates are the axes of the cloud. A single orientation, that of home, gives a warning.
 #[test]
 fn what_varies_is_seen() {
     let folder = Folder::new();
@@ -310,7 +310,7 @@ fn a_set_of_one_coordinate_is_a_bar() {
     }
 }
 
-/// A cross is home: of a slice at other values, of a joint that has no axis in the picture either, it is not.
+/// A cross marks home. A slice at other values has none, nor has a joint without an axis in the picture.
 #[test]
 fn only_a_slice_at_home_has_a_cross() {
     let folder = Folder::new();
@@ -362,7 +362,7 @@ fn imaginary_joints_have_no_measure() {
     assert!(found["measure"].is_null() && found["boundary"].is_null());
 }
 
-/// A limit on the condition number is told in the picture, and colours span what there is.
+/// The picture names the limit on the condition number, and its colours span the recorded values.
 #[test]
 fn a_picture_tells_the_condition() {
     let folder = Folder::new();

@@ -17,7 +17,7 @@ fn solved(input: &str) -> Value {
     linkage(&["--input", input, "--format", "json"]).json()
 }
 
-/// The rows of a sweep, a number a column; of the branch, nothing.
+/// The rows of a sweep, one number per column, without the branch.
 fn rows(csv: &str) -> Vec<Vec<f64>> {
     let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
     csv.lines().skip(1).map(row).collect()
@@ -42,7 +42,7 @@ fn every_branch_is_told() {
     }
 }
 
-/// At home, which is where the actuated joint is without --input, one branch is home.
+/// Without --input, the actuated joint is at home, and one branch is home.
 #[test]
 fn home_is_one_of_the_branches() {
     let found = linkage(&["--format", "json"]).json();
@@ -116,7 +116,7 @@ fn a_range_ends_where_its_branches_meet() {
     assert!(text.text().contains("out of range"));
 }
 
-/// Out and back: the rows stay inside the range, and end at home.
+/// The input goes out and back: the rows stay inside the range, and end at home.
 #[test]
 fn a_sweep_of_a_limited_input_goes_there_and_back() {
     let run = linkage(&["--input", "a2", "--sweep", "--count", "201"]);

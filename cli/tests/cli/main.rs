@@ -1,4 +1,4 @@
-//! The program as its users meet it: what it prints, what it writes and how it ends.
+//! Tests of the program as a user runs it: output, files and exit status.
 
 mod bad_input;
 mod batch;

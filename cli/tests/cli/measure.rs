@@ -1,4 +1,4 @@
-//! `opm measure`: bounds, what is measured, and how it ends.
+//! `opm measure`: bounds, domains, and how a measure ends.
 
 use crate::run::{Run, command, keys, number, opm};
 use crate::{HELICAL, PLANO};
@@ -65,7 +65,7 @@ fn a_square_in_the_workspace_is_its_area() {
     assert!(text.contains("mm^2") && text.contains("600.0"), "{text}");
 }
 
-/// Text is in the units of the file: a rectangle that is all in reach, of lengths, angles and both.
+/// Text is in the units of the file. The rectangles of lengths, angles and both are completely in reach.
 #[test]
 fn text_is_in_the_units_of_the_file() {
     // For all orientations, the sphere's area in square degrees is weighed by the sine, and a revolution is
@@ -92,7 +92,7 @@ fn text_is_in_the_units_of_the_file() {
     }
 }
 
-/// What a grid counts lies in the bounds, to what a grid can tell.
+/// The count of a grid lies within the bounds, to the accuracy of the grid.
 #[test]
 fn it_measures_what_is_swept() {
     for mode in ["home", "any"] {
@@ -199,7 +199,7 @@ fn wrong_flags_are_named() {
     }
 }
 
-/// Stopped early, what was found is still a bound.
+/// The bounds hold after an early stop.
 #[test]
 #[cfg(unix)]
 fn what_was_found_before_ctrl_c_is_printed() {

@@ -1,4 +1,4 @@
-//! `opm plot`: what is in the pictures, against what the other subcommands say.
+//! `opm plot`: the pictures agree with the output of the other subcommands.
 
 #[path = "../../../crates/opm-plot/tests/figures/seen.rs"]
 #[allow(dead_code, reason = "the tests of the crate that draws use the rest")]
@@ -143,8 +143,8 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
     refused.fails_with_one_line(1, &["no imaginary in what --panels asks for"]);
 }
 
-/// Where the mechanism cannot follow, the picture is shaded, the curves of the joints pause, and the
-/// notes say what happened and when, as the command that recorded it does.
+/// Where the mechanism cannot follow, the picture is shaded, the curves of the joints have gaps, and the
+/// notes say what happened and when, as in the output of the recording command.
 #[test]
 fn violations_are_marked() {
     let folder = Folder::new();
@@ -438,7 +438,7 @@ fn unknown_motion_with(
     recorder.finish(result).unwrap();
 }
 
-/// Of very many violations a recording holds the first; the notes count all.
+/// A recording holds the first of very many violations; the notes count all.
 #[test]
 fn violations_that_are_not_in_the_recording_are_counted() {
     let folder = Folder::new();

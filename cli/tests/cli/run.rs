@@ -1,4 +1,4 @@
-//! The vocabulary of these tests: run the program, look at what comes out.
+//! Helpers of these tests: they run the program and inspect its output.
 
 use serde_json::Value;
 use std::io::Write;
@@ -35,7 +35,7 @@ pub fn opm_reading(input: &str, args: &[&str]) -> Run {
     })
 }
 
-/// How a run ended.
+/// The result of a run.
 pub struct Run {
     args: String,
     pub code: Option<i32>,
@@ -68,8 +68,8 @@ impl Run {
         value
     }
 
-    /// Asserts that it failed with this code, that its messages contain all of `parts` and begin with its
-    /// name line by line, and that it printed nothing.
+    /// Asserts that it failed with this code, that its messages contain all of `parts`, and that it printed
+    /// nothing.
     #[track_caller]
     pub fn fails(&self, code: i32, parts: &[&str]) -> &Self {
         let Self { args, stderr, stdout, .. } = self;
@@ -93,7 +93,7 @@ impl Run {
     }
 }
 
-/// A folder of its own for a test.
+/// A temporary folder for a test.
 pub struct Folder(TempDir);
 
 impl Folder {

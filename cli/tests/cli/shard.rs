@@ -1,4 +1,4 @@
-//! `opm workspace --shard` and `opm merge`: what many processes find is what one finds.
+//! `opm workspace --shard` and `opm merge`: many processes give the result of a single one.
 
 use crate::PLANO;
 use crate::run::{Folder, command, opm};
@@ -18,7 +18,7 @@ const GRID: [&str; 8] = [
     "zeta=0:1:9",
 ];
 
-/// A few poses, for what needs no many.
+/// A small grid of few poses.
 const SMALL: [&str; 4] = ["--grid", "x=-250mm:250mm:21", "--grid", "xi=0:1:3"];
 
 fn shard(folder: &Folder, number: u64, of: u64, flags: &[&str]) -> String {
@@ -28,7 +28,7 @@ fn shard(folder: &Folder, number: u64, of: u64, flags: &[&str]) -> String {
     output
 }
 
-/// What a run printed, but for its times.
+/// The output of a run, without its times.
 fn timeless(mut value: Value) -> Value {
     for key in ["seconds", "poses_per_second"] {
         value[key] = Value::Null;
@@ -80,7 +80,7 @@ fn a_shard_is_not_drawn_and_says_what_is() {
     assert_eq!(folder.names(), ["part-2.mcap"]);
 }
 
-/// Sets other than that of the poses are made when all poses are together, indices by each shard.
+/// Sets other than that of the poses are made from all poses when merging; each shard makes its indices.
 #[test]
 fn merged_shards_are_the_one_run_of_every_kind() {
     let plane = ["--grid", "x=-0.25:0.25:301", "--grid", "y=-0.2:0.2:301"];
@@ -140,7 +140,7 @@ fn merged_shards_are_the_one_run_of_every_kind() {
     }
 }
 
-/// A sweep comes in so many pieces, and no shard is smaller than one.
+/// A sweep consists of blocks, and no shard is smaller than one block.
 #[test]
 fn a_shard_without_poses_says_why() {
     let folder = Folder::new();
@@ -158,7 +158,7 @@ fn a_shard_without_poses_says_why() {
     assert!(empty > 0 && filled > 0, "{empty} {filled}");
 }
 
-/// As a queue does it: processes side by side, of which one is killed and run again.
+/// Processes run side by side, as from a queue; one of them is killed and run again.
 #[cfg(unix)]
 #[test]
 fn a_killed_shard_is_run_again() {
@@ -295,7 +295,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     opm(&["merge"]).fails(2, &["PART.mcap"]);
 }
 
-/// The commands that are told make what is missing.
+/// The printed commands make the missing shards.
 #[cfg(unix)]
 #[test]
 fn missing_shards_are_named_with_their_commands() {

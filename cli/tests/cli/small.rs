@@ -85,14 +85,14 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
-/// Recordings of the names that the examples of `opm plot` have.
+/// Makes recordings with the names in the examples of `opm plot`.
 fn record_for_plots(folder: &Folder) {
     let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
     let scalars = ["--scalars", "theta11,theta12,theta13", "-o", &folder.arg("cloud.mcap")];
     opm(&[&["workspace", PLANO], &grid[..], &scalars].concat()).text();
 }
 
-/// What the help shows works as it stands.
+/// The examples in the help work as they are.
 #[test]
 fn the_examples_in_the_help_parse() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! `opm trajectory`: motions as they are followed, told and recorded.
+//! `opm trajectory`: motions are followed, reported and recorded.
 
 use crate::run::{Folder, Run, keys, number, opm};
 use crate::{HELICAL, PLANO};
@@ -120,7 +120,7 @@ fn strict_fails_after_everything_is_written() {
     assert_eq!(folder.names(), ["excursion.toml", "out.mcap"]);
 }
 
-/// A table that says what a motion file says; the knots lie as near as the spline is to be good.
+/// A table of the same motion as a motion file. The knots are dense enough for an accurate spline.
 #[test]
 fn a_table_is_followed_like_its_formula() {
     let folder = Folder::new();

@@ -258,7 +258,7 @@ fn the_same_run_writes_the_same_bytes() {
     assert!(record("one.mcap", "1") == record("two.mcap", "3"));
 }
 
-/// Ctrl-C, to a run that would take hours.
+/// Ctrl-C ends a run that would take hours.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_no_file_under_its_name() {
@@ -298,8 +298,8 @@ fn a_grid_of_very_many_orientations_is_recorded_by_its_slowest_axes() {
     assert_eq!(slices["points"], counted["reachable"]);
 }
 
-/// Poses count whose condition number, as `opm velocity` gives it, is within the limit; the recording
-/// holds them, in a mode in which it is.
+/// Poses count if their condition number, as in `opm velocity`, is within the limit. The recording
+/// holds them in a mode that is within the limit.
 #[test]
 fn a_limit_on_the_condition_number_is_that_of_velocity() {
     let folder = Folder::new();
@@ -345,7 +345,7 @@ fn a_shard_without_poses_says_so() {
     assert!(text.contains("no poses of its own") && !text.contains("NaN"), "{text}");
 }
 
-/// Whoever reads a table knows nothing of slices or of what is held.
+/// A table has no slices, and no record of the coordinates that are held.
 #[test]
 fn a_table_has_every_coordinate() {
     let folder = Folder::new();

@@ -125,8 +125,8 @@ impl WorkspaceKind {
         matches!(self, Self::Reachable | Self::Dexterous)
     }
 
-    /// Whether its points have a boundary. The orientations of `Imaginary` have one, but it says nothing about
-    /// the imaginary joints.
+    /// Whether its points have a boundary. The orientations of `Imaginary` have one, but it says nothing
+    /// about the imaginary joints.
     pub fn has_boundary(self) -> bool {
         self != Self::Imaginary
     }
