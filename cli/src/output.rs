@@ -37,7 +37,7 @@ pub fn print_with(
     write: impl FnOnce(&mut io::BufWriter<io::StdoutLock<'static>>) -> io::Result<()>,
 ) -> Result<(), Failure> {
     let mut out = io::BufWriter::new(io::stdout().lock());
-    write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::stdout(error))
+    write(&mut out).and_then(|()| out.flush()).map_err(Failure::stdout)
 }
 
 /// Named numbers as a JSON object, in their order.
