@@ -372,6 +372,7 @@ mod tests {
             let coordinates: Vec<Coordinate> = (coordinates().iter())
                 .map(|c| Coordinate {
                     name: c.name.to_owned(),
+                    kind: Some(c.kind()),
                     quantity: c.quantity,
                     home: c.home,
                     counts_turns: false,

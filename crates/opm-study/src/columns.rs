@@ -5,6 +5,7 @@ use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
 use crate::names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 use opm_core::manipulator::Manipulator;
+use opm_core::task::CoordinateKind;
 use opm_workspace::{Axis, Grid, GridSet};
 
 /// The position of a point in every cloud.
@@ -276,9 +277,11 @@ impl PointColumns {
 /// slowest varying one of the upper section, else of the lower.
 fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;
-    let tilts = |axis: &Axis| axis.name == "xi" && several(axis);
     let upper = &grid.axes()[grid.lower()..];
-    match upper.iter().position(tilts).or_else(|| upper.iter().rposition(several)) {
+    let kinds = grid.coordinates()[grid.lower()..].iter().map(|coordinate| coordinate.kind);
+    let tilt =
+        kinds.zip(upper).position(|(kind, axis)| kind == Some(CoordinateKind::Xi) && several(axis));
+    match tilt.or_else(|| upper.iter().rposition(several)) {
         Some(number) => grid.lower() + number,
         None => grid.axes().iter().position(several).unwrap_or(0),
     }

@@ -11,7 +11,7 @@ use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Modes, Sweep};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
-use opm_core::task::TaskCoordinate;
+use opm_core::task::{CoordinateKind, TaskCoordinate};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The number of poses of a coarse grid, whose sweep takes a few milliseconds.
@@ -102,6 +102,7 @@ pub fn default_grid(
 /// The range in which the workspace is looked for along one coordinate.
 #[derive(Clone, Debug)]
 struct Range {
+    kind: CoordinateKind,
     extent: Extent,
     /// The ends that the search starts with.
     start: [f64; 2],
@@ -114,12 +115,12 @@ impl Range {
         let (name, home) = (coordinate.name, coordinate.home);
         let [min, max] = match coordinate.quantity {
             Quantity::Length => [home - size, home + size],
-            Quantity::Angle => one_turn(name, home),
+            Quantity::Angle => one_turn(coordinate.kind(), home),
         };
         let grows =
             coordinate.quantity == Quantity::Length || manipulator.counts_turns(coordinate.kind());
         let extent = Extent { name, min, max, unbounded: false };
-        Self { extent, start: [min, max], grows }
+        Self { kind: coordinate.kind(), extent, start: [min, max], grows }
     }
 
     fn width(&self) -> f64 {
@@ -128,7 +129,7 @@ impl Range {
 
     /// Whether it is an Euler angle about the intersection motion or the platform's axis.
     fn is_euler_angle(&self) -> bool {
-        matches!(self.extent.name, "zeta" | "psi")
+        matches!(self.kind, CoordinateKind::Zeta | CoordinateKind::Psi)
     }
 
     /// The range with half its width more on both sides, if it may grow: thin parts may lie between the
@@ -232,7 +233,7 @@ impl<'a> Search<'a> {
             let mut farther = false;
             // At a tilt of zero, zeta and psi are angles about the same axis: going on along one of them
             // gives orientations again that the other has given.
-            let tilt = ranges.iter().find(|range| range.extent.name == "xi");
+            let tilt = ranges.iter().find(|range| range.kind == CoordinateKind::Xi);
             let level = tilt.is_some_and(|tilt| {
                 let slack = FOLLOWED * tilt.width();
                 let nearest = PI * (tilt.extent.min / PI).round();
@@ -436,12 +437,14 @@ struct Hit {
 
 /// The range of an angle of which whole turns do not matter. Of Euler angles and tilts it gives every
 /// orientation or direction once, that of home among them.
-pub(crate) fn one_turn(name: &str, home: f64) -> [f64; 2] {
-    match name {
-        "xi" => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
-        "zeta" | "psi" => [-PI, PI].map(|end| end + whole_turns(home)),
-        "nu" => [home - FRAC_PI_2, home + FRAC_PI_2],
-        _ => [home - PI, home + PI],
+pub(crate) fn one_turn(kind: CoordinateKind, home: f64) -> [f64; 2] {
+    use CoordinateKind::{Mu, Nu, Phi, Psi, Theta, W, X, Xi, Y, Z, Zeta};
+    match kind {
+        Xi => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
+        Zeta | Psi => [-PI, PI].map(|end| end + whole_turns(home)),
+        Nu => [home - FRAC_PI_2, home + FRAC_PI_2],
+        Theta | Phi | Mu => [home - PI, home + PI],
+        X | Y | Z | W => unreachable!("a length has no revolutions"),
     }
 }
 

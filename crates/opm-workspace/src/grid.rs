@@ -4,6 +4,7 @@
 use opm_core::Quantity;
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
+use opm_core::task::CoordinateKind;
 use std::f64::consts::TAU;
 
 /// Most poses of a grid: larger numbers are not exact in double precision, which JSON readers use.
@@ -155,6 +156,8 @@ impl Sections {
 pub struct Coordinate {
     /// The name of the coordinate.
     pub name: String,
+    /// What it measures; `None` for the value of an imaginary joint.
+    pub kind: Option<CoordinateKind>,
     /// Whether it is an angle or a length.
     pub quantity: Quantity,
     /// The value at home, radians or metres.
@@ -168,6 +171,7 @@ impl Sections {
     pub fn coordinates(self, manipulator: &Manipulator) -> Vec<Coordinate> {
         let task = manipulator.task_coordinates().iter().map(|c| Coordinate {
             name: c.name.to_owned(),
+            kind: Some(c.kind()),
             quantity: c.quantity,
             home: c.home,
             counts_turns: manipulator.counts_turns(c.kind()),
@@ -176,6 +180,7 @@ impl Sections {
         let cuts = || {
             manipulator.intersection_joints().into_iter().map(|joint| Coordinate {
                 name: joint.name,
+                kind: None,
                 quantity: joint.quantity,
                 home: joint.home,
                 counts_turns: manipulator.intersection_counts_turns(),

@@ -6,6 +6,7 @@ mod algebra;
 mod differential;
 mod forward;
 mod inverse;
+mod linkages;
 mod locate;
 mod motions;
 mod places;

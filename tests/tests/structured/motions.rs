@@ -2,7 +2,10 @@
 
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
-use opm_core::motion::{Instant, Spline, table};
+use opm_core::motion::{
+    Harmonics, Instant, Path, PlatformMotion, Spline, file as motion_file, table,
+};
+use opm_core::trajectory::Trajectory;
 use std::f64::consts::PI;
 
 /// A straight line is its own spline: constant, and as fast throughout.
@@ -39,6 +42,63 @@ fn half_turns_go_on() {
             motion.at(t, &mut at);
             assert!((at.pose[2] - sign * t * PI).abs() < 1e-12, "{t}: {at:?}");
             assert!((at.velocity[2] - sign * PI).abs() < 1e-12, "{t}: {at:?}");
+        }
+    }
+}
+
+/// Standing still at home: nothing moves, nothing is violated, and every joint is at its home value.
+#[test]
+fn standing_at_home_nothing_moves() {
+    let mut followed = 0;
+    for example in examples::EXAMPLES {
+        let mechanism = file::read(example.text).unwrap().mechanism;
+        // Bennett's linkage has no platform to move.
+        let Ok(m) = Manipulator::new(mechanism) else { continue };
+        let constants = m.task_coordinates().iter().map(|c| Harmonics::constant(c.home)).collect();
+        let motion = PlatformMotion {
+            name: "still".to_owned(),
+            start: 0.0,
+            duration: 1.0,
+            rate: None,
+            mode: None,
+            path: Path::Harmonics(constants),
+        };
+        let mut trajectory = Trajectory::new(&m, &motion, m.home_mode(), 10.0).unwrap();
+        while trajectory.advance().unwrap() {
+            let sample = trajectory.sample();
+            assert!(sample.valid() && sample.regular && trajectory.changes().is_empty());
+            for (coordinate, q) in m.coordinates().iter().zip(sample.solution.joints()) {
+                assert!((q - coordinate.home).abs() < 1e-9, "{} {}", example.name, coordinate.name);
+            }
+            let rates = sample.motion.joint_rates.iter().chain(&sample.motion.joint_accelerations);
+            assert!(rates.copied().all(|rate| rate == 0.0), "{}", example.name);
+        }
+        followed += 1;
+    }
+    assert_eq!(followed, examples::EXAMPLES.len() - 1);
+}
+
+/// Exact half and quarter turns, zeros and whole turns of a motion file arrive as they are written.
+#[test]
+fn motion_files_keep_structured_numbers() {
+    let m = Manipulator::example("plano-spherical-5dof").unwrap();
+    for quarters in -8..=8 {
+        let degrees = 90 * quarters;
+        let text = format!(
+            "format = 1\nname = \"turn\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nduration = 1\n\
+             [coordinates]\nx = 0\nzeta = {degrees}\n\
+             psi = {{ amplitude = {degrees}, frequency = 1, phase = {degrees} }}\n"
+        );
+        let motion = motion_file::read(&text, &m).unwrap_or_else(|error| panic!("{error}"));
+        let turn = f64::from(quarters) * (PI / 2.0);
+        let mut at = Instant::new(5);
+        for eighth in 0..=8 {
+            let t = f64::from(eighth) / 8.0;
+            motion.at(t, &mut at);
+            assert_eq!(at.pose[0], 0.0);
+            assert!((at.pose[2] - turn).abs() < 1e-14, "{degrees} deg: {at:?}");
+            let psi = turn * (2.0 * PI * t + turn).sin();
+            assert!((at.pose[4] - psi).abs() < 1e-12, "{degrees} deg at {t}: {at:?}");
         }
     }
 }

@@ -385,13 +385,13 @@ fn empty_unless(met: bool) -> f64 {
 
 /// The smaller of two numbers; the second where either is NaN. It is one instruction.
 #[inline(always)]
-fn smaller(a: f64, b: f64) -> f64 {
+pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// The larger of two numbers; the second where either is NaN.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 

@@ -6,6 +6,7 @@ use opm_core::Quantity;
 use opm_core::enclosure::{BoxQuery, HalfTurn, MOST, Side};
 use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
+use opm_core::task::CoordinateKind;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
@@ -52,8 +53,9 @@ pub struct DomainAxis {
 enum Kind {
     /// The side is the coordinate itself.
     Plain,
-    /// A tilt in a sphere, which is weighted by `|sin α|`, where `α` is the tilt plus this.
-    Tilt(f64),
+    /// A tilt in a sphere, which is weighted by `|sin α|`, where `α` is the tilt plus `shift`; and the formula
+    /// of that weight for people.
+    Tilt { shift: f64, weight: &'static str },
     /// The value of an imaginary joint, of which the side is the displacement along the intersection motion.
     Imaginary(ImaginaryJoint),
 }
@@ -67,11 +69,7 @@ impl DomainAxis {
     /// weight is one.
     pub fn weight(&self) -> Option<&'static str> {
         match self.kind {
-            Kind::Tilt(shift) if self.has_width() => Some(match &*self.name {
-                "xi" => "sin xi",
-                _ if shift == FRAC_PI_2 => "cos nu",
-                _ => "cos(nu - home)",
-            }),
+            Kind::Tilt { weight, .. } if self.has_width() => Some(weight),
             _ => None,
         }
     }
@@ -83,8 +81,8 @@ impl DomainAxis {
             vec![Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), half_turn: None }]
         };
         let shift = match &self.kind {
-            Kind::Tilt(shift) if self.has_width() => *shift,
-            Kind::Plain | Kind::Tilt(_) => return plain([min, max]),
+            Kind::Tilt { shift, .. } if self.has_width() => *shift,
+            Kind::Plain | Kind::Tilt { .. } => return plain([min, max]),
             Kind::Imaginary(joint) => {
                 let [from, to] = [min, max].map(|value| joint.displacement(value));
                 return plain([from.min(to), from.max(to)]);
@@ -212,7 +210,8 @@ impl Domain {
             }
             let axis = &mut axes[number];
             (axis.min, axis.max) = (min, max);
-            if matches!(axis.kind, Kind::Tilt(_)) && (max - min) / PI > (MOST_PIECES - 2) as f64 {
+            if matches!(axis.kind, Kind::Tilt { .. }) && (max - min) / PI > (MOST_PIECES - 2) as f64
+            {
                 return Err(DomainError::Turns { name, min, max });
             }
         }
@@ -286,7 +285,7 @@ impl Domain {
                     continue;
                 }
                 let value = match (part.half_turn, &axis.kind) {
-                    (Some(half_turn), Kind::Tilt(shift)) => {
+                    (Some(half_turn), Kind::Tilt { shift, .. }) => {
                         half_turn.angle(part.middle - part.half + left) - shift
                     }
                     _ => axis.min + share * (axis.max - axis.min),
@@ -344,18 +343,30 @@ impl Domain {
 fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
     let cuts = manipulator.intersection_joints();
     let lower = manipulator.task().lower_count;
-    let kind = |number: usize, name: &str, home: f64| match name {
-        _ if sections == Sections::Lower && number >= lower => {
-            Kind::Imaginary(cuts[number - lower].clone())
-        }
-        "xi" => Kind::Tilt(0.0),
-        "nu" => Kind::Tilt(FRAC_PI_2 - home),
-        _ => Kind::Plain,
+    let kind = |number: usize, kind: Option<CoordinateKind>, home: f64| match kind {
+        // In a domain of the lower section the values of the imaginary joints follow its coordinates.
+        None => Kind::Imaginary(cuts[number - lower].clone()),
+        Some(CoordinateKind::Xi) => Kind::Tilt { shift: 0.0, weight: "sin xi" },
+        Some(CoordinateKind::Nu) => Kind::Tilt {
+            shift: FRAC_PI_2 - home,
+            weight: if home == 0.0 { "cos nu" } else { "cos(nu - home)" },
+        },
+        Some(
+            CoordinateKind::X
+            | CoordinateKind::Y
+            | CoordinateKind::Z
+            | CoordinateKind::W
+            | CoordinateKind::Theta
+            | CoordinateKind::Phi
+            | CoordinateKind::Zeta
+            | CoordinateKind::Psi
+            | CoordinateKind::Mu,
+        ) => Kind::Plain,
     };
     let coordinates = sections.coordinates(manipulator).into_iter().enumerate();
     coordinates
         .map(|(number, c)| DomainAxis {
-            kind: kind(number, &c.name, c.home),
+            kind: kind(number, c.kind, c.home),
             name: c.name,
             quantity: c.quantity,
             min: c.home,

@@ -31,8 +31,11 @@ pub fn default_ranges(
     if sections == Sections::Upper {
         for c in &coordinates {
             let periodic = c.quantity == Quantity::Angle && !c.counts_turns;
-            if periodic && given.iter().all(|over| over.name != c.name) {
-                let [min, max] = one_turn(&c.name, c.home);
+            if let Some(kind) = c.kind
+                && periodic
+                && given.iter().all(|over| over.name != c.name)
+            {
+                let [min, max] = one_turn(kind, c.home);
                 over.push(CoordinateRange::new(&*c.name, min, max));
             }
         }

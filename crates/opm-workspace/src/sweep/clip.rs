@@ -5,7 +5,7 @@
 //! interval. The loops are over rows, branch-free, and compiled for the processor at hand.
 
 use super::runs::Run;
-use opm_core::chain::region::{self, Chord, Convex, Precision, Region};
+use opm_core::chain::region::{self, Chord, Convex, Precision, Region, larger, smaller};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
@@ -540,16 +540,4 @@ fn sum(counts: &[f64]) -> u64 {
     }
     rest.iter().enumerate().for_each(|(lane, &count)| sums[lane] += count);
     sums.iter().sum::<f64>() as u64
-}
-
-/// Unlike `f64::min`, which has to look for NaN, this is one instruction.
-#[inline(always)]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// Unlike `f64::max`, which has to look for NaN, this is one instruction.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
