@@ -85,7 +85,7 @@ fn motion_files_keep_structured_numbers() {
     for quarters in -8..=8 {
         let degrees = 90 * quarters;
         let text = format!(
-            "format = 1\nname = \"turn\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nduration = 1\n\
+            "format = 1\nname = \"turn\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nduration = 1\nrate = 10\n\
              [coordinates]\nx = 0\nzeta = {degrees}\n\
              psi = {{ amplitude = {degrees}, frequency = 1, phase = {degrees} }}\n"
         );
