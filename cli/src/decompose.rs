@@ -103,6 +103,11 @@ impl<'a> Way<'a> {
         Self { decomposition, legs, task }
     }
 
+    /// Whether all legs move in one subgroup: then there is no upper section.
+    fn is_one_subspace(&self) -> bool {
+        self.decomposition.upper == SubspaceClass::Identity
+    }
+
     fn coordinates(&self) -> &[TaskCoordinate] {
         self.task.as_ref().map_or(&[], |task| &task.coordinates)
     }
@@ -110,24 +115,57 @@ impl<'a> Way<'a> {
     fn json(&self) -> Value {
         let d = self.decomposition;
         let coordinate = |c: &TaskCoordinate| json!({ "name": c.name, "home": c.home, "unit": c.quantity.unit() });
-        let frames = self.task.as_ref().map(
-            |task| json!({ "lower": frame_json(&task.lower), "upper": frame_json(&task.upper) }),
-        );
+        let upper = (!self.is_one_subspace()).then_some(d.upper);
+        let frames = self.task.as_ref().map(|task| {
+            let upper = upper.map(|_| frame_json(&task.upper));
+            json!({ "lower": frame_json(&task.lower), "upper": upper })
+        });
         json!({
             "imaginary_joints": d.imaginary_joints,
             "first_section_motions": d.first_section_motions,
             "lower": { "subspace": d.lower.name() },
-            "upper": { "subspace": d.upper.name() },
+            "upper": upper.map(|upper| json!({ "subspace": upper.name() })),
             "intersection": intersection(&d.intersection),
             "task_coordinates": self.coordinates().iter().map(coordinate).collect::<Vec<_>>(),
+            "dependent_coordinates": [],
             "legs": self.legs,
             "frames": frames,
         })
     }
 
+    /// The subspaces, and the legs' parts in them.
+    fn sections(&self, units: FileUnits) -> String {
+        let d = self.decomposition;
+        if self.is_one_subspace() {
+            let mut legs = Table::new(["leg", "joints"]);
+            for leg in &self.legs {
+                legs.row([leg.name, &leg.lower.join(" ")]);
+            }
+            return format!("one subspace    {}\n\n{legs}", describe(&d.lower, units));
+        }
+        let shared = match d.intersection {
+            SubspaceClass::Identity => "nothing".to_owned(),
+            _ => describe(&d.intersection, units),
+        };
+        let mut legs = Table::new(["leg", "lower", "|", "upper", "imaginary joint"]);
+        for leg in &self.legs {
+            let imaginary = leg.imaginary.clone().unwrap_or_default();
+            legs.row([leg.name, &leg.lower.join(" "), "|", &leg.upper.join(" "), &imaginary]);
+        }
+        format!(
+            "lower section   {}\nupper section   {}\nin common       {shared}\n\n{legs}",
+            describe(&d.lower, units),
+            describe(&d.upper, units)
+        )
+    }
+
     /// `J = 3, M = 2: planar + spherical, rotation in common, legs 3|2 3|2 3|2 2|3`.
     fn summary(&self) -> String {
         let d = self.decomposition;
+        let shared = match d.intersection {
+            SubspaceClass::Identity => "nothing",
+            _ => d.intersection.name(),
+        };
         let splits: Vec<String> =
             d.legs.iter().map(|leg| format!("{}|{}", leg.lower.len(), leg.upper.len())).collect();
         format!(
@@ -136,7 +174,7 @@ impl<'a> Way<'a> {
             d.first_section_motions,
             d.lower.name(),
             d.upper.name(),
-            d.intersection.name(),
+            shared,
             splits.join(" ")
         )
     }
@@ -176,21 +214,26 @@ impl Report<'_> {
             mechanism.legs.len(),
             d.lambda,
         ));
-        line(&format_args!("lower section   {}", describe(&d.lower, units)));
-        line(&format_args!("upper section   {}", describe(&d.upper, units)));
-        line(&format_args!("in common       {}\n", describe(&d.intersection, units)));
-
-        let mut legs = Table::new(["leg", "lower", "|", "upper", "imaginary joint"]);
-        for leg in &way.legs {
-            let imaginary = leg.imaginary.clone().unwrap_or_default();
-            legs.row([leg.name, &leg.lower.join(" "), "|", &leg.upper.join(" "), &imaginary]);
+        line(&way.sections(units));
+        if way.is_one_subspace() {
+            line(
+                &"All legs move in one subspace: there is nothing to split, and no imaginary joint.",
+            );
+        } else if d.intersection == SubspaceClass::Identity {
+            line(
+                &"The sections share no motion: a pose fixes each of them, without imaginary joints.",
+            );
+            line(&format_args!(
+                "The upper section has {} of the {n} motions, the lower one {m}.",
+                n - m
+            ));
+        } else {
+            line(&format_args!("With the imaginary joints the upper section has J = {j} motions."));
+            line(&format_args!(
+                "The lower section has M = N - J = {n} - {j} = {m} of its own (Eq. 1)."
+            ));
         }
-        line(&legs);
-        line(&format_args!("With the imaginary joints the upper section has J = {j} motions."));
-        line(&format_args!(
-            "The lower section has M = N - J = {n} - {j} = {m} of its own (Eq. 1)."
-        ));
-        if d.upper_mobility > 0 {
+        if d.upper_mobility > 0 && d.intersection != SubspaceClass::Identity {
             line(&format_args!(
                 "The upper section is not passive: with the imaginary joints locked, {} motions are left.",
                 d.upper_mobility
@@ -207,7 +250,7 @@ impl Report<'_> {
                 table.row([c.name, &home, units.symbol(c.quantity)]);
             }
             line(&format_args!("\n{table}"));
-            line(&frame_table(task, units));
+            line(&frame_table(task, way.is_one_subspace(), units));
         }
         line(&self.actuation());
         if let Some(manipulator) = self.manipulator {
@@ -293,13 +336,14 @@ fn frame_json(frame: &Subspace) -> Value {
     })
 }
 
-/// Both frames, in the file's units.
-fn frame_table(task: &Task, units: FileUnits) -> Table {
+/// The frames of the sections, in the file's units.
+fn frame_table(task: &Task, one_subspace: bool, units: FileUnits) -> Table {
     let unit = units.length.symbol();
     let places = [format!("origin, {unit}"), format!("reference point, {unit}")];
     let mut table =
         Table::new(["frame", &places[0], &places[1], "first axis", "second axis", "third axis"]);
-    for (name, frame) in [("lower", &task.lower), ("upper", &task.upper)] {
+    let both = [("lower", &task.lower), ("upper", &task.upper)];
+    for (name, frame) in both.into_iter().take(if one_subspace { 1 } else { 2 }) {
         let place = |point: Point3<f64>| triple(&point.coords, units.length.factor());
         let axis = |number: usize| triple(&frame.axes.column(number).into_owned(), 1.0);
         let (origin, reference) = (place(frame.measured_from), place(frame.origin));
@@ -319,6 +363,7 @@ fn intersection(class: &SubspaceClass) -> Value {
         SubspaceClass::Rotation { axis, point } => (axis, Some(point), None),
         SubspaceClass::Helical { axis, point, pitch } => (axis, Some(point), Some(*pitch)),
         SubspaceClass::Translation { axis } => (axis, None, None),
+        SubspaceClass::Identity => return Value::Null,
         other => return json!({ "kind": other.name(), "axis": null, "point": null, "pitch": null }),
     };
     let triple = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|c| c + 0.0);

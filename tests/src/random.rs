@@ -9,11 +9,11 @@ use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, TaskHints};
 use std::f64::consts::{PI, TAU};
 
-/// Every pair of subspaces (lower, upper) that has closed-form chains and a one-dimensional
-/// intersection.
-pub const PAIRS: [[Kind; 2]; 16] = {
-    use Kind::{Cylindrical, Planar, Spherical, TranslationalPlane};
-    use Meet::{Rotation, Translation};
+/// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
+/// motion, and every subspace alone.
+pub const PAIRS: [[Kind; 2]; 29] = {
+    use Kind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
+    use Meet::{Nothing, Rotation, Translation};
     [
         [Planar(Rotation), Spherical],
         [Spherical, Planar(Rotation)],
@@ -31,26 +31,44 @@ pub const PAIRS: [[Kind; 2]; 16] = {
         [Cylindrical(Translation), TranslationalPlane],
         [TranslationalPlane, Cylindrical(Translation)],
         [TranslationalPlane, TranslationalPlane],
+        [Planar(Nothing), Identity],
+        [Spherical, Identity],
+        [Cylindrical(Nothing), Identity],
+        [TranslationalPlane, Identity],
+        [TranslationalPlane, Spherical],
+        [Spherical, TranslationalPlane],
+        [Cylindrical(Nothing), Spherical],
+        [Spherical, Cylindrical(Nothing)],
+        [Planar(Nothing), Cylindrical(Nothing)],
+        [Cylindrical(Nothing), Planar(Nothing)],
+        [Cylindrical(Nothing), Cylindrical(Nothing)],
+        [TranslationalPlane, Cylindrical(Nothing)],
+        [Cylindrical(Nothing), TranslationalPlane],
     ]
 };
 
-/// The intersection motion of a pair, before it is displaced.
+/// What the subspaces of a pair share, before it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meet {
     /// A rotation about z.
     Rotation,
     /// A translation along z.
     Translation,
+    /// The identity alone.
+    Nothing,
 }
 
-/// A kind of subspace, placed relative to the intersection motion along or about z.
+/// A kind of subspace, placed relative to the intersection motion along or about z, or so that it shares
+/// nothing with the other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// No motion.
+    Identity,
     /// A plane with its normal along z, or a plane that contains z.
     Planar(Meet),
     /// A sphere with its centre on z.
     Spherical,
-    /// A cylinder with its axis along z or parallel to it.
+    /// A cylinder with its axis along z, parallel to it, or skew to it.
     Cylindrical(Meet),
     /// A translational plane that contains z.
     TranslationalPlane,
@@ -59,16 +77,19 @@ pub enum Kind {
 impl Kind {
     fn dimension(self) -> usize {
         match self {
+            Self::Identity => 0,
             Self::Planar(_) | Self::Spherical => 3,
             Self::Cylindrical(_) | Self::TranslationalPlane => 2,
         }
     }
 
-    fn meet(self) -> Option<Meet> {
+    /// The motion along or about z that it contains.
+    fn meet(self) -> Meet {
         match self {
-            Self::Planar(meet) | Self::Cylindrical(meet) => Some(meet),
-            Self::Spherical => Some(Meet::Rotation),
-            Self::TranslationalPlane => Some(Meet::Translation),
+            Self::Identity => Meet::Nothing,
+            Self::Planar(meet) | Self::Cylindrical(meet) => meet,
+            Self::Spherical => Meet::Rotation,
+            Self::TranslationalPlane => Meet::Translation,
         }
     }
 }
@@ -111,6 +132,8 @@ pub fn order(leg: &Leg, section: &[Freedom]) -> String {
 pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
     use Meet::{Rotation, Translation};
     match (kind, cut) {
+        (_, Some(Meet::Nothing)) => &[],
+        (Kind::Identity, _) => &[""],
         (Kind::Planar(_), None) => &["RRR", "PRR", "RPR", "RRP", "RPP", "PRP", "PPR"],
         (Kind::Planar(_), Some(Rotation)) => &["RR", "RP", "PR", "PP"],
         (Kind::Planar(_), Some(Translation)) => &["RR", "RP", "PR"],
@@ -124,9 +147,9 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
     }
 }
 
-/// The motion that the two subspaces of a pair share.
-pub fn meet(pair: [Kind; 2]) -> Meet {
-    pair[0].meet().or(pair[1].meet()).unwrap_or(Meet::Translation)
+/// What the two subspaces of a pair share.
+pub fn meet([lower, upper]: [Kind; 2]) -> Meet {
+    if lower.meet() == upper.meet() { lower.meet() } else { Meet::Nothing }
 }
 
 /// A random mechanism of a pair of subspaces, with its decomposition.
@@ -136,13 +159,14 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
     let apart = azimuth + 0.5 + rng.f64() * (PI - 1.0);
     let places = [place(rng, pair[0], azimuth), place(rng, pair[1], apart)];
     let displacement = displacement(rng);
+    let shared = usize::from(meet != Meet::Nothing);
     let mut legs = Vec::new();
     let mut splits = Vec::new();
     for number in 1..=2 + rng.usize(..3) {
         let cut_above = rng.bool();
         let counts = [
-            places[0].kind.dimension() - usize::from(!cut_above),
-            places[1].kind.dimension() - usize::from(cut_above),
+            places[0].kind.dimension() - if cut_above { 0 } else { shared },
+            places[1].kind.dimension() - if cut_above { shared } else { 0 },
         ];
         let mut joints = Vec::new();
         let mut split = [Vec::new(), Vec::new()];
@@ -161,7 +185,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         }
         joints[0].actuated = true;
         let [lower, upper] = split;
-        splits.push(LegSplit { lower, upper, imaginary: cut_above });
+        splits.push(LegSplit { lower, upper, imaginary: cut_above && shared == 1 });
         legs.push(Leg::new(format!("leg{number}"), joints));
     }
     let axis = displacement * Vector3::z_axis();
@@ -170,11 +194,12 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
     let intersection = match meet {
         Meet::Rotation => SubspaceClass::Rotation { axis, point: origin },
         Meet::Translation => SubspaceClass::Translation { axis },
+        Meet::Nothing => SubspaceClass::Identity,
     };
     let imaginary_joints = splits.iter().filter(|split| split.imaginary).count();
     let decomposition = Decomposition {
-        lambda: pair[0].dimension() + pair[1].dimension() - 1,
-        mobility: pair[0].dimension() + pair[1].dimension() - 1,
+        lambda: pair[0].dimension() + pair[1].dimension() - shared,
+        mobility: pair[0].dimension() + pair[1].dimension() - shared,
         lower,
         upper,
         intersection,
@@ -242,6 +267,7 @@ pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>)
             SubspaceClass::Cylindrical { axis: g * axis, point: g * point }
         }
         SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
+        SubspaceClass::Identity => SubspaceClass::Identity,
         other => panic!("{other}: not a subspace of these mechanisms"),
     };
     Decomposition {
@@ -255,8 +281,12 @@ pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>)
 fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
     let side = Vector3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let (normal, point) = match kind {
-        Kind::Planar(Meet::Rotation) | Kind::Cylindrical(Meet::Rotation) => {
-            (Vector3::z(), Point3::origin())
+        Kind::Identity
+        | Kind::Planar(Meet::Rotation | Meet::Nothing)
+        | Kind::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
+        // Its axis passes z at a distance of one, and is not parallel to any of the planes.
+        Kind::Cylindrical(Meet::Nothing) => {
+            (side.cross(&Vector3::z()) * 0.8 + Vector3::z() * 0.6, Point3::from(side))
         }
         Kind::Planar(Meet::Translation) | Kind::TranslationalPlane => (side, Point3::origin()),
         Kind::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
@@ -272,6 +302,7 @@ impl Place {
         let normal = Unit::new_normalize(g * self.normal);
         let point = g * self.point;
         match self.kind {
+            Kind::Identity => SubspaceClass::Identity,
             Kind::Planar(_) => SubspaceClass::Planar { normal },
             Kind::Spherical => SubspaceClass::Spherical { centre: point },
             Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
@@ -295,6 +326,7 @@ fn section_joints(
     let (revolute, prismatic) = (JointKind::Revolute, JointKind::Prismatic);
     let sign = |rng: &mut Rng| if rng.bool() { 1.0 } else { -1.0 };
     match place.kind {
+        Kind::Identity => vec![],
         Kind::Spherical if cut.is_none() && options.balls && rng.bool() => {
             vec![joint(JointKind::Spherical, Vector3::z(), place.point)]
         }
@@ -360,6 +392,9 @@ fn section_joints(
             // With a revolute imaginary joint the other joint must advance; with a prismatic one it
             // must rotate.
             let kinds: &[JointKind] = match (cut, meet) {
+                (Some(_), Meet::Nothing) => {
+                    unreachable!("no imaginary joint without a shared motion")
+                }
                 (Some(_), Meet::Rotation) => &[prismatic, JointKind::Helical { pitch: 0.2 }],
                 (Some(_), Meet::Translation) => &[revolute, JointKind::Helical { pitch: 0.2 }],
                 (None, _) => &[

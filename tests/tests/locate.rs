@@ -46,7 +46,7 @@ fn outside_says_how_far_and_where() {
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let pose: Vec<f64> =
             manipulator.task().home().iter().map(|q| q + rng.f64() - 0.5).collect();
-        let normal = manipulator.task().direction;
+        let normal = manipulator.task().intersection.as_ref().unwrap().direction;
         let by = 0.01 + 0.2 * rng.f64();
         let out =
             Translation3::from(normal.into_inner() * by) * manipulator.task().displacement(&pose);

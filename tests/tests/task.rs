@@ -4,6 +4,7 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3, vector};
 use opm_core::decomposition::decompose;
+use opm_core::group::MotionType;
 use opm_core::group::subspace::{SubspaceClass, UP};
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::family::plano_spherical::Home;
@@ -71,12 +72,16 @@ fn each_coordinate_moves_along_its_own_screw() {
             let options = Options { limited: 0.0, balls: true };
             let (mechanism, d) = mechanism(&mut rng, pair, options);
             let (axis, line) = match d.intersection {
-                SubspaceClass::Rotation { axis, point } => (axis, Some(point)),
-                SubspaceClass::Translation { axis } => (axis, None),
+                SubspaceClass::Rotation { axis, point } => (Some(axis), Some(point)),
+                SubspaceClass::Translation { axis } => (Some(axis), None),
+                SubspaceClass::Identity => (None, None),
                 _ => unreachable!(),
             };
             let p = mechanism.platform;
-            let reference = line.map_or(p, |q| q + axis.into_inner() * axis.dot(&(p - q)));
+            let on = |q: Point3<f64>, axis: Unit<Vector3<f64>>| {
+                q + axis.into_inner() * axis.dot(&(p - q))
+            };
+            let reference = line.zip(axis).map_or(p, |(q, axis)| on(q, axis));
             let manipulator = Manipulator::with_decomposition(mechanism, d.clone()).unwrap();
             let home = manipulator.task().home();
             for (number, coordinate) in manipulator.task_coordinates().iter().enumerate() {
@@ -92,20 +97,26 @@ fn each_coordinate_moves_along_its_own_screw() {
                         plane = Some(normal);
                         (standing(normal), reference)
                     }
-                    SubspaceClass::Cylindrical { point, .. } => {
+                    SubspaceClass::Cylindrical { point, axis: own } => {
+                        let axis = axis.unwrap_or_else(|| upward(own));
                         (axis, point + axis.into_inner() * axis.dot(&(reference - point)))
                     }
-                    SubspaceClass::Spherical { centre } => (axis, centre),
-                    _ => (axis, reference),
+                    SubspaceClass::Spherical { centre } => {
+                        (axis.unwrap_or(Vector3::z_axis()), centre)
+                    }
+                    _ => (axis.unwrap(), reference),
                 };
                 let [first, second] = in_plane(third);
                 let (amount, at_home) = (0.1 + 0.1 * rng.f64(), coordinate.home);
-                let square = upward(Unit::new_normalize(plane.unwrap_or(third).cross(&axis)));
+                let w = match (axis, plane) {
+                    (Some(axis), Some(normal)) => upward(Unit::new_normalize(normal.cross(&axis))),
+                    _ => third,
+                };
                 let (expected, measured) = match coordinate.name {
                     "x" => (along(first, amount), first.dot(&origin.coords)),
                     "y" => (along(second, amount), second.dot(&origin.coords)),
                     "z" => (along(third, amount), third.dot(&origin.coords)),
-                    "w" => (along(square, amount), square.dot(&origin.coords)),
+                    "w" => (along(w, amount), w.dot(&origin.coords)),
                     "theta" | "phi" | "zeta" | "psi" => (about(third, origin, amount), 0.0),
                     "mu" => (about(first, origin, amount), 0.0),
                     "nu" | "xi" => (about(second, origin, amount), 0.0),
@@ -197,7 +208,7 @@ fn rounding_does_not_turn_the_positive_direction() {
             else {
                 panic!()
             };
-            assert_eq!(manipulator.task().direction, axis);
+            assert_eq!(manipulator.task().intersection.as_ref().unwrap().direction, axis);
             assert!(axis.dot(&vector![0.6, 0.2, 0.0]) > 0.6, "{rise:e}: {axis:?}");
             compared += 1;
         }
@@ -309,7 +320,8 @@ fn a_small_turn_turns_no_coordinate_round() {
                 };
                 let (one, other) = (of(turn), of(little * turn));
                 let (task, turned) = (one.task(), other.task());
-                assert!(task.direction.dot(&up) > 0.0);
+                let direction = task.intersection.as_ref().unwrap().direction;
+                assert!(direction.dot(&up) > 0.0);
                 for (frame, after) in [(&task.lower, &turned.lower), (&task.upper, &turned.upper)] {
                     // A direction projected into a plane moves by more than the plane: at most by
                     // the inverse of the sine of 6 degrees, the steepest angle at which x is
@@ -337,14 +349,15 @@ fn a_small_turn_turns_no_coordinate_round() {
 }
 
 /// The hints that a file may give for the frame of a section.
-fn hints(frame: &Subspace, names: &[&str], rotation: bool) -> FrameHints {
+fn hints(frame: &Subspace, names: &[&str], shared: Option<MotionType>) -> FrameHints {
     let axis = |number: usize| Some(frame.axes.column(number).into_owned());
     let plane = matches!(frame.kind, SubspaceKind::Planar | SubspaceKind::TranslationalPlane);
     let has = |name| names.contains(&name);
     FrameHints {
         x: axis(0).filter(|_| has("x") || has("mu") || has("zeta")),
         w: axis(1).filter(|_| has("w")),
-        normal: axis(2).filter(|_| plane && !rotation && names != ["w"]),
+        axis: axis(2).filter(|_| !plane && shared.is_none() && !names.is_empty()),
+        normal: axis(2).filter(|_| plane && shared != Some(MotionType::Rotation) && names != ["w"]),
         origin: Some(frame.measured_from).filter(|_| ["x", "w", "z"].iter().any(|name| has(name))),
     }
 }
@@ -363,14 +376,14 @@ fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
             let here = Manipulator::with_decomposition(plain.clone(), decomposition.clone());
             let here = here.unwrap();
             let task = here.task();
-            let rotation = task.intersection_point.is_some();
+            let shared = task.shared();
             let names: Vec<&str> = task.coordinates.iter().map(|c| c.name).collect();
             let (v, b) = names.split_at(task.lower_count);
             let mut framed = plain.clone();
             framed.task = TaskHints {
-                axis: Some(task.direction.into_inner()),
-                lower: hints(&task.lower, v, rotation),
-                upper: hints(&task.upper, b, rotation),
+                axis: task.intersection.as_ref().map(|axis| axis.direction.into_inner()),
+                lower: hints(&task.lower, v, shared),
+                upper: hints(&task.upper, b, shared),
                 home: Vec::new(),
             };
             let g = displacement(&mut rng);

@@ -201,6 +201,8 @@ pub(crate) trait ClosedForm {
 /// The closed form of one section of a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Chain {
+    /// No joints, in the trivial subspace: the outer link is the inner one.
+    Rigid,
     /// Three joints in a plane.
     Planar(PlanarChain),
     /// Three revolutes through a point.
@@ -222,6 +224,10 @@ impl Chain {
     pub fn new(subspace: &Subspace, joints: &[ChainJoint]) -> Result<Self, ChainError> {
         let needs = |needed| ChainError::Count { needed, given: joints.len() };
         match subspace.kind {
+            SubspaceKind::Identity => match joints {
+                [] => Ok(Self::Rigid),
+                _ => Err(needs(0)),
+            },
             SubspaceKind::Planar => {
                 let joints: [_; 3] = joints.try_into().map_err(|_| needs(3))?;
                 PlanarChain::new(planar_joints(subspace, &joints)?).map(Self::Planar)
@@ -252,7 +258,7 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.shape(branch, limits),
             Self::Translational(chain) => Some(chain.shape(limits)),
-            Self::Spherical(_) | Self::Ball(_) | Self::Cylindrical(_) => None,
+            Self::Rigid | Self::Spherical(_) | Self::Ball(_) | Self::Cylindrical(_) => None,
         }
     }
 
@@ -261,7 +267,7 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.has_choice(),
             Self::Spherical(_) => true,
-            Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => false,
+            Self::Rigid | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => false,
         }
     }
 
@@ -269,13 +275,18 @@ impl Chain {
     pub(crate) fn counts_turns(&self) -> bool {
         match self {
             Self::Cylindrical(chain) => chain.counts_turns(),
-            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => false,
+            Self::Rigid
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Ball(_)
+            | Self::Translational(_) => false,
         }
     }
 
     /// The number of freedoms. Only so many of the three displacements of a solution are used.
     pub fn freedoms(&self) -> usize {
         match self {
+            Self::Rigid => 0,
             Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
             Self::Cylindrical(_) | Self::Translational(_) => 2,
         }
@@ -297,6 +308,7 @@ impl Chain {
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let pad = |[a, b]: [JointDisplacement; 2]| [a, b, JointDisplacement::Value(0.0)];
         match self {
+            Self::Rigid => Ok([JointDisplacement::Value(0.0); 3]),
             Self::Planar(chain) => chain.inverse(target.planar(), branch),
             Self::Spherical(chain) => chain.inverse(target.spherical(), branch),
             Self::Ball(ball) => Ok(ball.inverse(target.spherical())),
@@ -319,7 +331,11 @@ impl Chain {
             Self::Spherical(chain) => chain
                 .first(&chain.third_axis(target.spherical()), branch)
                 .map(JointDisplacement::Direction),
-            Self::Planar(_) | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+            Self::Rigid
+            | Self::Planar(_)
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => {
                 self.inverse(target, branch).map(|displacements| displacements[0])
             }
         }
@@ -329,12 +345,12 @@ impl Chain {
 /// Properties of a chain with one joint held.
 impl Chain {
     /// The targets at which the chain closes with joint number `joint` held at `displacement`. `None` for a
-    /// spherical joint, whose rotation vector has no closed form along a path.
+    /// spherical joint, whose rotation vector has no closed form along a path, and for a chain without joints.
     pub(crate) fn held(&self, joint: usize, displacement: JointDisplacement) -> Option<Surface> {
         match self {
             Self::Planar(chain) => Some(chain.held(joint, displacement)),
             Self::Spherical(chain) => Some(chain.held(joint, displacement)),
-            Self::Ball(_) => None,
+            Self::Rigid | Self::Ball(_) => None,
             Self::Cylindrical(chain) => Some(chain.held(joint, displacement)),
             Self::Translational(chain) => Some(chain.held(joint, displacement)),
         }
@@ -345,7 +361,9 @@ impl Chain {
         let middle = match self {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
-            Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => Vec::new(),
+            Self::Rigid | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+                Vec::new()
+            }
         };
         middle.into_iter().filter_map(|displacement| self.held(1, displacement)).collect()
     }
@@ -355,7 +373,7 @@ impl Chain {
         let rotation = match self {
             Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
-            Self::Ball(_) | Self::Translational(_) => false,
+            Self::Rigid | Self::Ball(_) | Self::Translational(_) => false,
             Self::Cylindrical(chain) => chain.is_rotation(joint),
         };
         if rotation { limits.direction_ends() } else { limits.value_ends() }
@@ -366,7 +384,7 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.size(),
             Self::Cylindrical(chain) => chain.joints().iter().map(|j| j.advance.abs()).sum(),
-            Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => 0.0,
+            Self::Rigid | Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => 0.0,
         }
     }
 }

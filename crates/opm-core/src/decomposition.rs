@@ -7,6 +7,10 @@
 //! two problems in small groups. See Selvi, "Kinematic analysis of overconstrained manipulators
 //! with partial subspaces using decomposition method", Robotica, section 2.
 //!
+//! A mechanism whose legs all move in one group is a decomposition with nothing to split: its
+//! upper group is the identity. Two groups may also share nothing but the identity. Then the pose
+//! fixes the displacement of each section, and no leg has an imaginary joint.
+//!
 //! A split found from the screws at home is valid for all poses: whatever the joint values, a leg's
 //! lower part displaces by elements of `A` and its upper part by elements of `B`.
 
@@ -58,18 +62,20 @@ pub struct Decomposition {
     pub mobility: usize,
     /// The group `A` in which the lower parts of the legs move.
     pub lower: SubspaceClass,
-    /// The group `B` in which the upper parts of the legs move.
+    /// The group `B` in which the upper parts of the legs move; the identity where all legs move in
+    /// one group.
     pub upper: SubspaceClass,
-    /// The motion that both groups share: a rotation, a translation or a helical motion. Its axis
-    /// points in the positive direction: to the side that the mechanism's
+    /// The motion that both groups share: a rotation, a translation or a helical motion; the
+    /// identity where they share nothing else. Its axis points in the positive direction: to the side that the mechanism's
     /// [`TaskHints`](crate::mechanism::TaskHints) give, or else up.
     pub intersection: SubspaceClass,
     /// The split of each leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
     /// The number of independent motions of the imaginary joints, `J`: the mobility of the upper
-    /// section with its imaginary joints, at most `mobility`.
+    /// section with its imaginary joints, at most `mobility`; zero where the groups share no motion.
     pub imaginary_joints: usize,
-    /// The number of motions left to the lower section with the imaginary joints held, `M = N − J`.
+    /// The number of motions left to the lower section with the imaginary joints held, `M = N − J`;
+    /// with the upper section held, where the groups share no motion.
     pub first_section_motions: usize,
     /// Mobility of the upper section without imaginary joints, `F0`. It is 0 if the upper section
     /// is passive, that is, driven by the imaginary joints alone.
@@ -220,7 +226,13 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
         let free = report.loose;
         return Err(DecomposeError::Loose { mobility, actuators, controlled, free });
     }
-    let mut found = search(mechanism, lambda, mobility).0;
+    let mut found = search(mechanism, lambda, mobility, 1).0;
+    if found.is_empty() {
+        found.extend(one_subspace(mechanism, lambda, mobility));
+    }
+    if found.is_empty() {
+        found = search(mechanism, lambda, mobility, 0).0;
+    }
     if found.is_empty() {
         let (odd, miss) = odd_joint(mechanism, mobility).unzip();
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
@@ -243,7 +255,7 @@ fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<([String; 2], Joi
             let left_out = others.legs[number].joints.remove(joint);
             let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
             let lambda = MotionSubspace::span(frame, &screws).dimension();
-            let found = search(&others, lambda, mobility).0;
+            let found = search(&others, lambda, mobility, 1).0;
             let misses = found.iter().flat_map(|split| joint_misses(&left_out, split, frame));
             if let Some(miss) = misses.min_by(|a, b| a.deviation.total_cmp(&b.deviation)) {
                 if odd.is_some() {
@@ -281,30 +293,69 @@ fn joint_misses(joint: &Joint, split: &Decomposition, frame: Frame) -> [JointMis
 /// but it is not the only criterion.
 pub const MAX_DECOMPOSITIONS: usize = 1024;
 
-/// All decompositions, and the number of partial splits that were visited.
-fn search(mechanism: &Mechanism, lambda: usize, mobility: usize) -> (Vec<Decomposition>, usize) {
+/// The decomposition of a mechanism whose legs all move in one proper subgroup: the subgroup is the lower
+/// section, and there is no upper one. `None` if the joint screws do not span such a subgroup.
+fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option<Decomposition> {
+    let frame = frame(mechanism);
+    let screws: Vec<_> =
+        mechanism.legs.iter().flat_map(Leg::screws).map(|screw| frame.unit(&screw)).collect();
+    let group = fit(&screws).filter(|group| group.class.dimension() == lambda)?;
+    if group.class == SubspaceClass::Full {
+        return None;
+    }
+    let whole = |leg: &Leg| {
+        let freedom = |(joint, j): (usize, &Joint)| {
+            (0..j.screws().len()).map(move |index| Freedom { joint, index })
+        };
+        let lower = leg.joints.iter().enumerate().flat_map(freedom).collect();
+        LegSplit { lower, upper: vec![], imaginary: false }
+    };
+    Some(Decomposition {
+        lambda,
+        mobility,
+        lower: group.class.restored(&frame),
+        upper: SubspaceClass::Identity,
+        intersection: SubspaceClass::Identity,
+        legs: mechanism.legs.iter().map(whole).collect(),
+        imaginary_joints: 0,
+        first_section_motions: mobility,
+        upper_mobility: 0,
+        redundancy: 0,
+        deviation: group.deviation,
+    })
+}
+
+/// All decompositions into two subgroups that share a group of `shared` dimensions, and the number of partial
+/// splits that were visited.
+fn search(
+    mechanism: &Mechanism,
+    lambda: usize,
+    mobility: usize,
+    shared: usize,
+) -> (Vec<Decomposition>, usize) {
     let frame = frame(mechanism);
     let candidates: Vec<Vec<SplitCandidate>> =
         mechanism.legs.iter().map(|leg| search::candidates(leg, &frame)).collect();
     let mut found = vec![];
     let visited = search::splits(&candidates, lambda, &mut |split| {
-        let sections = Sections::new(split, lambda);
+        let sections = Sections::new(split, lambda, shared);
         found.extend(sections.map(|s| s.decomposition(mechanism, &frame, lambda, mobility)));
         found.len() < MAX_DECOMPOSITIONS
     });
     (found, visited)
 }
 
-/// A split of every leg whose two sections are groups that share a one-parameter group.
+/// A split of every leg whose two sections are groups that share a one-parameter group, or the identity alone.
 struct Sections<'a> {
     legs: &'a [&'a SplitCandidate],
     lower: Fit,
     upper: Fit,
-    intersection: Fit,
+    /// `None` where they share the identity alone.
+    intersection: Option<Fit>,
 }
 
 impl<'a> Sections<'a> {
-    fn new(legs: &'a [&'a SplitCandidate], lambda: usize) -> Option<Self> {
+    fn new(legs: &'a [&'a SplitCandidate], lambda: usize, shared: usize) -> Option<Self> {
         let partial = |screws: fn(&SplitCandidate) -> &[Vector6<f64>]| {
             let all: Vec<_> =
                 legs.iter().flat_map(|candidate| screws(candidate)).copied().collect();
@@ -314,10 +365,13 @@ impl<'a> Sections<'a> {
         let lower = partial(SplitCandidate::lower_screws)?;
         let upper = partial(SplitCandidate::upper_screws)?;
         let intersection = lower.basis.intersection(&upper.basis);
-        if intersection.dimension() != 1 {
+        if intersection.dimension() != shared {
             return None;
         }
-        let intersection = fit(intersection.vectors())?;
+        let intersection = match shared {
+            0 => None,
+            _ => Some(fit(intersection.vectors())?),
+        };
         Some(Self { legs, lower, upper, intersection })
     }
 
@@ -332,7 +386,7 @@ impl<'a> Sections<'a> {
         let section = imaginary::UpperSection {
             basis: &self.upper.basis,
             legs: &parts,
-            intersection: self.intersection.basis.vectors()[0],
+            intersection: self.intersection.as_ref().map(|fit| fit.basis.vectors()[0]),
         };
         let key = |leg: &Leg, split: &SplitCandidate| {
             (split.upper.len(), split.lower.len(), leg.name.clone())
@@ -345,8 +399,14 @@ impl<'a> Sections<'a> {
             upper: candidate.upper.clone(),
             imaginary: choice.legs.contains(&i),
         };
-        let imaginary_joints = choice.mobility.min(mobility);
-        let mut intersection = self.intersection.class.restored(frame);
+        // The upper section's own motions are not those of imaginary joints, where there can be none.
+        let upper_motions = choice.mobility.min(mobility);
+        let mut intersection = SubspaceClass::Identity;
+        let mut imaginary_joints = 0;
+        if let Some(fit) = &self.intersection {
+            intersection = fit.class.restored(frame);
+            imaginary_joints = upper_motions;
+        }
         if let Some(hint) = &mechanism.task.axis {
             intersection = intersection.towards(hint);
         }
@@ -358,7 +418,7 @@ impl<'a> Sections<'a> {
             intersection,
             legs: self.legs.iter().enumerate().map(split).collect(),
             imaginary_joints,
-            first_section_motions: mobility - imaginary_joints,
+            first_section_motions: mobility - upper_motions,
             upper_mobility: choice.without,
             redundancy: (choice.legs.len() + choice.without).saturating_sub(choice.mobility),
             deviation: self.lower.deviation.max(self.upper.deviation),

@@ -24,6 +24,7 @@ use crate::chain::Branch;
 use crate::chain::limits::Limits;
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
+use crate::task::{CoordinateKind, TaskCoordinate};
 use affine::{Affine, Plane};
 use share::Share;
 use std::f64::consts::{PI, TAU};
@@ -134,10 +135,11 @@ impl Manipulator {
             } else {
                 Affine::constant(side.middle)
             };
-            let of_upper = query == BoxQuery::Upper || number >= lower_count;
+            let number = if query == BoxQuery::Upper { lower_count + number } else { number };
+            let kind = self.task().coordinates.get(number).map(TaskCoordinate::kind);
             match side.half_turn {
                 None => Coordinate::Linear(value),
-                Some(half_turn) => Coordinate::Polar(polar(half_turn, value, of_upper)),
+                Some(half_turn) => Coordinate::Polar(polar(half_turn, value, kind)),
             }
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
@@ -158,14 +160,14 @@ impl Manipulator {
                 let v = target::task::lower(task, &coordinates[..lower_count]);
                 let mut taus = coordinates[lower_count..].iter();
                 all(legs, |leg| {
-                    let tau = match self.legs[leg].split_section {
-                        Section::Upper => match taus.next() {
+                    let tau = match self.legs[leg].bridge() {
+                        Some(Section::Upper) => match taus.next() {
                             Some(&Coordinate::Linear(tau)) => tau,
                             _ => unreachable!(
                                 "a length or an angle for the intersection displacement of every leg"
                             ),
                         },
-                        Section::Lower => Affine::constant(0.0),
+                        Some(Section::Lower) | None => Affine::constant(0.0),
                     };
                     conditions.lower(leg, &v, tau)
                 })
@@ -190,12 +192,16 @@ impl Manipulator {
 }
 
 /// The unit vector at the angle that `at` replaces: `xi`, or `nu` minus its value at home.
-fn polar<const N: usize>(half_turn: HalfTurn, at: Affine<N>, of_upper: bool) -> Plane<N> {
+fn polar<const N: usize>(
+    half_turn: HalfTurn,
+    at: Affine<N>,
+    kind: Option<CoordinateKind>,
+) -> Plane<N> {
     let sign = half_turn.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
     let alpha = Plane { re: cosine, im: sine };
     // nu is α - π/2.
-    if of_upper { alpha } else { Plane { re: alpha.im, im: -alpha.re } }
+    if kind == Some(CoordinateKind::Nu) { Plane { re: alpha.im, im: -alpha.re } } else { alpha }
 }
 
 /// The share for which all legs meet their conditions. Legs after one that reaches nothing are skipped.
@@ -284,7 +290,9 @@ impl LegConditions<'_> {
         let compiled = self.leg(leg);
         match compiled.split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |displacements| {
-                self.unwound(compiled, displacements[0], |tau| self.reaches(leg, v, tau))
+                let none = Enclosed::Value(Affine::constant(0.0));
+                let tau = compiled.imaginary_joint().map_or(none, |joint| displacements[joint]);
+                self.unwound(compiled, tau, |tau| self.reaches(leg, v, tau))
             }),
             Section::Lower => self.section(leg, Section::Lower, v, |displacements| {
                 if !compiled.upper_constrains {

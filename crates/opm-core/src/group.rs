@@ -6,6 +6,7 @@
 //!
 //! | subgroup | file | displacement | twist |
 //! |---|---|---|---|
+//! | trivial | `identity.rs` | the unit type | zero |
 //! | planar, `SE(2)` | `planar.rs` | `z ↦ r z + t`, complex numbers | `(ω, vx, vy)` |
 //! | spherical, `SO(3)` | `spherical.rs` | a rotation matrix | `ω` |
 //! | cylindrical | `cylindrical.rs` | an angle and an advance | `(ω, v, 0)` |
@@ -22,6 +23,7 @@
 mod cylindrical;
 mod displacement;
 mod frame;
+mod identity;
 mod intersection;
 mod joint_displacement;
 mod kind;
@@ -46,6 +48,7 @@ pub(crate) use subgroup::{LocalTwist, Subgroup};
 pub use translational_plane::TranslationalMotion;
 
 pub(crate) use cylindrical::Cylindrical;
+pub(crate) use identity::Identity;
 pub(crate) use planar::{Planar, angular_and_linear, linear, quarter};
 pub(crate) use spherical::{Spherical, rotated, rotation_about, rotation_vector};
 pub(crate) use translational_plane::TranslationalPlane;

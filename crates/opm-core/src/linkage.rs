@@ -173,6 +173,9 @@ impl Linkage {
             return Err(LinkageError::NotCovered(subspaces));
         }
 
+        let Some(axis) = &task.intersection else {
+            return Err(LinkageError::NotCovered(subspaces));
+        };
         let first = [0, one.coordinates().count()];
         let axes = |(leg, number): (&Leg, usize), part: &[Freedom]| {
             let axis = |freedom: &Freedom| loop_axis(leg, first[number], *freedom);
@@ -181,7 +184,7 @@ impl Linkage {
         let compile = |section: Section, part: fn(&LegSplit) -> &[Freedom]| {
             let one = axes((one, 0), part(split_one))?;
             let two = axes((two, 1), part(split_two))?;
-            Loop::new(section, -task.direction, one, two)
+            Loop::new(section, -axis.direction, one, two)
         };
         let sections = [
             compile(Section::Lower, |split| &split.lower)?,

@@ -41,7 +41,7 @@ pub use transitions::Transitions;
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
-use crate::group::JointDisplacement;
+use crate::group::{JointDisplacement, MotionType};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
@@ -347,11 +347,13 @@ impl Compiled {
 
 impl ImaginaryJoint {
     pub(crate) fn new(leg: &Leg, number: usize, task: &Task) -> Self {
-        let quantity =
-            if task.intersection_point.is_some() { Quantity::Angle } else { Quantity::Length };
-        let (home, sign) = match &leg.imaginary {
-            Some(label) => (label.home, label.positive.dot(&task.direction).signum()),
-            None => (0.0, 1.0),
+        let quantity = match task.shared() {
+            Some(MotionType::Rotation) => Quantity::Angle,
+            Some(MotionType::Translation) | None => Quantity::Length,
+        };
+        let (home, sign) = match (&leg.imaginary, &task.intersection) {
+            (Some(label), Some(axis)) => (label.home, label.positive.dot(&axis.direction).signum()),
+            (None, _) | (_, None) => (0.0, 1.0),
         };
         Self { name: leg.imaginary_name(), leg: number, quantity, home, sign }
     }

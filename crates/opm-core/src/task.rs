@@ -2,14 +2,15 @@
 //!
 //! A pose is `g = v · b`, `v` in the lower subspace `A` and `b` in the upper one, `B`. Since the
 //! two share the intersection motion `I`, one of them is taken modulo `I`: `v` where `I` is a
-//! rotation, `b` where it is a translation.
+//! rotation, `b` where it is a translation. Two subspaces may share the identity alone. A mechanism whose legs
+//! all move in one subgroup is of that kind too: `A` is the subgroup, and `B` is the identity.
 //!
-//! | subspace | as `A`, `I` a rotation | as `A`, `I` a translation | as `B`, `I` a rotation | as `B`, `I` a translation |
-//! |---|---|---|---|---|
-//! | planar | `x y` | `x y theta` | `x y phi` | `w phi` |
-//! | spherical | `mu nu` | | `zeta xi psi` | |
-//! | cylindrical | `z` | `theta z` | `phi z` | `phi` |
-//! | translational plane | | `x y` | | `w` |
+//! | subspace | as `A`, `I` a rotation | a translation | none | as `B`, `I` a rotation | a translation | none |
+//! |---|---|---|---|---|---|---|
+//! | planar | `x y` | `x y theta` | `x y theta` | `x y phi` | `w phi` | `x y phi` |
+//! | spherical | `mu nu` | | `zeta xi psi` | `zeta xi psi` | | `zeta xi psi` |
+//! | cylindrical | `z` | `theta z` | `theta z` | `phi z` | `phi` | `phi w` |
+//! | translational plane | | `x y` | `x y` | | `w` | `x y` |
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
@@ -31,6 +32,8 @@
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
 //! * `w` points up.
+//! * Without `I`, the third direction is a plane's normal, a cylinder's axis, which points up, or the base's z
+//!   for a sphere.
 //! * The reference point is the platform's, moved to the axis of `I` where that is a rotation, to a
 //!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin.
 //!
@@ -40,7 +43,8 @@
 //! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can override these rules: the sense of
 //! `d`, of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; the
 //! values at home change accordingly. Where `I` is a rotation about a plane's normal, that normal cannot be
-//! chosen: it is `axis`.
+//! chosen: it is `axis`. Without `I`, `axis` of a section is the third direction of a sphere's frame, or the
+//! sense of a cylinder's axis.
 
 mod coordinate;
 mod displacement;
@@ -190,6 +194,15 @@ pub enum FrameProblem {
         /// The keys of the frame that can be chosen.
         free: Vec<&'static str>,
     },
+    /// The hint orients the intersection motion, and the two subspaces share none.
+    NoIntersection,
+    /// The hint is perpendicular to the line whose sense it chooses.
+    Perpendicular {
+        /// The direction given.
+        given: [f64; 3],
+        /// The direction of the line.
+        line: [f64; 3],
+    },
     /// The hint chooses the sense of a line, and is not along that line.
     NotAlong {
         /// The direction given.
@@ -215,6 +228,14 @@ impl fmt::Display for FrameProblem {
                     [] => write!(f, "has nothing to choose"),
                     free => write!(f, "has {} to choose", free.join(", ")),
                 }
+            }
+            Self::NoIntersection => f.write_str(
+                "orients the motion that the two subspaces share, but these share none, expected `axis` of \
+                 `lower` or `upper`",
+            ),
+            Self::Perpendicular { given, line } => {
+                let (given, along) = (triple(given), triple(line));
+                write!(f, "is {given}, perpendicular to the axis {along} that it orients")
             }
             Self::NotAlong { given, line } => {
                 let (given, back) = (triple(given), triple(&line.map(|c| -c)));
@@ -249,18 +270,31 @@ pub struct Task {
     pub lower_intersection: IntersectionMotion,
     /// The intersection motion in `B`'s frame.
     pub upper_intersection: IntersectionMotion,
-    /// The unit direction of the intersection motion, base coordinates.
-    pub direction: Unit<Vector3<f64>>,
-    /// A point of the intersection motion's axis at home, base coordinates, metres; `None` where the motion is
-    /// a translation.
-    pub intersection_point: Option<Point3<f64>>,
+    /// The intersection motion at home; `None` where the subspaces share the identity alone.
+    pub intersection: Option<IntersectionAxis>,
     /// The coordinates of the pose: those of `v`, then those of `b`.
     pub coordinates: Vec<TaskCoordinate>,
     /// The number of coordinates of `v`.
     pub lower_count: usize,
-    /// The inverse of the platform's orientation at home in the upper frame; `None` where the pose has no Euler
-    /// angles, and where it is the identity.
+    /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
+    /// angles; `None` where the pose has no Euler angles, and where it is the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
+}
+
+/// The intersection motion at home, in base coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IntersectionAxis {
+    /// The unit direction of its axis, or of the translation.
+    pub direction: Unit<Vector3<f64>>,
+    /// A point of its axis, metres; `None` where the motion is a translation.
+    pub point: Option<Point3<f64>>,
+}
+
+impl IntersectionAxis {
+    /// Whether the motion is a rotation or a translation.
+    pub fn motion_type(&self) -> MotionType {
+        if self.point.is_some() { MotionType::Rotation } else { MotionType::Translation }
+    }
 }
 
 impl Task {
@@ -271,17 +305,27 @@ impl Task {
     /// that motion, a hint on a frame that does not fit the geometry, or a home value for an unknown
     /// coordinate.
     pub fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, TaskError> {
-        let (axis, point) = match &decomposition.intersection {
-            SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
-            SubspaceClass::Translation { axis } => (*axis, None),
+        let intersection = match &decomposition.intersection {
+            SubspaceClass::Rotation { axis, point } => {
+                Some(IntersectionAxis { direction: *axis, point: Some(*point) })
+            }
+            SubspaceClass::Translation { axis } => {
+                Some(IntersectionAxis { direction: *axis, point: None })
+            }
+            SubspaceClass::Identity => None,
             _ => return Err(TaskError::Screw),
         };
-        if let Some(hint) = mechanism.task.axis
-            && hint.normalize().dot(&axis).abs() <= TOLERANCE
+        let hint = mechanism.task.axis;
+        if let (Some(hint), Some(IntersectionAxis { direction, .. })) = (hint, &intersection)
+            && hint.normalize().dot(direction).abs() <= TOLERANCE
         {
-            return Err(TaskError::Axis { given: hint.into(), along: axis.into_inner().into() });
+            return Err(TaskError::Axis { given: hint.into(), along: (**direction).into() });
         }
-        let meeting = Meeting { axis, point, platform: mechanism.platform };
+        if hint.is_some() && intersection.is_none() {
+            let problem = FrameProblem::NoIntersection;
+            return Err(TaskError::Frame { key: TaskKey::Axis, problem });
+        }
+        let meeting = Meeting { intersection, platform: mechanism.platform };
         let frame = |class: &SubspaceClass, section: Section| {
             frame::lay(class, section, &meeting, mechanism.task.frame(section)).map_err(|error| {
                 match error {
@@ -295,10 +339,11 @@ impl Task {
         };
         let lower = frame(&decomposition.lower, Section::Lower)?;
         let upper = frame(&decomposition.upper, Section::Upper)?;
-        let rotation = point.is_some();
-        let mut coordinates = coordinate::of_lower(&lower, rotation);
+        let intersection = meeting.intersection;
+        let shared = intersection.as_ref().map(IntersectionAxis::motion_type);
+        let mut coordinates = coordinate::of_lower(&lower, shared);
         let lower_count = coordinates.len();
-        coordinates.extend(coordinate::of_upper(&upper, rotation));
+        coordinates.extend(coordinate::of_upper(&upper, shared));
         for (name, value) in &mechanism.task.home {
             match coordinates.iter_mut().find(|c| c.name == name) {
                 Some(coordinate) => coordinate.home = *value,
@@ -309,16 +354,18 @@ impl Task {
                 }
             }
         }
-        let home_orientation_inverse = if upper.kind == SubspaceKind::Spherical {
-            let home = |i: usize| coordinates[lower_count + i].home;
+        let zeta = coordinates.iter().position(|c| c.kind() == CoordinateKind::Zeta);
+        let home_orientation_inverse = zeta.and_then(|first| {
+            let home = |i: usize| coordinates[first + i].home;
             let orientation = euler(home(0), home(1), home(2));
             (orientation != Matrix3::identity()).then(|| orientation.transpose())
-        } else {
-            None
-        };
-        let motion = |frame: &Subspace| {
-            let motion = if rotation { MotionType::Rotation } else { MotionType::Translation };
-            IntersectionMotion::new(frame.kind, &frame.direction(&axis), motion)
+        });
+        let motion = |frame: &Subspace| match &intersection {
+            Some(axis) => {
+                let direction = frame.direction(&axis.direction);
+                IntersectionMotion::new(frame.kind, &direction, axis.motion_type())
+            }
+            None => IntersectionMotion::None(frame.kind),
         };
         let lower_intersection = motion(&lower);
         let upper_intersection = motion(&upper);
@@ -327,8 +374,7 @@ impl Task {
             upper,
             lower_intersection,
             upper_intersection,
-            direction: axis,
-            intersection_point: point,
+            intersection,
             coordinates,
             lower_count,
             home_orientation_inverse,
@@ -343,15 +389,49 @@ impl Task {
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(&pose[..self.lower_count], 0);
-        lower_displacement(self.form(Section::Lower), at, home, sin_cos)
+        let displacement = lower_displacement(self.form(Section::Lower), at, home, sin_cos);
+        self.from_home(Section::Lower, displacement)
+    }
+
+    /// What the two subspaces share; `None` for the identity alone.
+    #[inline]
+    pub fn shared(&self) -> Option<MotionType> {
+        self.intersection.as_ref().map(IntersectionAxis::motion_type)
+    }
+
+    /// The section that has the Euler angles of the pose; `None` where the pose has none.
+    pub(crate) fn euler_section(&self) -> Option<Section> {
+        match (self.lower.kind, self.shared(), self.upper.kind) {
+            (_, _, SubspaceKind::Spherical) => Some(Section::Upper),
+            (SubspaceKind::Spherical, None, _) => Some(Section::Lower),
+            _ => None,
+        }
+    }
+
+    /// The displacement from home of a section that its coordinates describe: Euler angles are absolute.
+    #[inline]
+    fn from_home(&self, section: Section, displacement: Displacement) -> Displacement {
+        match (displacement, &self.home_orientation_inverse) {
+            (Displacement::Spherical(absolute), Some(inverse))
+                if self.euler_section() == Some(section) =>
+            {
+                Displacement::Spherical(absolute * inverse)
+            }
+            (displacement, _) => displacement,
+        }
     }
 
     /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`.
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {
+            Displacement::Identity(()) => Path::Identity,
             Displacement::Planar(start) => Path::Planar(PlanarPath::Translation { start, rate }),
-            Displacement::Spherical(start) => Path::Spherical { start, axis: Vector3::x() },
+            // `mu` rotates about the first direction, `zeta` about the third.
+            Displacement::Spherical(start) => match self.shared() {
+                Some(_) => Path::Spherical { start, axis: Vector3::x() },
+                None => Path::Spherical { start, axis: Vector3::z() },
+            },
             Displacement::Cylindrical(start) => {
                 let rotation = self.lower_intersection.is_rotation();
                 let [angle, advance] = if rotation { [0.0, 1.0] } else { [1.0, 0.0] };
@@ -368,21 +448,16 @@ impl Task {
     pub fn upper(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(pose, self.lower_count);
         let displacement = upper_displacement(self.form(Section::Upper), at, home, sin_cos);
-        match (displacement, &self.home_orientation_inverse) {
-            (Displacement::Spherical(absolute), Some(inverse)) => {
-                Displacement::Spherical(absolute * inverse)
-            }
-            (displacement, _) => displacement,
-        }
+        self.from_home(Section::Upper, displacement)
     }
 
     /// The form of a section, which determines its coordinates.
     #[inline]
     pub(crate) fn form(&self, section: Section) -> Form {
-        let rotation = self.intersection_point.is_some();
+        let shared = self.shared();
         match section {
-            Section::Lower => Form { kind: self.lower.kind, rotation },
-            Section::Upper => Form { kind: self.upper.kind, rotation },
+            Section::Lower => Form { kind: self.lower.kind, shared },
+            Section::Upper => Form { kind: self.upper.kind, shared },
         }
     }
 
@@ -413,13 +488,17 @@ impl Task {
         self.lower.isometry(v) * self.upper.isometry(b)
     }
 
-    /// The platform's orientation at home, base coordinates: that of the Euler angles at home about the upper
-    /// frame's axes, or the identity where the pose has no Euler angles.
+    /// The platform's orientation at home, base coordinates: that of the Euler angles at home about the axes of
+    /// their section's frame, or the identity where the pose has no Euler angles.
     pub fn home_orientation(&self) -> UnitQuaternion<f64> {
         let Some(inverse) = self.home_orientation_inverse else {
             return UnitQuaternion::identity();
         };
-        let rotation = self.upper.axes * inverse.transpose() * self.upper.axes.transpose();
+        let axes = match self.euler_section() {
+            Some(Section::Lower) => self.lower.axes,
+            Some(Section::Upper) | None => self.upper.axes,
+        };
+        let rotation = axes * inverse.transpose() * axes.transpose();
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation))
     }
 

@@ -366,7 +366,7 @@ impl Manipulator {
         match leg.split_section {
             Section::Upper => {
                 let upper = solve(upper, twists.b);
-                let tau = upper.map(|u| u.x);
+                let tau = upper.map(|u| leg.imaginary_joint().map_or(0.0, |joint| u[joint]));
                 let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
                 let [twist, derivative] = twists.v;
                 let along_rate = task.lower.kind.bracket(&twist, &along);

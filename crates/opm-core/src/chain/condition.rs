@@ -81,18 +81,18 @@ pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
             Some(chain.joints().map(|joint| [joint.rotation, joint.advance]))
         }
         Chain::Translational(chain) => Some(chain.slides().map(|slide| [slide.re, slide.im])),
-        Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
+        Chain::Rigid | Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
     }
 }
 
 impl Condition {
     /// The equation that joint number `held` at `displacement` imposes on the chain's displacement. `None` for
-    /// a spherical joint, whose coordinates impose no such equation.
+    /// a spherical joint, whose coordinates impose no such equation, and for a chain without joints.
     pub fn new(chain: &Chain, held: usize, displacement: JointDisplacement) -> Option<Self> {
         match chain {
             Chain::Planar(chain) => Some(planar(&chain.joints(), held, displacement)),
             Chain::Spherical(chain) => Some(spherical(chain.axes(), held, displacement)),
-            Chain::Ball(_) => None,
+            Chain::Rigid | Chain::Ball(_) => None,
             Chain::Cylindrical(_) | Chain::Translational(_) => {
                 let joints = flat_joints(chain)?;
                 let ([a, b], [p, q]) = (joints[held], joints[1 - held]);

@@ -8,8 +8,8 @@ use nalgebra::{Unit, Vector3};
 
 /// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
 /// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Screws with
-/// two components get a zero as the third, and a chain of two joints gets the third unit vector as a third
-/// screw: then the three screws are always a square matrix, whose determinant is that of the chain.
+/// fewer components are padded with zeros, and a chain of fewer joints gets unit vectors as further screws:
+/// then the three screws are always a square matrix, whose determinant is that of the chain.
 ///
 /// # Errors
 /// A joint that is not in the subspace, or a wrong number of joints.
@@ -19,6 +19,10 @@ pub(crate) fn screws(
 ) -> Result<[LocalTwist; 3], ChainError> {
     let needs = |needed| ChainError::Count { needed, given: joints.len() };
     Ok(match subspace.kind {
+        SubspaceKind::Identity => match joints {
+            [] => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
+            _ => return Err(needs(0)),
+        },
         SubspaceKind::Planar => {
             let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
             planar_joints(subspace, joints)?.map(|joint| match joint {
@@ -62,7 +66,7 @@ pub(crate) fn screws(
 /// pivots. On an axis the determinant is constant, and is its own unit.
 pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[LocalTwist; 3], size: f64) -> f64 {
     match kind {
-        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
         SubspaceKind::Cylindrical => home[0].cross(&home[1]).z.abs(),
         SubspaceKind::Planar => {
             let pivot = |s: &LocalTwist| (s.x != 0.0).then(|| quarter(linear(s)) * s.x);

@@ -43,6 +43,7 @@ impl Track {
         displacements: &[JointDisplacement; 3],
     ) -> Option<Self> {
         match chain {
+            Chain::Rigid => None,
             Chain::Planar(chain) => {
                 let joints = chain.joints();
                 let held = |range: std::ops::Range<usize>| {

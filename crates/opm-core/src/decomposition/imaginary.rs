@@ -11,8 +11,9 @@ pub(super) struct UpperSection<'a> {
     pub basis: &'a Basis,
     /// The screws of the upper parts, leg by leg.
     pub legs: &'a [&'a [Vector6<f64>]],
-    /// The screw of the intersection motion. Imaginary joints lie along it.
-    pub intersection: Vector6<f64>,
+    /// The screw of the intersection motion, along which imaginary joints lie; `None` where the two groups
+    /// share the identity alone, so that no leg has one.
+    pub intersection: Option<Vector6<f64>>,
 }
 
 /// The chosen legs with an imaginary joint.
@@ -66,7 +67,8 @@ impl UpperSection<'_> {
     /// Whether the leg's upper part cannot make the intersection motion with its own joints.
     fn candidate(&self, leg: usize) -> bool {
         let own = self.legs[leg];
-        let with: Vec<_> = own.iter().copied().chain([self.intersection]).collect();
+        let Some(intersection) = self.intersection else { return false };
+        let with: Vec<_> = own.iter().copied().chain([intersection]).collect();
         Basis::span(&with).dimension() == own.len() + 1
     }
 
@@ -84,8 +86,9 @@ impl UpperSection<'_> {
     }
 
     fn insert(&self, leg: usize, column: &mut DVector<f64>) {
+        let Some(intersection) = self.intersection else { return };
         for (i, b) in self.basis.vectors().iter().enumerate() {
-            column[leg * self.basis.dimension() + i] = b.dot(&self.intersection);
+            column[leg * self.basis.dimension() + i] = b.dot(&intersection);
         }
     }
 
@@ -104,7 +107,7 @@ impl UpperSection<'_> {
                 columns.push((k, *screw));
             }
         }
-        columns.extend(imaginary.iter().map(|&k| (k, self.intersection)));
+        columns.extend(imaginary.iter().filter_map(|&k| Some((k, self.intersection?))));
         let joints = columns.len();
         DMatrix::from_fn(rows * self.legs.len(), joints + rows, |i, j| {
             let (leg, row) = (i / rows, i % rows);
@@ -165,7 +168,7 @@ mod tests {
             let parts: Vec<&[Vector6<f64>]> = legs.iter().map(Vec::as_slice).collect();
             let basis = Basis::span(&basis);
             let section =
-                UpperSection { basis: &basis, legs: &parts, intersection: intersection.to_vector() };
+                UpperSection { basis: &basis, legs: &parts, intersection: Some(intersection.to_vector()) };
             let order: Vec<usize> = (0..legs.len()).collect();
             let choice = section.imaginary_joints(n, dim_a, &order);
 

@@ -293,7 +293,7 @@ fn six_legs_of_six_joints_visit_few_splits() {
     let gough = gough(&mut Numbers::new(1));
     for (mechanism, ways) in [(&redundant, 1), (&pairs, 1), (&gough, 0)] {
         let report = crate::decomposition::mobility::mobility(mechanism).unwrap();
-        let (found, visited) = search(mechanism, report.lambda, report.mobility);
+        let (found, visited) = search(mechanism, report.lambda, report.mobility, 1);
         assert_eq!(found.len(), ways);
         // A leg has seven candidates; six of them are dropped at once.
         assert!(visited <= 7 * 6, "{}: {visited}", mechanism.name);

@@ -22,8 +22,10 @@ pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
         Chain::Planar(chain) => planar_closes(&chain.joints(), target.planar()),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
-        // A spherical joint reaches every rotation, and linear chains have one solution everywhere.
-        Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => Share::ALL,
+        // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution everywhere.
+        Chain::Rigid | Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => {
+            Share::ALL
+        }
     }
 }
 
@@ -35,6 +37,7 @@ pub fn displacements<const N: usize>(
 ) -> [Enclosed<N>; 3] {
     let none = Enclosed::Value(Affine::constant(0.0));
     match chain {
+        Chain::Rigid => [none; 3],
         Chain::Planar(chain) => planar(&chain.joints(), target.planar(), branch),
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),

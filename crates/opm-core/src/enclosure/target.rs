@@ -55,6 +55,7 @@ pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
 /// A [`Displacement`](crate::group::Displacement) over a box.
 #[derive(Clone, Copy, Debug)]
 pub enum Target<const N: usize> {
+    Identity,
     Planar(PlanarTarget<N>),
     Spherical(Rotation<N>),
     /// The angle and the advance about and along an axis.
@@ -65,6 +66,7 @@ pub enum Target<const N: usize> {
 impl<const N: usize> Target<N> {
     fn kind(&self) -> SubspaceKind {
         match self {
+            Self::Identity => SubspaceKind::Identity,
             Self::Planar(_) => SubspaceKind::Planar,
             Self::Spherical(_) => SubspaceKind::Spherical,
             Self::Cylindrical(..) => SubspaceKind::Cylindrical,
@@ -76,9 +78,10 @@ impl<const N: usize> Target<N> {
     pub fn planar(&self) -> &PlanarTarget<N> {
         match self {
             Self::Planar(g) => g,
-            Self::Spherical(_) | Self::Cylindrical(..) | Self::Translational(_) => {
-                mismatch(SubspaceKind::Planar, self.kind())
-            }
+            Self::Identity
+            | Self::Spherical(_)
+            | Self::Cylindrical(..)
+            | Self::Translational(_) => mismatch(SubspaceKind::Planar, self.kind()),
         }
     }
 
@@ -86,7 +89,7 @@ impl<const N: usize> Target<N> {
     pub fn spherical(&self) -> &Rotation<N> {
         match self {
             Self::Spherical(r) => r,
-            Self::Planar(_) | Self::Cylindrical(..) | Self::Translational(_) => {
+            Self::Identity | Self::Planar(_) | Self::Cylindrical(..) | Self::Translational(_) => {
                 mismatch(SubspaceKind::Spherical, self.kind())
             }
         }
@@ -96,7 +99,7 @@ impl<const N: usize> Target<N> {
     pub fn cylindrical(&self) -> [Affine<N>; 2] {
         match *self {
             Self::Cylindrical(angle, advance) => [angle, advance],
-            Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
+            Self::Identity | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
                 mismatch(SubspaceKind::Cylindrical, self.kind())
             }
         }
@@ -106,7 +109,7 @@ impl<const N: usize> Target<N> {
     pub fn translational(&self) -> &Plane<N> {
         match self {
             Self::Translational(t) => t,
-            Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(..) => {
+            Self::Identity | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(..) => {
                 mismatch(SubspaceKind::TranslationalPlane, self.kind())
             }
         }
@@ -162,6 +165,7 @@ pub fn after<const N: usize>(
     tau: Enclosed<N>,
 ) -> Target<N> {
     match motion {
+        IntersectionMotion::None(_) => *v,
         IntersectionMotion::Planar(PlanarMotion::Rotation) => {
             let v = v.planar();
             Target::Planar(PlanarTarget { rotation: v.rotation * tau.unit_vector(), ..*v })
@@ -222,10 +226,10 @@ pub fn before<const N: usize>(
                 z,
             ]))
         }
-        // Displacements commute.
-        IntersectionMotion::Cylindrical(_) | IntersectionMotion::Translational(_) => {
-            after(motion, b, tau)
-        }
+        // There is no motion, or displacements commute.
+        IntersectionMotion::None(_)
+        | IntersectionMotion::Cylindrical(_)
+        | IntersectionMotion::Translational(_) => after(motion, b, tau),
     }
 }
 
@@ -262,7 +266,9 @@ impl<const N: usize> Coordinate<N> {
 /// The displacements that [`Task`](crate::task::Task) computes from coordinates, over a box of them.
 pub mod task {
     use super::{Affine, Coordinate, PlanarTarget, Plane, Rotation, Target};
-    use crate::group::{CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion};
+    use crate::group::{
+        CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
+    };
     use crate::task::Task;
     use nalgebra::Complex;
 
@@ -271,6 +277,7 @@ pub mod task {
         let home = |i: usize| task.coordinates[i].home;
         let q = |i: usize| pose[i].minus(home(i));
         match task.lower_intersection {
+            IntersectionMotion::None(kind) => alone(task, kind, pose, 0),
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
                     PlanarMotion::Rotation => Plane::constant(Complex::new(1.0, 0.0)),
@@ -302,17 +309,8 @@ pub mod task {
         };
         let none = Affine::constant(0.0);
         match task.upper_intersection {
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-                let absolute = euler(
-                    pose[0].unit_vector(0.0),
-                    pose[1].unit_vector(0.0),
-                    pose[2].unit_vector(0.0),
-                );
-                Target::Spherical(match task.home_orientation_inverse() {
-                    Some(inverse) => absolute.after(inverse),
-                    None => absolute,
-                })
-            }
+            IntersectionMotion::None(kind) => alone(task, kind, pose, task.lower_count),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => orientation(task, pose),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 planar(pose[2].unit_vector(home(2)), q(0), q(1))
             }
@@ -329,6 +327,38 @@ pub mod task {
                 Target::Translational(Plane { re: none, im: q(0) })
             }
         }
+    }
+
+    /// The displacement of a section that shares no motion with the other one. Its coordinates are those of its
+    /// whole subspace, and begin at number `first` of the pose.
+    fn alone<const N: usize>(
+        task: &Task,
+        kind: SubspaceKind,
+        pose: &[Coordinate<N>],
+        first: usize,
+    ) -> Target<N> {
+        let home = |i: usize| task.coordinates[first + i].home;
+        let q = |i: usize| pose[i].minus(home(i));
+        match kind {
+            SubspaceKind::Identity => Target::Identity,
+            SubspaceKind::Planar => Target::Planar(PlanarTarget {
+                rotation: pose[2].unit_vector(home(2)),
+                translation: Plane { re: q(0), im: q(1) },
+            }),
+            SubspaceKind::Spherical => orientation(task, pose),
+            SubspaceKind::Cylindrical => Target::Cylindrical(q(0), q(1)),
+            SubspaceKind::TranslationalPlane => Target::Translational(Plane { re: q(0), im: q(1) }),
+        }
+    }
+
+    /// The rotation from home for Euler angles.
+    fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
+        let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[i].unit_vector(0.0));
+        let absolute = euler(zeta, xi, psi);
+        Target::Spherical(match task.home_orientation_inverse() {
+            Some(inverse) => absolute.after(inverse),
+            None => absolute,
+        })
     }
 
     /// The rotation `Rx(mu) Ry(nu)`.

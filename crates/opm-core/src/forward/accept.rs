@@ -119,9 +119,7 @@ impl Search<'_> {
             compiled.split_section == Section::Upper && !self.plan.legs[leg].lower.is_empty();
         let [v, b] = pose;
         let cuts = Branch::BOTH.map(|branch| match lower_first {
-            true => {
-                compiled.upper.chain.first(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0))
-            }
+            true => compiled.first_step(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0)),
             false => None,
         });
         for mode in m.leg_modes(leg) {

@@ -27,6 +27,9 @@ pub fn along(
     motion: &IntersectionMotion,
     size: f64,
 ) -> Solutions {
+    if motion.motion_type().is_none() {
+        return Solutions::Any;
+    }
     match condition {
         Condition::Circle { point, centre, radius } => {
             let v = v.planar();

@@ -66,6 +66,23 @@ impl<'a> Search<'a> {
         let (m, plan) = (self.manipulator, self.plan);
         let unknown = vec![None; m.legs.len()];
         match &plan.anchor {
+            Anchor::Sections => {
+                let conditions: Vec<Condition> = (plan.legs.iter().enumerate())
+                    .flat_map(|(leg, held)| held.lower.iter().map(move |&joint| (leg, joint)))
+                    .filter_map(|(leg, joint)| self.lower_condition(leg, joint))
+                    .collect();
+                match self.solve(m.task().lower.kind, &conditions) {
+                    Some(vs) => {
+                        if vs.is_empty() {
+                            self.out.unmet.push(Unmet::Section(Section::Lower));
+                        }
+                        for v in vs {
+                            self.with_cuts(&v, &unknown);
+                        }
+                    }
+                    None => self.loose(Section::Lower),
+                }
+            }
             Anchor::Flat(flat) => {
                 let [v, b] = flat.solve(m.task(), self.displacements);
                 self.assemble(&v, &b);
@@ -168,6 +185,7 @@ impl<'a> Search<'a> {
     fn actuated_lower_section(&self, leg: usize) -> Displacement {
         let q = [0, 1, 2].map(|slot| self.displacement(leg, Section::Lower, slot));
         match &self.manipulator.legs[leg].lower.chain {
+            Chain::Rigid => Displacement::Identity(()),
             Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
             Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&q)),
             Chain::Ball(ball) => Displacement::Spherical(ball.forward(&q)),
@@ -348,6 +366,7 @@ impl<'a> Search<'a> {
     fn solve(&self, kind: SubspaceKind, conditions: &[Condition]) -> Option<Vec<Displacement>> {
         let size = self.manipulator.closure.size;
         match kind {
+            SubspaceKind::Identity => Some(vec![Displacement::Identity(())]),
             SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
                 crossing(kind, conditions, size).map(|g| vec![g])
             }
@@ -400,7 +419,11 @@ fn only_slides(chain: &Chain) -> bool {
         Chain::Cylindrical(chain) => {
             chain.joints()[0].rotation != 0.0 && chain.joints()[1].rotation == 0.0
         }
-        Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => false,
+        Chain::Rigid
+        | Chain::Planar(_)
+        | Chain::Spherical(_)
+        | Chain::Ball(_)
+        | Chain::Translational(_) => false,
     }
 }
 

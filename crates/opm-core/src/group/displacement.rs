@@ -3,14 +3,16 @@
 
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{
-    Cylindrical, CylindricalDisplacement, Planar, PlanarDisplacement, Spherical, SubspaceKind,
-    TranslationalPlane, mismatch,
+    Cylindrical, CylindricalDisplacement, Identity, Planar, PlanarDisplacement, Spherical,
+    SubspaceKind, TranslationalPlane, mismatch,
 };
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
 /// A displacement inside one subspace, in that subspace's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Displacement {
+    /// No displacement.
+    Identity(()),
     /// A planar displacement.
     Planar(PlanarDisplacement),
     /// A rotation about a centre.
@@ -25,6 +27,10 @@ pub enum Displacement {
 macro_rules! of_kind {
     ($kind:expr, $G:ident => $call:expr) => {
         match $kind {
+            SubspaceKind::Identity => {
+                type $G = Identity;
+                $call
+            }
             SubspaceKind::Planar => {
                 type $G = Planar;
                 $call
@@ -49,6 +55,10 @@ macro_rules! of_kind {
 macro_rules! of_displacement {
     ($displacement:expr, $G:ident, $g:ident => $call:expr) => {
         match $displacement {
+            Displacement::Identity($g) => {
+                type $G = Identity;
+                $call
+            }
             Displacement::Planar($g) => {
                 type $G = Planar;
                 $call
@@ -146,6 +156,7 @@ impl Displacement {
     #[must_use]
     pub fn after(&self, other: &Self) -> Self {
         match self {
+            Self::Identity(g) => Identity::product(g, other.identity()).into(),
             Self::Planar(g) => Planar::product(g, other.planar()).into(),
             Self::Spherical(r) => Spherical::product(r, other.spherical()).into(),
             Self::Cylindrical(g) => Cylindrical::product(g, other.cylindrical()).into(),
@@ -172,7 +183,7 @@ impl Displacement {
     /// If displacements of this kind do not commute.
     pub(crate) fn sum(&self) -> [f64; 2] {
         match self {
-            Self::Cylindrical(_) | Self::Translational(_) => {
+            Self::Identity(()) | Self::Cylindrical(_) | Self::Translational(_) => {
                 let twist = self.logarithm();
                 [twist.x, twist.y]
             }
@@ -209,14 +220,26 @@ impl Displacement {
         of_displacement!(self, G, g => G::size(g))
     }
 
+    /// The identity. Panics if the displacement is of another kind.
+    fn identity(&self) -> &() {
+        match self {
+            Self::Identity(g) => g,
+            Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => mismatch(Identity::KIND, self.kind()),
+        }
+    }
+
     /// The planar displacement. Panics if it is of another kind.
     #[inline(always)]
     pub(crate) fn planar(&self) -> &PlanarDisplacement {
         match self {
             Self::Planar(g) => g,
-            Self::Spherical(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                mismatch(Planar::KIND, self.kind())
-            }
+            Self::Identity(())
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => mismatch(Planar::KIND, self.kind()),
         }
     }
 
@@ -225,9 +248,10 @@ impl Displacement {
     pub(crate) fn spherical(&self) -> &Matrix3<f64> {
         match self {
             Self::Spherical(r) => r,
-            Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                mismatch(Spherical::KIND, self.kind())
-            }
+            Self::Identity(())
+            | Self::Planar(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => mismatch(Spherical::KIND, self.kind()),
         }
     }
 
@@ -236,7 +260,7 @@ impl Displacement {
     pub(crate) fn cylindrical(&self) -> &CylindricalDisplacement {
         match self {
             Self::Cylindrical(g) => g,
-            Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
+            Self::Identity(()) | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
                 mismatch(Cylindrical::KIND, self.kind())
             }
         }
@@ -247,10 +271,17 @@ impl Displacement {
     pub(crate) fn translational(&self) -> &Complex<f64> {
         match self {
             Self::Translational(t) => t,
-            Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(_) => {
+            Self::Identity(()) | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(_) => {
                 mismatch(TranslationalPlane::KIND, self.kind())
             }
         }
+    }
+}
+
+impl From<()> for Displacement {
+    #[inline(always)]
+    fn from((): ()) -> Self {
+        Self::Identity(())
     }
 }
 

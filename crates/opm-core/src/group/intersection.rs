@@ -8,7 +8,7 @@ use super::{
 };
 use nalgebra::Vector3;
 
-/// Whether a one-parameter motion is a rotation or a translation.
+/// What a one-parameter motion is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionType {
     /// A rotation about an axis.
@@ -28,12 +28,16 @@ pub enum IntersectionMotion {
     Cylindrical(CylindricalMotion),
     /// A translation in a translational plane.
     Translational(TranslationalMotion),
+    /// No motion: the two subspaces share the identity alone. This one is of the kind given.
+    None(SubspaceKind),
 }
 
-/// Calls a function of [`Subgroup`] for the subgroup of a motion, `G`.
+/// Calls a function of [`Subgroup`] for the subgroup of a motion, `G`; for no motion, evaluates the second
+/// expression.
 macro_rules! of_motion {
-    ($motion:expr, $G:ident, $m:ident => $call:expr) => {
+    ($motion:expr, $G:ident, $m:ident => $call:expr, $kind:ident => $none:expr) => {
         match $motion {
+            IntersectionMotion::None($kind) => $none,
             IntersectionMotion::Planar($m) => {
                 type $G = Planar;
                 $call
@@ -59,9 +63,10 @@ impl IntersectionMotion {
     /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation.
     ///
     /// # Panics
-    /// If the subspace does not contain such a motion.
+    /// If the subspace does not contain such a motion. The trivial one gives [`IntersectionMotion::None`].
     pub fn new(kind: SubspaceKind, direction: &Vector3<f64>, motion: MotionType) -> Self {
         match kind {
+            SubspaceKind::Identity => Self::None(kind),
             SubspaceKind::Planar => Self::Planar(Planar::motion(direction, motion)),
             SubspaceKind::Spherical => Self::Spherical(Spherical::motion(direction, motion)),
             SubspaceKind::Cylindrical => Self::Cylindrical(Cylindrical::motion(direction, motion)),
@@ -73,18 +78,32 @@ impl IntersectionMotion {
 
     /// The kind of subspace in whose frame the motion is given.
     pub fn kind(&self) -> SubspaceKind {
-        of_motion!(self, G, _m => G::KIND)
+        of_motion!(self, G, _m => G::KIND, kind => *kind)
     }
 
-    /// Whether the motion is a rotation; otherwise it is a translation.
+    /// What the motion is; `None` for no motion.
+    pub fn motion_type(&self) -> Option<MotionType> {
+        match self {
+            Self::None(_) => None,
+            Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => {
+                let translation = self.kind().is_translation(&self.unit_twist());
+                Some(if translation { MotionType::Translation } else { MotionType::Rotation })
+            }
+        }
+    }
+
+    /// Whether the motion is a rotation.
     pub fn is_rotation(&self) -> bool {
-        !self.kind().is_translation(&self.unit_twist())
+        self.motion_type() == Some(MotionType::Rotation)
     }
 
-    /// The unit twist of the motion, in the subspace's frame.
+    /// The unit twist of the motion, in the subspace's frame; zero for no motion.
     #[inline]
     pub fn unit_twist(&self) -> Vector3<f64> {
-        of_motion!(self, G, m => G::unit_twist(m))
+        of_motion!(self, G, m => G::unit_twist(m), _kind => LocalTwist::zeros())
     }
 
     /// What a unit of the motion adds to the logarithm of a displacement, in a subspace whose displacements
@@ -94,9 +113,9 @@ impl IntersectionMotion {
         [twist.x, twist.y]
     }
 
-    /// Twists that complete the unit twist to a basis of the subspace's twists.
+    /// Twists that complete the unit twist to a basis of the subspace's twists; a whole basis for no motion.
     pub(crate) fn complement(&self) -> Vec<LocalTwist> {
-        of_motion!(self, G, m => G::complement(m))
+        of_motion!(self, G, m => G::complement(m), kind => kind.basis())
     }
 
     /// The product `v · exp(I τ)`.
@@ -106,6 +125,7 @@ impl IntersectionMotion {
     #[inline(always)]
     pub fn after(&self, v: &Displacement, tau: JointDisplacement) -> Displacement {
         match self {
+            Self::None(_) => *v,
             Self::Planar(m) => Planar::after(m, v.planar(), tau).into(),
             Self::Spherical(m) => Spherical::after(m, v.spherical(), tau).into(),
             Self::Cylindrical(m) => Cylindrical::after(m, v.cylindrical(), tau).into(),
@@ -120,6 +140,7 @@ impl IntersectionMotion {
     #[inline(always)]
     pub fn before(&self, b: &Displacement, tau: JointDisplacement) -> Displacement {
         match self {
+            Self::None(_) => *b,
             Self::Planar(m) => Planar::before(m, b.planar(), tau).into(),
             Self::Spherical(m) => Spherical::before(m, b.spherical(), tau).into(),
             Self::Cylindrical(m) => Cylindrical::before(m, b.cylindrical(), tau).into(),
@@ -127,16 +148,17 @@ impl IntersectionMotion {
         }
     }
 
-    /// The products `exp(I τ) · b` for all τ, as a path.
+    /// The products `exp(I τ) · b` for all τ, as a path; `None` for no motion.
     ///
     /// # Panics
     /// If `b` is a displacement of another kind of subspace.
-    pub fn path(&self, b: &Displacement) -> Path {
+    pub fn path(&self, b: &Displacement) -> Option<Path> {
         match self {
-            Self::Planar(m) => Planar::path(m, b.planar()),
-            Self::Spherical(m) => Spherical::path(m, b.spherical()),
-            Self::Cylindrical(m) => Cylindrical::path(m, b.cylindrical()),
-            Self::Translational(m) => TranslationalPlane::path(m, b.translational()),
+            Self::None(_) => None,
+            Self::Planar(m) => Some(Planar::path(m, b.planar())),
+            Self::Spherical(m) => Some(Spherical::path(m, b.spherical())),
+            Self::Cylindrical(m) => Some(Cylindrical::path(m, b.cylindrical())),
+            Self::Translational(m) => Some(TranslationalPlane::path(m, b.translational())),
         }
     }
 
@@ -153,23 +175,23 @@ impl IntersectionMotion {
         if self.kind().commutes() { *twist } else { self.displacement(tau).adjoint(twist) }
     }
 
-    /// The planar motion. Panics if it is of another kind.
+    /// The planar motion. Panics if it is of another kind, or no motion.
     #[inline(always)]
     pub(crate) fn planar(&self) -> &PlanarMotion {
         match self {
             Self::Planar(m) => m,
-            Self::Spherical(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+            Self::None(_) | Self::Spherical(_) | Self::Cylindrical(_) | Self::Translational(_) => {
                 mismatch(Planar::KIND, self.kind())
             }
         }
     }
 
-    /// The spherical motion. Panics if it is of another kind.
+    /// The spherical motion. Panics if it is of another kind, or no motion.
     #[inline(always)]
     pub(crate) fn spherical(&self) -> &SphericalMotion {
         match self {
             Self::Spherical(m) => m,
-            Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+            Self::None(_) | Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
                 mismatch(Spherical::KIND, self.kind())
             }
         }

@@ -6,6 +6,9 @@ use std::fmt;
 /// The subgroups that have closed-form chains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SubspaceKind {
+    /// The trivial group: no motion. It is the upper subspace of a mechanism whose legs all move in one
+    /// subgroup.
+    Identity,
     /// `SE(2)`: the translations in a plane and the rotations about its normals.
     Planar,
     /// `SO(3)`: the rotations about a centre.
@@ -20,12 +23,12 @@ impl SubspaceKind {
     /// The kind of a subspace; `None` if no closed-form chains are known for it.
     pub fn of(class: &SubspaceClass) -> Option<Self> {
         match class {
+            SubspaceClass::Identity => Some(Self::Identity),
             SubspaceClass::Planar { .. } => Some(Self::Planar),
             SubspaceClass::Spherical { .. } => Some(Self::Spherical),
             SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
             SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
-            SubspaceClass::Identity
-            | SubspaceClass::Rotation { .. }
+            SubspaceClass::Rotation { .. }
             | SubspaceClass::Translation { .. }
             | SubspaceClass::Helical { .. }
             | SubspaceClass::TranslationalSpace
@@ -39,6 +42,7 @@ impl SubspaceKind {
 impl fmt::Display for SubspaceKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Identity => "identity",
             Self::Planar => "planar",
             Self::Spherical => "spherical",
             Self::Cylindrical => "cylindrical",

@@ -10,6 +10,8 @@ use nalgebra::{Complex, Matrix3, Vector3};
 /// rotation and in metres along a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
+    /// There is no motion: the displacement is the identity for every `t`.
+    Identity,
     /// The displacement is in a plane.
     Planar(PlanarPath),
     /// The displacement is a rotation about a centre, and `t` rotates it about an axis.
@@ -58,6 +60,7 @@ impl Path {
     pub fn size(&self, range: f64) -> f64 {
         let far = |start: f64, rate: f64| start + rate * range;
         match self {
+            Self::Identity => 0.0,
             Self::Planar(PlanarPath::Translation { start, rate }) => {
                 far(Planar::size(start), rate.norm())
             }
@@ -72,6 +75,7 @@ impl Path {
     /// The kind of subspace that the displacements are in.
     fn kind(&self) -> SubspaceKind {
         match self {
+            Self::Identity => SubspaceKind::Identity,
             Self::Planar(_) => Planar::KIND,
             Self::Spherical { .. } => Spherical::KIND,
             Self::Cylindrical { .. } => Cylindrical::KIND,
@@ -83,9 +87,10 @@ impl Path {
     pub(crate) fn planar(&self) -> &PlanarPath {
         match self {
             Self::Planar(path) => path,
-            Self::Spherical { .. } | Self::Cylindrical { .. } | Self::Translational { .. } => {
-                mismatch(Planar::KIND, self.kind())
-            }
+            Self::Identity
+            | Self::Spherical { .. }
+            | Self::Cylindrical { .. }
+            | Self::Translational { .. } => mismatch(Planar::KIND, self.kind()),
         }
     }
 
@@ -93,9 +98,10 @@ impl Path {
     pub(crate) fn spherical(&self) -> (&Matrix3<f64>, &Vector3<f64>) {
         match self {
             Self::Spherical { start, axis } => (start, axis),
-            Self::Planar(_) | Self::Cylindrical { .. } | Self::Translational { .. } => {
-                mismatch(Spherical::KIND, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Cylindrical { .. }
+            | Self::Translational { .. } => mismatch(Spherical::KIND, self.kind()),
         }
     }
 
@@ -103,9 +109,10 @@ impl Path {
     pub(crate) fn cylindrical(&self) -> [&CylindricalDisplacement; 2] {
         match self {
             Self::Cylindrical { start, rate } => [start, rate],
-            Self::Planar(_) | Self::Spherical { .. } | Self::Translational { .. } => {
-                mismatch(Cylindrical::KIND, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical { .. }
+            | Self::Translational { .. } => mismatch(Cylindrical::KIND, self.kind()),
         }
     }
 
@@ -113,9 +120,10 @@ impl Path {
     pub(crate) fn translational(&self) -> [&Complex<f64>; 2] {
         match self {
             Self::Translational { start, rate } => [start, rate],
-            Self::Planar(_) | Self::Spherical { .. } | Self::Cylindrical { .. } => {
-                mismatch(TranslationalPlane::KIND, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical { .. }
+            | Self::Cylindrical { .. } => mismatch(TranslationalPlane::KIND, self.kind()),
         }
     }
 }

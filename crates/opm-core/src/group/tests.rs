@@ -10,7 +10,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Rounding of a few dozen operations on numbers up to about ten.
 const ROUNDING: f64 = 1e-12;
 
-const KINDS: [SubspaceKind; 4] = [
+const KINDS: [SubspaceKind; 5] = [
+    SubspaceKind::Identity,
     SubspaceKind::Planar,
     SubspaceKind::Spherical,
     SubspaceKind::Cylindrical,
@@ -61,6 +62,7 @@ fn quarters() -> impl Strategy<Value = Complex<f64>> {
 fn structured(kind: SubspaceKind) -> BoxedStrategy<Displacement> {
     let translation = || [number(), number()].prop_map(|[x, y]| Complex::new(x, y));
     match kind {
+        SubspaceKind::Identity => Just(kind.identity()).boxed(),
         SubspaceKind::Planar => (quarters(), translation())
             .prop_map(|(rotation, translation)| PlanarDisplacement { rotation, translation }.into())
             .boxed(),
@@ -97,7 +99,8 @@ fn motion(kind: SubspaceKind) -> BoxedStrategy<IntersectionMotion> {
         .prop_map(|angle| Vector3::new(angle.cos(), angle.sin(), 0.0));
     use MotionType::{Rotation, Translation};
     let new = IntersectionMotion::new;
-    match kind {
+    let moving = match kind {
+        SubspaceKind::Identity => return Just(IntersectionMotion::None(kind)).boxed(),
         SubspaceKind::Planar => prop_oneof![
             Just(new(kind, &Vector3::z(), Rotation)),
             direction.prop_map(move |along| new(kind, &along, Translation)),
@@ -110,7 +113,8 @@ fn motion(kind: SubspaceKind) -> BoxedStrategy<IntersectionMotion> {
         SubspaceKind::TranslationalPlane => {
             direction.prop_map(move |along| new(kind, &along, Translation)).boxed()
         }
-    }
+    };
+    prop_oneof![8 => moving, 1 => Just(IntersectionMotion::None(kind))].boxed()
 }
 
 fn with_motion() -> impl Strategy<Value = (Displacement, IntersectionMotion)> {
@@ -134,6 +138,7 @@ fn frame(kind: SubspaceKind) -> impl Strategy<Value = Subspace> {
 /// The largest difference of the components of two displacements.
 fn apart(a: &Displacement, b: &Displacement) -> f64 {
     match a {
+        Displacement::Identity(()) => 0.0,
         Displacement::Planar(a) => {
             let b = b.planar();
             (a.rotation - b.rotation).norm().max((a.translation - b.translation).norm())
@@ -156,7 +161,9 @@ fn wrapped_angle(kind: SubspaceKind, twist: &LocalTwist) -> f64 {
     match kind {
         SubspaceKind::Planar => twist.x.abs(),
         SubspaceKind::Spherical => twist.norm(),
-        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => 0.0,
+        SubspaceKind::Identity | SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
+            0.0
+        }
     }
 }
 
@@ -282,7 +289,12 @@ proptest! {
 
     #[test]
     fn paths_are_steps_along_a_motion((g, motion) in with_motion(), t in -3.0..3.0_f64) {
-        let at: Displacement = match motion.path(&g) {
+        let Some(path) = motion.path(&g) else {
+            prop_assert_eq!(motion, IntersectionMotion::None(g.kind()));
+            return Ok(());
+        };
+        let at: Displacement = match path {
+            Path::Identity => Displacement::Identity(()),
             Path::Planar(PlanarPath::Translation { start, rate }) => {
                 PlanarDisplacement { translation: start.translation + rate * t, ..start }.into()
             }
@@ -306,13 +318,14 @@ proptest! {
     #[test]
     fn a_motion_has_a_complement((g, motion) in with_motion()) {
         let mut basis = motion.complement();
-        basis.push(motion.unit_twist());
+        basis.extend(motion.motion_type().map(|_| motion.unit_twist()));
         let dimension = g.kind().dimension();
         prop_assert_eq!(basis.len(), dimension);
-        basis.resize(3, LocalTwist::z());
+        let padding = [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()];
+        basis.extend(&padding[dimension..]);
         prop_assert!((Matrix3::from_columns(&basis).determinant().abs() - 1.0).abs() < ROUNDING);
         let translation = g.kind().is_translation(&motion.unit_twist());
-        prop_assert_eq!(translation, !motion.is_rotation());
+        prop_assert_eq!(translation, motion.motion_type() == Some(MotionType::Translation));
     }
 
     /// The displacement of a revolute or prismatic joint is the exponential of its screw.

@@ -356,11 +356,10 @@ impl Block {
             section::solve(&of_section.chain, branch, target, found);
             status.note(found);
             if is_first {
-                let imaginary_joint = match section {
-                    Section::Lower => leg.lower.chain.freedoms() - 1,
-                    Section::Upper => 0,
-                };
-                section::unwind(leg.unwinds, &found.displacements[imaginary_joint], tau);
+                match leg.imaginary_joint() {
+                    Some(joint) => section::unwind(leg.unwinds, &found.displacements[joint], tau),
+                    None => tau.clear(),
+                }
                 match section {
                     Section::Lower => {
                         let step = Step { motion: task.upper_intersection, side: Side::Before };

@@ -5,7 +5,7 @@ use crate::chain::screws::{determinant_scale, screws};
 use crate::chain::shape::Shape;
 use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, LegSplit};
-use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
+use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
 pub use crate::mechanism::leg::Section;
@@ -17,13 +17,7 @@ use nalgebra::{Unit, Vector3};
 #[non_exhaustive]
 pub enum RefusedLeg {
     /// The numbers of freedoms in the leg's two sections do not fit the subspaces.
-    #[error(
-        "{lower} freedom{} in its lower section and {upper} in its upper one, expected {dim_lower} and {}, or \
-         {} and {dim_upper}, for closed-form inverse kinematics",
-        if *lower == 1 { "" } else { "s" },
-        dim_upper - 1,
-        dim_lower - 1
-    )]
+    #[error("{}", freedoms(*lower, *upper, *dim_lower, *dim_upper, *bridged))]
     Freedoms {
         /// The number of freedoms in its lower section.
         lower: usize,
@@ -31,8 +25,10 @@ pub enum RefusedLeg {
         upper: usize,
         /// The dimension of the lower subspace.
         dim_lower: usize,
-        /// The dimension of the upper subspace.
+        /// The dimension of the upper subspace; zero where all legs move in one subgroup.
         dim_upper: usize,
+        /// Whether the two subspaces share a motion.
+        bridged: bool,
     },
     /// One of the leg's sections has no closed form.
     #[error("its {section} section has no closed form: {error}")]
@@ -42,6 +38,29 @@ pub enum RefusedLeg {
         /// Why it has no closed form.
         error: ChainError,
     },
+}
+
+/// What the numbers of freedoms in a leg are, and what they should be.
+fn freedoms(
+    lower: usize,
+    upper: usize,
+    dim_lower: usize,
+    dim_upper: usize,
+    bridged: bool,
+) -> String {
+    let plural = if lower == 1 { "" } else { "s" };
+    if dim_upper == 0 {
+        return format!("{lower} freedom{plural}, expected {dim_lower}, those of its subspace");
+    }
+    let expected = if bridged {
+        format!("{dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1)
+    } else {
+        format!("{dim_lower} and {dim_upper}")
+    };
+    format!(
+        "{lower} freedom{plural} in its lower section and {upper} in its upper one, expected {expected}, \
+         for closed-form inverse kinematics"
+    )
 }
 
 /// The joint coordinate that a joint of a chain stands for.
@@ -75,8 +94,11 @@ pub(crate) struct CompiledSection {
 pub(crate) struct CompiledLeg {
     pub lower: CompiledSection,
     pub upper: CompiledSection,
-    /// The section that the imaginary joint belongs to. It is solved first.
+    /// The section that the imaginary joint belongs to. It is solved first. Where the subspaces share the
+    /// identity alone, there is no imaginary joint, and the upper section is solved first.
     pub split_section: Section,
+    /// Whether the subspaces share a motion, along which the leg has an imaginary joint.
+    bridged: bool,
     /// The number of its imaginary joint among those that are reported; `None` where it is not reported.
     pub imaginary: Option<usize>,
     /// The region in which the lower section closes, on each branch; `None` where it is not a region of the
@@ -127,30 +149,32 @@ impl CompiledLeg {
     ) -> Result<Self, RefusedLeg> {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
-        let split_section = if (lower, upper) == (dim_lower, dim_upper - 1) {
+        let bridged = task.intersection.is_some();
+        let missing = usize::from(bridged);
+        let split_section = if (lower, upper + missing) == (dim_lower, dim_upper) {
             Section::Upper
-        } else if (lower, upper) == (dim_lower - 1, dim_upper) {
+        } else if (lower + missing, upper) == (dim_lower, dim_upper) {
             Section::Lower
         } else {
-            return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper });
+            return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper, bridged });
         };
-        let imaginary_joint = match task.intersection_point {
-            Some(point) => ChainJoint::Screw { axis: task.direction, point, pitch: 0.0 },
-            None => ChainJoint::Slide { axis: task.direction },
-        };
+        let imaginary_joint = task.intersection.as_ref().map(|axis| match axis.point {
+            Some(point) => ChainJoint::Screw { axis: axis.direction, point, pitch: 0.0 },
+            None => ChainJoint::Slide { axis: axis.direction },
+        });
         let compile = |section: Section, subspace: &Subspace, freedoms: &[Freedom]| {
             let mut joints = chain_joints(leg, freedoms);
             let mut coordinates = [None; 3];
-            let shift = usize::from(section == Section::Upper && split_section == Section::Upper);
+            let first_is_imaginary =
+                bridged && section == Section::Upper && section == split_section;
+            let shift = usize::from(first_is_imaginary);
             for (slot, freedom) in coordinates[shift..].iter_mut().zip(freedoms) {
                 let number = first + coordinate_number(leg, *freedom);
                 *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
             }
             if section == split_section {
-                joints.insert(
-                    if section == Section::Upper { 0 } else { joints.len() },
-                    imaginary_joint,
-                );
+                let at = if section == Section::Upper { 0 } else { joints.len() };
+                joints.splice(at..at, imaginary_joint);
             }
             let refused = |error| RefusedLeg::Chain { section, error };
             let chain = Chain::new(subspace, &joints).map_err(refused)?;
@@ -169,16 +193,18 @@ impl CompiledLeg {
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
         let of_joint = lower.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
         let shapes = Branch::BOTH.map(|branch| lower.chain.shape(branch, of_joint));
-        // An upper section that is solved second may be out of reach; a spherical joint never is.
-        let may_fail = split_section == Section::Lower && !matches!(upper.chain, Chain::Ball(_));
+        // An upper section that does not give τ may be out of reach; a spherical joint never is.
+        let gives_tau = bridged && split_section == Section::Upper;
+        let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);
         Ok(Self {
             upper_constrains: upper.limited || upper.driven || may_fail,
             lower,
             upper,
             split_section,
+            bridged,
             shapes,
             imaginary: None,
-            unwinds: task.intersection_point.is_some()
+            unwinds: task.shared() == Some(MotionType::Rotation)
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
     }
@@ -189,6 +215,39 @@ impl CompiledLeg {
             Section::Upper => [Section::Upper, Section::Lower],
             Section::Lower => [Section::Lower, Section::Upper],
         }
+    }
+
+    /// The section that the imaginary joint belongs to; `None` where the subspaces share the identity alone.
+    #[inline]
+    pub fn bridge(&self) -> Option<Section> {
+        self.bridged.then_some(self.split_section)
+    }
+
+    /// The number of the imaginary joint in the chain of the section that it belongs to.
+    #[inline(always)]
+    pub fn imaginary_joint(&self) -> Option<usize> {
+        self.bridge().map(|section| match section {
+            Section::Upper => 0,
+            Section::Lower => self.lower.chain.freedoms() - 1,
+        })
+    }
+
+    /// The displacement of the imaginary joint among those of the chain that it belongs to; zero without one.
+    #[inline(always)]
+    pub fn step(&self, displacements: &[JointDisplacement; 3]) -> JointDisplacement {
+        self.imaginary_joint().map_or(JointDisplacement::Value(0.0), |joint| displacements[joint])
+    }
+
+    /// The displacement of the imaginary joint of a leg that is split in its upper section; cheaper than
+    /// solving that section.
+    #[inline(always)]
+    pub fn first_step(
+        &self,
+        b: &Displacement,
+        branch: Branch,
+    ) -> Result<JointDisplacement, ReachDeficit> {
+        let first = self.upper.chain.first(b, branch)?;
+        Ok(if self.bridged { first } else { JointDisplacement::Value(0.0) })
     }
 
     pub fn section(&self, section: Section) -> &CompiledSection {
@@ -209,13 +268,13 @@ impl CompiledLeg {
     ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
         match self.split_section {
             Section::Upper => {
-                let tau = self.unwound(self.upper.chain.first(b, branches.upper)?, 0.0);
+                let tau = self.unwound(self.first_step(b, branches.upper)?, 0.0);
                 let lower = self.solve_lower(task, v, tau, branches.lower)?;
                 Ok((lower, tau))
             }
             Section::Lower => {
                 let lower = self.lower.chain.inverse(v, branches.lower)?;
-                Ok((lower, lower[self.lower.chain.freedoms() - 1].inverse()))
+                Ok((lower, self.step(&lower).inverse()))
             }
         }
     }
@@ -235,7 +294,7 @@ impl CompiledLeg {
             Section::Upper => {
                 let upper =
                     self.upper.chain.inverse(b, branches.upper).map_err(of(Section::Upper))?;
-                let tau = self.unwound(upper[0], near);
+                let tau = self.unwound(self.step(&upper), near);
                 let lower =
                     self.solve_lower(task, v, tau, branches.lower).map_err(of(Section::Lower))?;
                 Ok(LegSolution { lower, upper, tau })
@@ -244,7 +303,7 @@ impl CompiledLeg {
                 let lower =
                     self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
                 // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
-                let step = self.unwound(lower[self.lower.chain.freedoms() - 1], -near);
+                let step = self.unwound(self.step(&lower), -near);
                 let target = task.upper_intersection.before(b, step);
                 let upper = self
                     .upper

@@ -7,7 +7,7 @@ use super::{CompiledLeg, CompiledSection, Section};
 use crate::chain::Chain;
 use crate::chain::condition::{Condition, flat_joints};
 use crate::chain::track::Track;
-use crate::group::JointDisplacement;
+use crate::group::{JointDisplacement, MotionType, SubspaceKind};
 use crate::task::Task;
 use flat::Flat;
 
@@ -53,6 +53,9 @@ pub struct HeldLeg {
 /// What determines `v` up to the intersection motion.
 #[derive(Clone, Debug)]
 pub enum Anchor {
+    /// The subspaces share the identity alone: the actuated joints of the lower section fix `v`, and those of
+    /// the upper section fix `b`, each on their own.
+    Sections,
     /// A leg whose lower joints are all actuated.
     Leg(usize),
     /// Two legs, each of which keeps the axis of the intersection motion, a rotation, on a track.
@@ -96,6 +99,15 @@ impl Plan {
         {
             return Err(NoClosedForm::Turns);
         }
+        if task.shared().is_none() {
+            if !fixes(task.lower.kind, &conditions(legs, &held, Section::Lower)) {
+                return Err(NoClosedForm::Lower);
+            }
+            if !fixes(task.upper.kind, &conditions(legs, &held, Section::Upper)) {
+                return Err(NoClosedForm::Upper);
+            }
+            return Ok(Self { legs: held, anchor: Anchor::Sections });
+        }
         if task.lower.kind.commutes() && task.upper.kind.commutes() {
             let flat = Flat::new(task, legs, &held, size).ok_or(NoClosedForm::Lower)?;
             return Ok(Self { legs: held, anchor: Anchor::Flat(flat) });
@@ -118,9 +130,11 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
         let joints = match &leg.section(section).chain {
             Chain::Cylindrical(chain) => chain.joints(),
             // Chains in other subspaces have no helical joints.
-            Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) | Chain::Translational(_) => {
-                return false;
-            }
+            Chain::Rigid
+            | Chain::Planar(_)
+            | Chain::Spherical(_)
+            | Chain::Ball(_)
+            | Chain::Translational(_) => return false,
         };
         let held = match section {
             Section::Lower => &held.lower,
@@ -161,7 +175,7 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
         }));
         return found;
     }
-    if task.intersection_point.is_some() {
+    if task.shared() == Some(MotionType::Rotation) {
         let tracked: Vec<Tracked> =
             (0..legs.len()).filter_map(|leg| tracked(leg, &legs[leg], &held[leg])).collect();
         if let [first, second, ..] = *tracked {
@@ -238,10 +252,42 @@ fn coupled_legs(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<A
         .then_some(Anchor::CoupledLegs { functional: *best, legs: members })
 }
 
+/// The conditions that the actuated joints of a section put on its displacement, each joint at home.
+fn conditions(legs: &[CompiledLeg], held: &[HeldLeg], section: Section) -> Vec<Condition> {
+    let of_leg = |(leg, held): (&CompiledLeg, &HeldLeg)| -> Vec<Condition> {
+        let held = match section {
+            Section::Lower => &held.lower,
+            Section::Upper => &held.upper,
+        };
+        let chain = &leg.section(section).chain;
+        let home = JointDisplacement::Value(0.0);
+        held.iter().filter_map(|&joint| Condition::new(chain, joint, home)).collect()
+    };
+    legs.iter().zip(held).flat_map(of_leg).collect()
+}
+
+/// Whether conditions on the displacements of a subspace determine finitely many: there are enough of them. In
+/// a commutative subspace two have to be independent; in the others, home would not tell.
+fn fixes(kind: SubspaceKind, conditions: &[Condition]) -> bool {
+    if kind == SubspaceKind::Identity || !kind.commutes() {
+        return conditions.len() >= kind.dimension();
+    }
+    let normals: Vec<[f64; 2]> = conditions
+        .iter()
+        .filter_map(|condition| match condition {
+            Condition::Flat { normal, .. } => Some(*normal),
+            _ => None,
+        })
+        .collect();
+    normals.iter().enumerate().any(|(i, [a, b])| {
+        let across = |[p, q]: &[f64; 2]| (a * q - b * p).abs() > LEVEL * a.hypot(*b) * p.hypot(*q);
+        normals[..i].iter().any(across)
+    })
+}
+
 /// Whether the legs' conditions determine `b` once `v` is known.
 fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anchor) -> bool {
-    let mut count = 0;
-    let mut normals: Vec<[f64; 2]> = Vec::new();
+    let mut found = Vec::new();
     for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
         let known = match anchor {
             Anchor::Leg(anchor) if *anchor == number => true,
@@ -249,20 +295,9 @@ fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anc
             _ => !held.lower.is_empty(),
         };
         let split = (leg.split_section == Section::Upper && known).then_some(0);
-        for joint in split.into_iter().chain(held.upper.iter().copied()) {
-            count += 1;
-            if let Some(Condition::Flat { normal, .. }) =
-                Condition::new(&leg.upper.chain, joint, JointDisplacement::Value(0.0))
-            {
-                normals.push(normal);
-            }
-        }
+        let home = JointDisplacement::Value(0.0);
+        let joints = split.into_iter().chain(held.upper.iter().copied());
+        found.extend(joints.filter_map(|joint| Condition::new(&leg.upper.chain, joint, home)));
     }
-    if !task.upper.kind.commutes() {
-        return count >= task.upper.dimension();
-    }
-    normals.iter().enumerate().any(|(i, [a, b])| {
-        let across = |[p, q]: &[f64; 2]| (a * q - b * p).abs() > LEVEL * a.hypot(*b) * p.hypot(*q);
-        normals[..i].iter().any(across)
-    })
+    fixes(task.upper.kind, &found)
 }

@@ -77,15 +77,14 @@ impl Manipulator {
             let tau = match compiled.split_section {
                 Section::Lower => None,
                 Section::Upper => {
-                    let chain = &compiled.upper.chain;
                     let tau = if compiled.upper.limited {
-                        let admitted = chain.inverse(b, branches.upper).ok();
+                        let admitted = compiled.upper.chain.inverse(b, branches.upper).ok();
                         let admitted = admitted.filter(|displacements| {
                             compiled.upper.admits(&self.limits, displacements)
                         });
-                        admitted.map(|displacements| displacements[0])
+                        admitted.map(|displacements| compiled.step(&displacements))
                     } else {
-                        chain.first(b, branches.upper).ok()
+                        compiled.first_step(b, branches.upper).ok()
                     };
                     match tau {
                         Some(tau) => Some(compiled.unwound(tau, 0.0)),
@@ -112,7 +111,7 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn intersection_joints(&self) -> Vec<ImaginaryJoint> {
         let legs = self.mechanism.legs.iter().enumerate();
-        legs.filter(|&(number, _)| self.legs[number].split_section == Section::Upper)
+        legs.filter(|&(number, _)| self.legs[number].bridge() == Some(Section::Upper))
             .map(|(number, leg)| ImaginaryJoint::new(leg, number, &self.task))
             .collect()
     }
@@ -227,7 +226,9 @@ impl Manipulator {
         match target {
             Displacement::Planar(g) => shape.at(g.rotation, -g.translation, scale),
             Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),
-            Displacement::Spherical(_) | Displacement::Cylindrical { .. } => None,
+            Displacement::Identity(())
+            | Displacement::Spherical(_)
+            | Displacement::Cylindrical(_) => None,
         }
     }
 }

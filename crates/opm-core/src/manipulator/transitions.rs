@@ -12,7 +12,7 @@ use super::{LegBranch, Manipulator};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
 use crate::chain::surface::{Surface, Uncertainty};
-use crate::group::{Displacement, JointDisplacement};
+use crate::group::{Displacement, JointDisplacement, MotionType};
 use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
 use std::f64::consts::PI;
@@ -91,11 +91,11 @@ impl Manipulator {
         let leg = &self.legs[branch.leg];
         let last = leg.lower.chain.freedoms() - 1;
         transitions.size += leg.upper.size(self) + b.size();
-        let rotation = self.task.intersection_point.is_some();
+        let rotation = self.task.shared() == Some(MotionType::Rotation);
         let largest_tau = if rotation { PI } else { FAR * transitions.size };
         transitions.largest_tau = (!rotation).then_some(largest_tau);
         let span = Span { from: -largest_tau, to: largest_tau, step: 0.0 };
-        let path = self.task.upper_intersection.path(b);
+        let Some(path) = self.task.upper_intersection.path(b) else { return Some(()) };
         let hold = |at: f64| {
             let displacement = if rotation {
                 JointDisplacement::Direction(unit(at))

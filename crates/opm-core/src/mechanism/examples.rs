@@ -12,7 +12,7 @@ pub struct Example {
 }
 
 /// Every example: first the paper's mechanisms, families before joint lists, then those designed for
-/// this project.
+/// this project, then those of one subspace from the literature.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -73,6 +73,26 @@ pub const EXAMPLES: &[Example] = &[
         name: "translational-planar-4dof",
         description: "4-PP(RR): three translations, one rotation",
         text: include_str!("../../mechanisms/translational-planar-4dof.toml"),
+    },
+    Example {
+        name: "planar-3rrr",
+        description: "planar 3-RRR, one subspace: two translations, one rotation",
+        text: include_str!("../../mechanisms/planar-3rrr.toml"),
+    },
+    Example {
+        name: "planar-3rpr",
+        description: "planar 3-RPR of Innocenti and Merlet, one subspace: six assemblies",
+        text: include_str!("../../mechanisms/planar-3rpr.toml"),
+    },
+    Example {
+        name: "agile-eye",
+        description: "spherical 3-RRR with orthogonal axes (Gosselin and Hamel): three rotations",
+        text: include_str!("../../mechanisms/agile-eye.toml"),
+    },
+    Example {
+        name: "orbita",
+        description: "spherical 3-RRR with coaxial motors (Pollen Robotics): three rotations",
+        text: include_str!("../../mechanisms/orbita.toml"),
     },
 ];
 

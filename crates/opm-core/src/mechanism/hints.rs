@@ -28,6 +28,9 @@ pub struct TaskHints {
 pub struct FrameHints {
     /// Direction of the coordinate `x`; in a spherical subspace, direction of the frame's first axis.
     pub x: Option<Vector3<f64>>,
+    /// The third direction of a sphere's frame, or a vector on the positive side of a cylinder's axis, where the
+    /// two subspaces share no motion.
+    pub axis: Option<Vector3<f64>>,
     /// Positive direction of the coordinate `w`.
     pub w: Option<Vector3<f64>>,
     /// Normal of the plane; the plane's angle is positive about it.
@@ -51,6 +54,8 @@ impl TaskHints {
 pub enum TaskKey {
     /// `axis`: [`TaskHints::axis`].
     Axis,
+    /// `axis` of a section: [`FrameHints::axis`].
+    AxisOf(Section),
     /// `x` of a section: [`FrameHints::x`].
     X(Section),
     /// `w` of a section: [`FrameHints::w`].
@@ -65,7 +70,7 @@ impl TaskKey {
     /// The last part of the key: `x`, `w`, `normal`, `origin`, or `axis`.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Axis => "axis",
+            Self::Axis | Self::AxisOf(_) => "axis",
             Self::X(_) => "x",
             Self::W(_) => "w",
             Self::Normal(_) => "normal",
@@ -79,9 +84,11 @@ impl fmt::Display for TaskKey {
         let name = self.name();
         match self {
             Self::Axis => f.write_str(name),
-            Self::X(section) | Self::W(section) | Self::Normal(section) | Self::Origin(section) => {
-                write!(f, "{section}.{name}")
-            }
+            Self::AxisOf(section)
+            | Self::X(section)
+            | Self::W(section)
+            | Self::Normal(section)
+            | Self::Origin(section) => write!(f, "{section}.{name}"),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The coordinates of a pose: the kinds of coordinates, and those of each section.
 
-use crate::group::{Subspace, SubspaceKind};
+use crate::group::{MotionType, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
 
 /// What a task coordinate measures; the table in the docs of [`task`](crate::task) says which subspaces
@@ -13,7 +13,8 @@ pub enum CoordinateKind {
     Y,
     /// `z`: along a cylinder's axis.
     Z,
-    /// `w`: in the upper plane, perpendicular to the intersection motion.
+    /// `w`: in the upper plane, perpendicular to the intersection motion; along the axis of an upper cylinder
+    /// that shares no motion.
     W,
     /// `theta`: the angle of the lower section about its normal or its axis.
     Theta,
@@ -105,31 +106,41 @@ impl TaskCoordinate {
 }
 
 /// The coordinates of `v`. The values of lengths at home are the coordinates of the reference point.
-pub(super) fn of_lower(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
-    use CoordinateKind::{Mu, Nu, Theta, X, Y, Z};
+pub(super) fn of_lower(frame: &Subspace, shared: Option<MotionType>) -> Vec<TaskCoordinate> {
+    use CoordinateKind::{Mu, Nu, Psi, Theta, X, Xi, Y, Z, Zeta};
     let at = frame.home();
-    match (frame.kind, rotation) {
-        (SubspaceKind::Planar, true) | (SubspaceKind::TranslationalPlane, _) => {
-            listed([(X, at.x), (Y, at.y)])
+    match (frame.kind, shared) {
+        (SubspaceKind::Identity, _) => vec![],
+        (SubspaceKind::Planar, Some(MotionType::Rotation))
+        | (SubspaceKind::TranslationalPlane, _) => listed([(X, at.x), (Y, at.y)]),
+        (SubspaceKind::Planar, Some(MotionType::Translation) | None) => {
+            listed([(X, at.x), (Y, at.y), (Theta, 0.0)])
         }
-        (SubspaceKind::Planar, false) => listed([(X, at.x), (Y, at.y), (Theta, 0.0)]),
-        (SubspaceKind::Spherical, _) => listed([(Mu, 0.0), (Nu, 0.0)]),
-        (SubspaceKind::Cylindrical, true) => listed([(Z, at.z)]),
-        (SubspaceKind::Cylindrical, false) => listed([(Theta, 0.0), (Z, at.z)]),
+        (SubspaceKind::Spherical, Some(_)) => listed([(Mu, 0.0), (Nu, 0.0)]),
+        (SubspaceKind::Spherical, None) => listed([(Zeta, 0.0), (Xi, 0.0), (Psi, 0.0)]),
+        (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => listed([(Z, at.z)]),
+        (SubspaceKind::Cylindrical, Some(MotionType::Translation) | None) => {
+            listed([(Theta, 0.0), (Z, at.z)])
+        }
     }
 }
 
 /// The coordinates of `b`. The values of lengths at home are the coordinates of the reference point.
-pub(super) fn of_upper(frame: &Subspace, rotation: bool) -> Vec<TaskCoordinate> {
+pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<TaskCoordinate> {
     use CoordinateKind::{Phi, Psi, W, X, Xi, Y, Z, Zeta};
     let at = frame.home();
-    match (frame.kind, rotation) {
+    match (frame.kind, shared) {
+        (SubspaceKind::Identity, _) => vec![],
         (SubspaceKind::Spherical, _) => listed([(Zeta, 0.0), (Xi, 0.0), (Psi, 0.0)]),
-        (SubspaceKind::Planar, true) => listed([(X, at.x), (Y, at.y), (Phi, 0.0)]),
-        (SubspaceKind::Planar, false) => listed([(W, at.y), (Phi, 0.0)]),
-        (SubspaceKind::Cylindrical, true) => listed([(Phi, 0.0), (Z, at.z)]),
-        (SubspaceKind::Cylindrical, false) => listed([(Phi, 0.0)]),
-        (SubspaceKind::TranslationalPlane, _) => listed([(W, at.y)]),
+        (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => {
+            listed([(X, at.x), (Y, at.y), (Phi, 0.0)])
+        }
+        (SubspaceKind::Planar, Some(MotionType::Translation)) => listed([(W, at.y), (Phi, 0.0)]),
+        (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => listed([(Phi, 0.0), (Z, at.z)]),
+        (SubspaceKind::Cylindrical, Some(MotionType::Translation)) => listed([(Phi, 0.0)]),
+        (SubspaceKind::Cylindrical, None) => listed([(Phi, 0.0), (W, at.z)]),
+        (SubspaceKind::TranslationalPlane, Some(_)) => listed([(W, at.y)]),
+        (SubspaceKind::TranslationalPlane, None) => listed([(X, at.x), (Y, at.y)]),
     }
 }
 

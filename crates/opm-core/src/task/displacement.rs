@@ -1,19 +1,21 @@
 //! The displacement of a section from its coordinates.
 
-use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
+use crate::group::{
+    CylindricalDisplacement, Displacement, MotionType, PlanarDisplacement, SubspaceKind,
+};
 use crate::numeric::angle::sin_cos;
 use nalgebra::{Complex, Matrix3};
 
-/// What determines the coordinates of a section: its subspace, and whether the intersection motion is a
-/// rotation.
+/// What determines the coordinates of a section: its subspace, and the intersection motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Form {
     pub kind: SubspaceKind,
-    pub rotation: bool,
+    /// `None` where the two subspaces share the identity alone.
+    pub shared: Option<MotionType>,
 }
 
-/// The displacement `v` from its coordinates and their values at home. Where `form` is a constant, this is
-/// straight-line arithmetic.
+/// The displacement `v` from its coordinates and their values at home; of Euler angles, which are absolute, the
+/// orientation. Where `form` is a constant, this is straight-line arithmetic.
 #[inline(always)]
 pub(crate) fn lower_displacement(
     form: Form,
@@ -22,22 +24,30 @@ pub(crate) fn lower_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.rotation) {
-        (SubspaceKind::Planar, true) => planar(Complex::new(1.0, 0.0), q(0), q(1)),
-        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
-        (SubspaceKind::Spherical, _) => {
+    match (form.kind, form.shared) {
+        (SubspaceKind::Identity, _) => Displacement::Identity(()),
+        (SubspaceKind::Planar, Some(MotionType::Rotation)) => {
+            planar(Complex::new(1.0, 0.0), q(0), q(1))
+        }
+        (SubspaceKind::Planar, Some(MotionType::Translation) | None) => {
+            planar(unit_of(sin_cos(q(2))), q(0), q(1))
+        }
+        (SubspaceKind::Spherical, Some(_)) => {
             Displacement::Spherical(tilt([sin_cos(q(0)), sin_cos(q(1))]))
         }
-        (SubspaceKind::Cylindrical, true) => cylindrical(0.0, q(0)),
-        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), q(1)),
+        (SubspaceKind::Spherical, None) => orientation(at, sin_cos),
+        (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => cylindrical(0.0, q(0)),
+        (SubspaceKind::Cylindrical, Some(MotionType::Translation) | None) => {
+            cylindrical(q(0), q(1))
+        }
         (SubspaceKind::TranslationalPlane, _) => {
             Displacement::Translational(Complex::new(q(0), q(1)))
         }
     }
 }
 
-/// The displacement `b` from its coordinates and their values at home. The coordinates of a sphere are
-/// absolute: for them this is the orientation, not the displacement from home.
+/// The displacement `b` from its coordinates and their values at home; of Euler angles, which are absolute, the
+/// orientation.
 #[inline(always)]
 pub(crate) fn upper_displacement(
     form: Form,
@@ -46,20 +56,31 @@ pub(crate) fn upper_displacement(
     sin_cos: impl Fn(f64) -> (f64, f64),
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
-    match (form.kind, form.rotation) {
-        (SubspaceKind::Spherical, _) => {
-            // Three calls, where a map would not be inlined.
-            let [zeta, xi, psi] = at;
-            Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
+    match (form.kind, form.shared) {
+        (SubspaceKind::Identity, _) => Displacement::Identity(()),
+        (SubspaceKind::Spherical, _) => orientation(at, sin_cos),
+        (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => {
+            planar(unit_of(sin_cos(q(2))), q(0), q(1))
         }
-        (SubspaceKind::Planar, true) => planar(unit_of(sin_cos(q(2))), q(0), q(1)),
-        (SubspaceKind::Planar, false) => planar(unit_of(sin_cos(q(1))), 0.0, q(0)),
-        (SubspaceKind::Cylindrical, true) => cylindrical(q(0), q(1)),
-        (SubspaceKind::Cylindrical, false) => cylindrical(q(0), 0.0),
-        (SubspaceKind::TranslationalPlane, _) => {
+        (SubspaceKind::Planar, Some(MotionType::Translation)) => {
+            planar(unit_of(sin_cos(q(1))), 0.0, q(0))
+        }
+        (SubspaceKind::Cylindrical, Some(MotionType::Rotation) | None) => cylindrical(q(0), q(1)),
+        (SubspaceKind::Cylindrical, Some(MotionType::Translation)) => cylindrical(q(0), 0.0),
+        (SubspaceKind::TranslationalPlane, Some(_)) => {
             Displacement::Translational(Complex::new(0.0, q(0)))
         }
+        (SubspaceKind::TranslationalPlane, None) => {
+            Displacement::Translational(Complex::new(q(0), q(1)))
+        }
     }
+}
+
+/// The orientation with Euler angles.
+#[inline(always)]
+fn orientation([zeta, xi, psi]: [f64; 3], sin_cos: impl Fn(f64) -> (f64, f64)) -> Displacement {
+    // Three calls, where a map would not be inlined.
+    Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
 }
 
 #[inline(always)]

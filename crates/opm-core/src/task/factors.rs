@@ -6,7 +6,7 @@
 
 use super::Task;
 use super::displacement::{cylindrical, planar};
-use crate::group::{Displacement, Subspace, SubspaceKind};
+use crate::group::{Displacement, MotionType, Subspace, SubspaceKind};
 use crate::numeric::angle::{sin_cos, unit};
 use nalgebra::{Complex, Isometry3, Matrix3, Vector3};
 
@@ -14,10 +14,10 @@ impl Task {
     /// Displacements `v` and `b` with `v · b = g`, where `g` is in the motion `A · B`. They are unique up to a
     /// displacement along the intersection motion. For any other `g`, the product of the two is not `g`.
     pub(crate) fn factors(&self, g: &Isometry3<f64>) -> [Displacement; 2] {
-        let v = if self.intersection_point.is_some() {
-            self.lower_factor_by_rotation(g)
-        } else {
-            self.lower_factor_by_translation(g)
+        let v = match self.shared() {
+            Some(MotionType::Rotation) => self.lower_factor_by_rotation(g),
+            Some(MotionType::Translation) => self.lower_factor_by_translation(g),
+            None => lower_factor_alone(&self.lower, &self.upper, g),
         };
         let b = self.upper.local(&(self.lower.isometry(&v).inverse() * g));
         [v, b]
@@ -25,7 +25,7 @@ impl Task {
 
     /// The factor `v` where the intersection motion is a rotation. The upper frame's origin is on its axis.
     fn lower_factor_by_rotation(&self, g: &Isometry3<f64>) -> Displacement {
-        let (lower, point) = (&self.lower, &self.upper.origin);
+        let (lower, upper, point) = (&self.lower, &self.upper, &self.upper.origin);
         match lower.kind {
             // `b` moves that point along the axis of I, or in a plane across it.
             SubspaceKind::Planar | SubspaceKind::TranslationalPlane => {
@@ -33,15 +33,17 @@ impl Task {
                 planar(Complex::new(1.0, 0.0), moved.x, moved.y)
             }
             SubspaceKind::Cylindrical => cylindrical(0.0, lower.direction(&(g * point - point)).z),
+            SubspaceKind::Identity => Displacement::Identity(()),
             SubspaceKind::Spherical => {
-                let (before, after) = match self.upper.kind {
+                let (before, after) = match upper.kind {
                     // `b` keeps the centre of the upper sphere fixed.
                     SubspaceKind::Spherical => (lower.point(point), lower.point(&(g * point))),
                     // `b` keeps the direction of the axis fixed.
-                    SubspaceKind::Planar
+                    SubspaceKind::Identity
+                    | SubspaceKind::Planar
                     | SubspaceKind::Cylindrical
                     | SubspaceKind::TranslationalPlane => {
-                        let axis = self.direction.into_inner();
+                        let axis = upper.axes.column(2).into_owned();
                         (lower.direction(&axis), lower.direction(&(g.rotation * axis)))
                     }
                 };
@@ -68,9 +70,12 @@ impl Task {
             SubspaceKind::Planar | SubspaceKind::TranslationalPlane => {
                 across * if across.z == 0.0 { 0.0 } else { moved.z / across.z }
             }
-            SubspaceKind::Spherical | SubspaceKind::Cylindrical => Vector3::zeros(),
+            SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::Cylindrical => {
+                Vector3::zeros()
+            }
         };
         match lower.kind {
+            SubspaceKind::Identity => Displacement::Identity(()),
             SubspaceKind::Planar | SubspaceKind::Spherical => {
                 planar(rotation, moved.x - by_upper.x, moved.y - by_upper.y)
             }
@@ -85,11 +90,11 @@ impl Task {
 
     /// The rotation of `v` about the lower frame's third direction, where the intersection motion is a translation.
     fn rotation_of_lower_factor(&self, g: &Isometry3<f64>) -> Complex<f64> {
-        use SubspaceKind::{Cylindrical, Planar, Spherical, TranslationalPlane};
+        use SubspaceKind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
         let (lower, upper) = (&self.lower, &self.upper);
         let (before, after) = match (lower.kind, upper.kind) {
-            (TranslationalPlane, _) => return Complex::new(1.0, 0.0),
-            (_, TranslationalPlane) => {
+            (Identity | TranslationalPlane, _) => return Complex::new(1.0, 0.0),
+            (_, Identity | TranslationalPlane) => {
                 return about_third(&lower.rotation(g));
             }
             // Parallel axes: the upper one moves on a circle about the lower one.
@@ -102,7 +107,7 @@ impl Task {
                 (lower.direction(&axis), lower.direction(&(g.rotation * axis)))
             }
         };
-        normalised(Complex::new(after.x, after.y) * Complex::new(before.x, -before.y))
+        about_the_third(&before, &after)
     }
 }
 
@@ -118,6 +123,7 @@ impl Subspace {
         let rotation = self.rotation(g);
         let moved = self.point(&(g * self.origin));
         match self.kind {
+            SubspaceKind::Identity => Displacement::Identity(()),
             SubspaceKind::Planar => planar(about_third(&rotation), moved.x, moved.y),
             SubspaceKind::Spherical => Displacement::Spherical(rotation),
             SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), moved.z),
@@ -126,6 +132,79 @@ impl Subspace {
             }
         }
     }
+}
+
+/// The factor `v` of `g = v · b` in two subspaces that share the identity alone: first the rotation that `b`
+/// cannot make, then the part of the displacement of the upper frame's origin that `b` cannot make.
+fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) -> Displacement {
+    use SubspaceKind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
+    let by_inverse = || {
+        // g⁻¹ = b⁻¹ · v⁻¹: the same problem, with the subspaces exchanged.
+        let inverse = g.inverse();
+        let b = upper.isometry(&lower_factor_alone(upper, lower, &inverse));
+        lower.local(&(b.inverse() * inverse)).inverse()
+    };
+    let third = |frame: &Subspace| frame.axes.column(2).into_owned();
+    let moved = g * upper.origin;
+    match (lower.kind, upper.kind) {
+        (Identity, _) => Displacement::Identity(()),
+        // `b` makes no displacement, or no rotation.
+        (_, Identity) | (Spherical, TranslationalPlane) => lower.local(g),
+        // `b` keeps the centre of the upper sphere.
+        (TranslationalPlane, Spherical) => {
+            let t = lower.direction(&(moved - upper.origin));
+            Displacement::Translational(Complex::new(t.x, t.y))
+        }
+        (Cylindrical, Spherical) => {
+            let (before, after) = (lower.point(&upper.origin), lower.point(&moved));
+            let rotation = about_the_third(&before, &after);
+            cylindrical(rotation.arg(), after.z - before.z)
+        }
+        // `b` moves the upper axis along itself, by a distance that the lower plane cannot make.
+        (Planar | TranslationalPlane, Cylindrical) => {
+            let axis = third(upper);
+            let rotation = if lower.kind == Planar {
+                let turned = lower.direction(&(g.rotation * axis));
+                about_the_third(&lower.direction(&axis), &turned)
+            } else {
+                Complex::new(1.0, 0.0)
+            };
+            let rotated = |p: Vector3<f64>| {
+                let z = rotation * Complex::new(p.x, p.y);
+                Vector3::new(z.re, z.im, p.z)
+            };
+            let rest = lower.point(&moved) - rotated(lower.point(&upper.origin));
+            let along = rotated(lower.direction(&axis));
+            let translation = rest - along * (rest.z / along.z);
+            match lower.kind {
+                Planar => planar(rotation, translation.x, translation.y),
+                _ => Displacement::Translational(Complex::new(translation.x, translation.y)),
+            }
+        }
+        // The upper axis is rotated about the lower one; of its displacement, `b` makes the part along itself.
+        (Cylindrical, Cylindrical) => {
+            let axis = third(upper);
+            let along = lower.direction(&(g.rotation * axis));
+            let rotation = about_the_third(&lower.direction(&axis), &along);
+            let before = lower.point(&upper.origin);
+            let z = rotation * Complex::new(before.x, before.y);
+            let rest = lower.point(&moved) - Vector3::new(z.re, z.im, before.z);
+            // rest = advance · z + s · along: the component perpendicular to `along` gives the advance.
+            let across = Vector3::z() - along * along.z;
+            cylindrical(rotation.arg(), rest.dot(&across) / across.norm_squared())
+        }
+        (Spherical, Cylindrical) | (Cylindrical, Planar | TranslationalPlane) => by_inverse(),
+        (Spherical, Planar | Spherical)
+        | (Planar, Planar | Spherical | TranslationalPlane)
+        | (TranslationalPlane, Planar | TranslationalPlane) => {
+            unreachable!("these two subspaces always share a motion")
+        }
+    }
+}
+
+/// The rotation about the third direction that takes one vector to another.
+fn about_the_third(before: &Vector3<f64>, after: &Vector3<f64>) -> Complex<f64> {
+    normalised(Complex::new(after.x, after.y) * Complex::new(before.x, -before.y))
 }
 
 /// The rotation about the third direction that is nearest to a rotation matrix.

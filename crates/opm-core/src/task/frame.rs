@@ -1,20 +1,39 @@
 //! The frame of a section's subspace, from the geometry and from the file's hints.
 
-use super::{FrameProblem, TaskError};
+use super::{FrameProblem, IntersectionAxis, TaskError};
 use crate::group::subspace::{SubspaceClass, TOLERANCE, points_up, upward};
-use crate::group::{Subspace, SubspaceKind};
+use crate::group::{MotionType, Subspace, SubspaceKind};
 use crate::mechanism::leg::Section;
 use crate::mechanism::{FrameHints, TaskKey};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 /// The intersection motion and the platform, from which both frames are chosen.
 pub(super) struct Meeting {
-    /// The unit direction of the intersection motion, base coordinates.
-    pub axis: Unit<Vector3<f64>>,
-    /// A point of its axis at home, base coordinates; `None` where it is a translation.
-    pub point: Option<Point3<f64>>,
+    /// `None` where the two subspaces share the identity alone.
+    pub intersection: Option<IntersectionAxis>,
     /// The platform's reference point at home, base coordinates.
     pub platform: Point3<f64>,
+}
+
+impl Meeting {
+    fn shared(&self) -> Option<MotionType> {
+        self.intersection.as_ref().map(IntersectionAxis::motion_type)
+    }
+
+    /// The reference point: on the axis of the intersection motion where that is a line, else the platform's own.
+    fn reference(&self) -> Point3<f64> {
+        match &self.intersection {
+            Some(IntersectionAxis { direction, point: Some(p) }) => {
+                p + direction.into_inner() * direction.dot(&(self.platform - p))
+            }
+            Some(IntersectionAxis { point: None, .. }) | None => self.platform,
+        }
+    }
+
+    /// The third direction of a frame: that of the intersection motion, or what the subspace has instead.
+    fn third(&self, instead: Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+        self.intersection.as_ref().map_or(instead, |intersection| intersection.direction)
+    }
 }
 
 /// The frame of a subspace, by the rules in the docs of [`task`](crate::task) and the file's hints.
@@ -24,24 +43,31 @@ pub(super) fn lay(
     meeting: &Meeting,
     hints: &FrameHints,
 ) -> Result<Subspace, TaskError> {
-    let Meeting { axis, point, platform } = meeting;
-    // The reference point: on the axis of I where that is a line, else the platform's own.
-    let reference = point.map_or(*platform, |p| p + axis.into_inner() * axis.dot(&(platform - p)));
-    let rotation = point.is_some();
+    let (reference, shared) = (meeting.reference(), meeting.shared());
+    let rotation = shared == Some(MotionType::Rotation);
     let (kind, at_home, normal) = match class {
-        SubspaceClass::Planar { normal } => {
-            (SubspaceKind::Planar, reference, if rotation { *axis } else { *normal })
+        SubspaceClass::Identity => (SubspaceKind::Identity, reference, Vector3::z_axis()),
+        SubspaceClass::Planar { normal } => (
+            SubspaceKind::Planar,
+            reference,
+            if rotation { meeting.third(*normal) } else { *normal },
+        ),
+        SubspaceClass::Spherical { centre } => {
+            let pole = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
+            (SubspaceKind::Spherical, *centre, meeting.third(pole))
         }
-        SubspaceClass::Spherical { centre } => (SubspaceKind::Spherical, *centre, *axis),
         SubspaceClass::Cylindrical { axis: line, point } => {
             let on_axis = point + line.into_inner() * line.dot(&(reference - point));
-            (SubspaceKind::Cylindrical, on_axis, *axis)
+            let hinted = match hints.axis {
+                Some(hint) if hint.dot(line) < 0.0 => -*line,
+                Some(_) | None => *line,
+            };
+            (SubspaceKind::Cylindrical, on_axis, meeting.third(hinted))
         }
         SubspaceClass::TranslationalPlane { normal } => {
             (SubspaceKind::TranslationalPlane, reference, *normal)
         }
-        SubspaceClass::Identity
-        | SubspaceClass::Rotation { .. }
+        SubspaceClass::Rotation { .. }
         | SubspaceClass::Translation { .. }
         | SubspaceClass::Helical { .. }
         | SubspaceClass::TranslationalSpace
@@ -51,25 +77,27 @@ pub(super) fn lay(
             return Err(TaskError::Subspace { section, name: class.name(), odd: None });
         }
     };
-    let hints = Checked { hints, section, kind, rotation };
+    let hints = Checked { hints, section, kind, shared };
     hints.refuse_what_is_not_free()?;
+    hints.refuse_a_perpendicular_axis(&normal)?;
     let flat = match kind {
         SubspaceKind::Planar | SubspaceKind::TranslationalPlane => true,
-        SubspaceKind::Spherical | SubspaceKind::Cylindrical => false,
+        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::Cylindrical => false,
     };
     let given = hints.sense(TaskKey::Normal(section), normal)?;
-    let axes = if flat && !rotation && section == Section::Upper {
-        let across = Unit::new_normalize(normal.cross(axis));
-        let w = hints.sense(TaskKey::W(section), across)?.unwrap_or_else(|| upward(across));
-        let third = given.unwrap_or_else(|| standing(normal, beside(&normal)));
-        triad(Unit::new_normalize(w.cross(&third)), third)
-    } else {
-        let first = hints.perpendicular(TaskKey::X(section), normal)?;
-        let first = first.unwrap_or_else(|| beside(&normal));
-        let free = flat && !rotation;
-        let third = if free { standing(normal, first) } else { normal };
-        triad(first, given.unwrap_or(third))
-    };
+    let axes =
+        if let (true, Some(MotionType::Translation), Section::Upper) = (flat, shared, section) {
+            let across = Unit::new_normalize(normal.cross(&meeting.third(normal)));
+            let w = hints.sense(TaskKey::W(section), across)?.unwrap_or_else(|| upward(across));
+            let third = given.unwrap_or_else(|| standing(normal, beside(&normal)));
+            triad(Unit::new_normalize(w.cross(&third)), third)
+        } else {
+            let first = hints.perpendicular(TaskKey::X(section), normal)?;
+            let first = first.unwrap_or_else(|| beside(&normal));
+            let free = flat && !rotation;
+            let third = if free { standing(normal, first) } else { normal };
+            triad(first, given.unwrap_or(third))
+        };
     let origin = if kind == SubspaceKind::Spherical { at_home } else { Point3::origin() };
     Ok(Subspace {
         kind,
@@ -106,24 +134,31 @@ struct Checked<'a> {
     hints: &'a FrameHints,
     section: Section,
     kind: SubspaceKind,
-    rotation: bool,
+    shared: Option<MotionType>,
 }
 
 impl Checked<'_> {
     /// The keys that the geometry leaves free to choose.
     fn free(&self) -> Vec<TaskKey> {
-        let keys: &[fn(Section) -> TaskKey] = match (self.kind, self.section, self.rotation) {
-            (SubspaceKind::Planar, _, true) => &[TaskKey::X, TaskKey::Origin],
-            (SubspaceKind::Planar | SubspaceKind::TranslationalPlane, Section::Lower, _) => {
+        use MotionType::{Rotation, Translation};
+        let keys: &[fn(Section) -> TaskKey] = match (self.kind, self.section, self.shared) {
+            (SubspaceKind::Identity, ..) => &[],
+            (SubspaceKind::Planar, _, Some(Rotation)) => &[TaskKey::X, TaskKey::Origin],
+            (SubspaceKind::Planar | SubspaceKind::TranslationalPlane, Section::Lower, _)
+            | (SubspaceKind::Planar | SubspaceKind::TranslationalPlane, Section::Upper, None) => {
                 &[TaskKey::X, TaskKey::Normal, TaskKey::Origin]
             }
-            (SubspaceKind::Planar, Section::Upper, false) => {
+            (SubspaceKind::Planar, Section::Upper, Some(Translation)) => {
                 &[TaskKey::W, TaskKey::Normal, TaskKey::Origin]
             }
-            (SubspaceKind::TranslationalPlane, Section::Upper, _) => &[TaskKey::W, TaskKey::Origin],
-            (SubspaceKind::Spherical, ..) => &[TaskKey::X],
-            (SubspaceKind::Cylindrical, Section::Upper, false) => &[],
-            (SubspaceKind::Cylindrical, ..) => &[TaskKey::Origin],
+            (SubspaceKind::TranslationalPlane, Section::Upper, Some(_)) => {
+                &[TaskKey::W, TaskKey::Origin]
+            }
+            (SubspaceKind::Spherical, _, Some(_)) => &[TaskKey::X],
+            (SubspaceKind::Spherical, _, None) => &[TaskKey::X, TaskKey::AxisOf],
+            (SubspaceKind::Cylindrical, Section::Upper, Some(Translation)) => &[],
+            (SubspaceKind::Cylindrical, _, Some(_)) => &[TaskKey::Origin],
+            (SubspaceKind::Cylindrical, _, None) => &[TaskKey::AxisOf, TaskKey::Origin],
         };
         keys.iter().map(|key| key(self.section)).collect()
     }
@@ -133,6 +168,7 @@ impl Checked<'_> {
         let (h, s) = (self.hints, self.section);
         let given = [
             (TaskKey::X(s), h.x.is_some()),
+            (TaskKey::AxisOf(s), h.axis.is_some()),
             (TaskKey::W(s), h.w.is_some()),
             (TaskKey::Normal(s), h.normal.is_some()),
             (TaskKey::Origin(s), h.origin.is_some()),
@@ -148,12 +184,26 @@ impl Checked<'_> {
         }
     }
 
+    /// Returns an error for a hint on the sense of `line` that chooses neither of its two directions.
+    fn refuse_a_perpendicular_axis(&self, line: &Unit<Vector3<f64>>) -> Result<(), TaskError> {
+        let key = TaskKey::AxisOf(self.section);
+        match self.given(key) {
+            Some(given) if given.dot(line).abs() <= TOLERANCE => {
+                let (given, line) = (given.into_inner().into(), line.into_inner().into());
+                let problem = FrameProblem::Perpendicular { given, line };
+                Err(TaskError::Frame { key, problem })
+            }
+            Some(_) | None => Ok(()),
+        }
+    }
+
     /// The unit direction of a hint, if it is given.
     fn given(&self, key: TaskKey) -> Option<Unit<Vector3<f64>>> {
         let given = match key {
             TaskKey::X(_) => self.hints.x,
             TaskKey::W(_) => self.hints.w,
             TaskKey::Normal(_) => self.hints.normal,
+            TaskKey::AxisOf(_) => self.hints.axis,
             TaskKey::Axis | TaskKey::Origin(_) => None,
         };
         given.map(Unit::new_normalize)

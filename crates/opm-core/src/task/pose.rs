@@ -2,8 +2,8 @@
 
 use super::Task;
 use crate::group::{
-    CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, PlanarMotion,
-    SphericalMotion, SubspaceKind, TranslationalMotion,
+    CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, MotionType,
+    PlanarMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::numeric::Quantity;
 use crate::numeric::angle::{sin_cos, whole_turns};
@@ -26,20 +26,26 @@ impl Task {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
         let home = |i: usize| self.coordinates[i].home;
         // Moves the displacement along I to the factor that is not taken modulo I.
-        let rotation = self.intersection_point.is_some();
-        let (v, handed) = if rotation {
-            self.without_shared_rotation(v)
-        } else {
-            let translation = self.shared_translation(b);
-            (self.lower_intersection.after(v, translation), translation.inverse())
+        let (v, handed) = match self.shared() {
+            Some(MotionType::Rotation) => self.without_shared_rotation(v),
+            Some(MotionType::Translation) => {
+                let translation = self.shared_translation(b);
+                (self.lower_intersection.after(v, translation), translation.inverse())
+            }
+            None => (*v, JointDisplacement::Value(0.0)),
         };
+        let rotation = self.shared() == Some(MotionType::Rotation);
         let b = self.upper_intersection.before(b, handed);
         match v {
+            Displacement::Identity(()) => {}
             Displacement::Planar(g) => {
                 pose.extend([home(0) + g.translation.re, home(1) + g.translation.im]);
                 if !rotation {
                     pose.push(home(2) + g.rotation.arg());
                 }
+            }
+            Displacement::Spherical(r) if self.shared().is_none() => {
+                pose.extend(self.euler_angles(&r, [home(0), home(1), home(2)]));
             }
             Displacement::Spherical(r) => {
                 let [mu, nu] = tilt_angles(&r.column(2).into_owned());
@@ -50,34 +56,34 @@ impl Task {
             Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
         }
         let home = |i: usize| self.coordinates[self.lower_count + i].home;
+        let translation = self.shared() == Some(MotionType::Translation);
         match b {
-            Displacement::Planar(g) if rotation => pose.extend([
+            Displacement::Identity(()) => {}
+            Displacement::Planar(g) if translation => {
+                pose.extend([home(0) + g.translation.im, home(1) + g.rotation.arg()]);
+            }
+            Displacement::Planar(g) => pose.extend([
                 home(0) + g.translation.re,
                 home(1) + g.translation.im,
                 home(2) + g.rotation.arg(),
             ]),
-            Displacement::Planar(g) => {
-                pose.extend([home(0) + g.translation.im, home(1) + g.rotation.arg()]);
-            }
             Displacement::Spherical(r) => {
-                let absolute = match &self.home_orientation_inverse {
-                    Some(inverse) => r * inverse.transpose(),
-                    None => r,
-                };
-                pose.extend(euler_angles(&absolute, [home(0), home(1), home(2)]));
+                pose.extend(self.euler_angles(&r, [home(0), home(1), home(2)]));
             }
-            Displacement::Cylindrical(g) if rotation => {
+            Displacement::Cylindrical(g) if translation => pose.push(home(0) + g.angle),
+            Displacement::Cylindrical(g) => {
                 pose.extend([home(0) + g.angle, home(1) + g.advance]);
             }
-            Displacement::Cylindrical(g) => pose.push(home(0) + g.angle),
-            Displacement::Translational(t) => pose.push(home(0) + t.im),
+            Displacement::Translational(t) if translation => pose.push(home(0) + t.im),
+            Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
         }
         // The angle of a cylinder counts revolutions.
         let counted = |kind: SubspaceKind| match kind {
             SubspaceKind::Cylindrical => true,
-            SubspaceKind::Planar | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => {
-                false
-            }
+            SubspaceKind::Identity
+            | SubspaceKind::Planar
+            | SubspaceKind::Spherical
+            | SubspaceKind::TranslationalPlane => false,
         };
         for (i, (q, c)) in pose.iter_mut().zip(&self.coordinates).enumerate() {
             let section = if i < self.lower_count { &self.lower } else { &self.upper };
@@ -88,14 +94,21 @@ impl Task {
         pose
     }
 
+    /// The Euler angles of a displacement of a sphere from home, the triple nearest to the values at home.
+    fn euler_angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+        match &self.home_orientation_inverse {
+            Some(inverse) => euler_angles(&(r * inverse.transpose()), home),
+            None => euler_angles(r, home),
+        }
+    }
+
     /// The factors of `v`: the displacement that its coordinates describe, and the rotation about the shared
-    /// axis that is applied before it. Where the intersection motion is a translation, they are `v` itself and
-    /// zero.
+    /// axis that is applied before it. Without a shared rotation, they are `v` itself and zero.
     pub(crate) fn without_shared_rotation(
         &self,
         v: &Displacement,
     ) -> (Displacement, JointDisplacement) {
-        if self.intersection_point.is_none() {
+        if self.shared() != Some(MotionType::Rotation) {
             return (*v, JointDisplacement::Value(0.0));
         }
         let rotation = self.shared_rotation(v);
@@ -113,7 +126,9 @@ impl Task {
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
             Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle),
-            Displacement::Translational(_) => JointDisplacement::Value(0.0),
+            Displacement::Identity(()) | Displacement::Translational(_) => {
+                JointDisplacement::Value(0.0)
+            }
         }
     }
 
@@ -130,7 +145,8 @@ impl Task {
             IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 b.cylindrical().advance
             }
-            IntersectionMotion::Planar(PlanarMotion::Rotation)
+            IntersectionMotion::None(_)
+            | IntersectionMotion::Planar(PlanarMotion::Rotation)
             | IntersectionMotion::Spherical(SphericalMotion::Rotation)
             | IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => 0.0,
         })

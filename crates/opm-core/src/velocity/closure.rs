@@ -21,12 +21,12 @@ pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     let compiled = leg.section(section);
     let mut inputs =
         compiled.coordinates.map(|slot| slot.is_some_and(|slot| slot.actuated.is_some()));
-    match (leg.split_section, section) {
-        (Section::Upper, Section::Upper) => inputs[0] = true,
-        (Section::Lower, Section::Lower) if leg.upper.driven => {
-            inputs[compiled.chain.freedoms() - 1] = true;
-        }
-        _ => {}
+    if let Some(joint) = leg.imaginary_joint() {
+        inputs[joint] |= match (leg.split_section, section) {
+            (Section::Upper, Section::Upper) => true,
+            (Section::Lower, Section::Lower) => leg.upper.driven,
+            (Section::Upper, Section::Lower) | (Section::Lower, Section::Upper) => false,
+        };
     }
     inputs
 }
@@ -61,7 +61,8 @@ pub(super) fn section_rows(
         _ => {
             let angular = match kind {
                 SubspaceKind::Planar => length,
-                SubspaceKind::Spherical
+                SubspaceKind::Identity
+                | SubspaceKind::Spherical
                 | SubspaceKind::Cylindrical
                 | SubspaceKind::TranslationalPlane => 1.0,
             };
@@ -77,7 +78,7 @@ fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, lengt
     let [a, b] = [section.screws[(input + 1) % 3], section.screws[(input + 2) % 3]];
     let rotates = |screw: &LocalTwist| screw.x != 0.0;
     match kind {
-        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
         // One of the two screws is padding. If the other one is a slider, the locked input constrains the
         // angle.
         SubspaceKind::Cylindrical => {
@@ -119,7 +120,9 @@ fn constraints_of_passive(
             [first, passive.cross(&first)]
         }
         SubspaceKind::Cylindrical => [LocalTwist::x() * length, LocalTwist::y()],
-        SubspaceKind::TranslationalPlane => [LocalTwist::x(), LocalTwist::y()],
+        SubspaceKind::Identity | SubspaceKind::TranslationalPlane => {
+            [LocalTwist::x(), LocalTwist::y()]
+        }
     }
 }
 
@@ -138,7 +141,11 @@ pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f6
         }
         (Chain::Planar(_), Section::Lower)
         | (
-            Chain::Spherical(_) | Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_),
+            Chain::Rigid
+            | Chain::Spherical(_)
+            | Chain::Ball(_)
+            | Chain::Cylindrical(_)
+            | Chain::Translational(_),
             Section::Lower | Section::Upper,
         ) => 1.0,
     }
@@ -147,7 +154,7 @@ pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f6
 /// The unit of a row: the characteristic length for a velocity, one radian for an angular velocity.
 pub(super) fn row_unit(kind: SubspaceKind, length: f64) -> f64 {
     match kind {
-        SubspaceKind::Spherical => 1.0,
+        SubspaceKind::Identity | SubspaceKind::Spherical => 1.0,
         SubspaceKind::Planar | SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
             length
         }
@@ -164,7 +171,7 @@ pub(super) fn twist_unit(kind: SubspaceKind, twist: &LocalTwist, length: f64) ->
                 1.0
             }
         }
-        SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
     }
 }
 

@@ -2,7 +2,7 @@
 //! coordinates.
 
 use super::{LegDifferential, SingularLeg, VelocityError};
-use crate::group::{Displacement, JointDisplacement, LocalTwist, Subspace};
+use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
 use crate::task::Task;
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
@@ -116,7 +116,7 @@ struct BaseTwist {
 impl Basis {
     fn new(task: &Task, platform: &Point3<f64>) -> Self {
         let (kept, rest) = (task.upper.kind.basis(), task.lower.kind.basis());
-        let rotation = task.intersection_point.is_some();
+        let rotation = task.shared() == Some(MotionType::Rotation);
         let upper = if rotation { kept } else { task.upper_intersection.complement() };
         let lower = if rotation { task.lower_intersection.complement() } else { rest };
         let embedded = |subspace: &Subspace, twist: &LocalTwist| {
@@ -174,7 +174,7 @@ impl Manipulator {
         let mut bridges = vec![None; self.legs.len()];
         let mut lower_rows = Vec::new();
         for (number, leg) in self.legs.iter().enumerate() {
-            if leg.split_section == Section::Upper {
+            if leg.bridge() == Some(Section::Upper) {
                 bridges[number] = Some(bridged.len());
                 bridged.push(number);
             }
@@ -271,10 +271,11 @@ impl Manipulator {
         let mut cut = [0.0; 6];
         let (upper_twists, carried) = match leg.split_section {
             Section::Upper => {
-                let bridge = out.bridges[number].unwrap_or_default();
-                for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
-                    cut[i] = upper.rate(0, twist);
-                    out.upper[(bridge, i)] = sign * cut[i];
+                if let Some(bridge) = out.bridges[number] {
+                    for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
+                        cut[i] = upper.rate(0, twist);
+                        out.upper[(bridge, i)] = sign * cut[i];
+                    }
                 }
                 (out.basis.upper, moved.along)
             }
@@ -337,7 +338,7 @@ impl Manipulator {
         let v = &at.solved.v;
         let n_upper = out.basis.counts[0];
         let n = pose.len();
-        let rotation = task.intersection_point.is_some();
+        let rotation = task.shared() == Some(MotionType::Rotation);
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
         let (v_screws, b_screws) = (task.lower_screws(pose), task.upper_screws(pose));

@@ -7,7 +7,7 @@
 
 use super::screws::Screws;
 use crate::group::{
-    CylindricalMotion, IntersectionMotion, LocalTwist, PlanarMotion, SphericalMotion,
+    CylindricalMotion, IntersectionMotion, LocalTwist, PlanarMotion, SphericalMotion, SubspaceKind,
 };
 use crate::numeric::angle::unit;
 use crate::task::Task;
@@ -18,6 +18,7 @@ impl Task {
         let q = |i: usize| pose[i] - self.coordinates[i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.lower_intersection {
+            IntersectionMotion::None(kind) => alone(kind, pose, q),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 [LocalTwist::y(), LocalTwist::z(), zero]
             }
@@ -42,11 +43,8 @@ impl Task {
         let q = |i: usize| at(i) - self.coordinates[self.lower_count + i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.upper_intersection {
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-                let (zeta, xi) = (unit(at(0)), unit(at(1)));
-                let third = LocalTwist::new(zeta.re * xi.im, zeta.im * xi.im, xi.re);
-                [LocalTwist::z(), LocalTwist::new(-zeta.im, zeta.re, 0.0), third]
-            }
+            IntersectionMotion::None(kind) => alone(kind, &pose[self.lower_count..], q),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => euler(at(0), at(1)),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => planar(q(0), q(1)),
             IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
                 let [_, second, third] = planar(0.0, q(0));
@@ -62,6 +60,28 @@ impl Task {
         };
         Screws { kind: self.upper.kind, moved }
     }
+}
+
+/// The screws of the coordinates of a section that shares no motion with the other one. `pose` begins with its
+/// coordinates, and `q` gives them minus their values at home.
+fn alone(kind: SubspaceKind, pose: &[f64], q: impl Fn(usize) -> f64) -> [LocalTwist; 3] {
+    let zero = LocalTwist::zeros();
+    match kind {
+        SubspaceKind::Identity => [zero; 3],
+        SubspaceKind::Planar => planar(q(0), q(1)),
+        SubspaceKind::Spherical => euler(pose[0], pose[1]),
+        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
+            [LocalTwist::x(), LocalTwist::y(), zero]
+        }
+    }
+}
+
+/// The screws of the three Euler angles, about the third, the second and the third direction, for the first two
+/// angles.
+fn euler(zeta: f64, xi: f64) -> [LocalTwist; 3] {
+    let (zeta, xi) = (unit(zeta), unit(xi));
+    let third = LocalTwist::new(zeta.re * xi.im, zeta.im * xi.im, xi.re);
+    [LocalTwist::z(), LocalTwist::new(-zeta.im, zeta.re, 0.0), third]
 }
 
 /// The screws of two translations along the directions of the plane, followed by a rotation about the point

@@ -37,7 +37,9 @@ impl Screws {
                     (displacements[0].unit_direction(), displacements[1].unit_direction());
                 [s1, rotated(&s1, q1, &s2), rotated(&s1, q1, &rotated(&s2, q2, &s3))]
             }
-            SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => *home,
+            SubspaceKind::Identity
+            | SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalPlane => *home,
         };
         Self { kind, moved }
     }

@@ -93,6 +93,13 @@ impl DisplacementColumns {
         Self { are_directions: false, columns: [[0.0; LANES]; 2] }
     }
 
+    /// Sets every displacement to zero.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.are_directions = false;
+        self.columns[0] = [0.0; LANES];
+    }
+
     /// The displacement of pose number `lane`, which must be a direction.
     #[inline(always)]
     pub fn direction(&self, lane: usize) -> JointDisplacement {

@@ -7,9 +7,9 @@ use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;
 use crate::chain::{Attempt, Branch, Chain, ClosedForm};
 use crate::group::{
-    Cylindrical, CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, Planar,
-    PlanarMotion, Spherical, SphericalMotion, Subgroup, SubspaceKind, TranslationalMotion,
-    TranslationalPlane,
+    Cylindrical, CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement,
+    MotionType, Planar, PlanarMotion, Spherical, SphericalMotion, Subgroup, SubspaceKind,
+    TranslationalMotion, TranslationalPlane,
 };
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::leg::Section;
@@ -46,8 +46,8 @@ pub fn displace(
 ) {
     // With a constant form, the loop has no branches.
     macro_rules! each {
-        ($kind:ident, $rotation:expr) => {{
-            let form = Form { kind: SubspaceKind::$kind, rotation: $rotation };
+        ($kind:ident, $shared:expr) => {{
+            let form = Form { kind: SubspaceKind::$kind, shared: $shared };
             for lane in 0..LANES {
                 let at = [at[0][lane], at[1][lane], at[2][lane]];
                 match section {
@@ -58,16 +58,23 @@ pub fn displace(
             }
         }};
     }
-    let Form { kind, rotation } = task.form(section);
-    match (kind, rotation) {
-        (SubspaceKind::Planar, true) => each!(Planar, true),
-        (SubspaceKind::Planar, false) => each!(Planar, false),
-        (SubspaceKind::Spherical, _) => each!(Spherical, true),
-        (SubspaceKind::Cylindrical, true) => each!(Cylindrical, true),
-        (SubspaceKind::Cylindrical, false) => each!(Cylindrical, false),
-        (SubspaceKind::TranslationalPlane, _) => each!(TranslationalPlane, false),
+    use MotionType::{Rotation, Translation};
+    let Form { kind, shared } = task.form(section);
+    match (kind, shared) {
+        (SubspaceKind::Identity, _) => {}
+        (SubspaceKind::Planar, Some(Rotation)) => each!(Planar, Some(Rotation)),
+        (SubspaceKind::Planar, Some(Translation)) => each!(Planar, Some(Translation)),
+        (SubspaceKind::Planar, None) => each!(Planar, None),
+        (SubspaceKind::Spherical, Some(_)) => each!(Spherical, Some(Rotation)),
+        (SubspaceKind::Spherical, None) => each!(Spherical, None),
+        (SubspaceKind::Cylindrical, Some(Rotation)) => each!(Cylindrical, Some(Rotation)),
+        (SubspaceKind::Cylindrical, Some(Translation)) => each!(Cylindrical, Some(Translation)),
+        (SubspaceKind::Cylindrical, None) => each!(Cylindrical, None),
+        (SubspaceKind::TranslationalPlane, Some(_)) => each!(TranslationalPlane, Some(Translation)),
+        (SubspaceKind::TranslationalPlane, None) => each!(TranslationalPlane, None),
     }
-    if let (Section::Upper, Some(inverse)) = (section, task.home_orientation_inverse()) {
+    let euler = task.euler_section() == Some(section);
+    if let (true, Some(inverse)) = (euler, task.home_orientation_inverse()) {
         for lane in 0..LANES {
             (Matrix3::load(to, lane) * inverse).store(to, lane);
         }
@@ -79,6 +86,7 @@ impl Displacement {
     #[inline(always)]
     fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
+            Self::Identity(()) => {}
             Self::Planar(g) => g.store(to, lane),
             Self::Spherical(r) => r.store(to, lane),
             Self::Cylindrical(g) => g.store(to, lane),
@@ -91,6 +99,7 @@ impl Displacement {
 #[inline(always)]
 pub fn solve(chain: &Chain, branch: Branch, targets: &Displacements, found: &mut Found) {
     match chain {
+        Chain::Rigid => (found.holds, found.beyond) = ([1; LANES], [0; LANES]),
         Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branch, targets, found),
         Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branch, targets, found),
         Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branch, targets, found),
@@ -173,6 +182,7 @@ pub fn shift(
         }};
     }
     match (motion, tau.are_directions) {
+        (IntersectionMotion::None(_), _) => to.copy_from_slice(from),
         (IntersectionMotion::Planar(PlanarMotion::Rotation), true) => {
             each!(Planar, PlanarMotion::Rotation, direction);
         }

@@ -131,12 +131,14 @@ fn read_frame(task: &Table<'_>, section: Section, locations: &mut Locations<usiz
         Section::Lower => task.get("lower"),
         Section::Upper => task.get("upper"),
     };
-    let Some(frame) = value.and_then(|value| value.table(&["x", "w", "normal", "origin"])) else {
+    let Some(frame) = value.and_then(|value| value.table(&["x", "axis", "w", "normal", "origin"]))
+    else {
         return FrameHints::default();
     };
     let origin = task_value(&frame, TaskKey::Origin(section), locations);
     FrameHints {
         x: task_direction(&frame, TaskKey::X(section), locations),
+        axis: task_direction(&frame, TaskKey::AxisOf(section), locations),
         w: task_direction(&frame, TaskKey::W(section), locations),
         normal: task_direction(&frame, TaskKey::Normal(section), locations),
         origin: origin.and_then(|value| value.point()).map(Point3::from),

@@ -59,7 +59,8 @@ impl Writer {
             lines.push(format!("axis = {}", self.direction(&axis)));
         }
         for (name, frame) in [("lower", &hints.lower), ("upper", &hints.upper)] {
-            let directions = [("x", frame.x), ("w", frame.w), ("normal", frame.normal)];
+            let directions =
+                [("x", frame.x), ("axis", frame.axis), ("w", frame.w), ("normal", frame.normal)];
             let mut keys: Vec<_> = directions
                 .into_iter()
                 .filter_map(|(key, given)| Some(format!("{key} = {}", self.direction(&given?))))

@@ -59,11 +59,12 @@ prop_compose! {
 
 prop_compose! {
     fn frame()(
-        x in proptest::option::of(direction()), w in proptest::option::of(direction()),
+        x in proptest::option::of(direction()), axis in proptest::option::of(direction()),
+        w in proptest::option::of(direction()),
         normal in proptest::option::of(direction()), origin in proptest::option::of(point()),
     ) -> FrameHints {
-        let [x, w, normal] = [x, w, normal].map(|given| given.map(Unit::into_inner));
-        FrameHints { x, w, normal, origin }
+        let [x, axis, w, normal] = [x, axis, w, normal].map(|given| given.map(Unit::into_inner));
+        FrameHints { x, axis, w, normal, origin }
     }
 }
 
@@ -77,7 +78,7 @@ prop_compose! {
 
 /// Every vector of a `[task]`.
 fn vectors(task: &TaskHints) -> Vec<Option<Vector3<f64>>> {
-    let frame = |f: &FrameHints| [f.x, f.w, f.normal, f.origin.map(|p| p.coords)];
+    let frame = |f: &FrameHints| [f.x, f.axis, f.w, f.normal, f.origin.map(|p| p.coords)];
     [task.axis].into_iter().chain(frame(&task.lower)).chain(frame(&task.upper)).collect()
 }
 
