@@ -304,7 +304,7 @@ fn a_cycle_is_one_motion() {
                 assert_eq!(position.branch, home.branch);
                 let turned = position.joints.iter().zip(&home.joints);
                 let turned = turned.filter(|(a, b)| (*a - *b).abs() > PI).count();
-                if cycle.is_turn() {
+                if cycle.is_revolution() {
                     turns += 1;
                     assert!(turned > 0);
                     assert!((cycle.at(1.0).0 - cycle.at(0.0).0 - TAU).abs() < 1e-12);
@@ -324,7 +324,7 @@ fn the_shipped_linkage_is_driven_by_a_crank() {
     let linkage = compiled(&shipped("bennett-double-spherical-6r"));
     let crank = linkage.input("a1").unwrap();
     assert!(crank.range().is_full_turn());
-    assert!(crank.cycle().is_turn());
+    assert!(crank.cycle().is_revolution());
     assert!(linkage.input("b3").is_some() && linkage.input("j1").is_none());
     assert_eq!(linkage.imaginary().name, "tau.leg1");
     for i in 0..360 {

@@ -68,7 +68,7 @@ pub fn record_linkage(
     let result = record([
         ("positions", summary.positions.to_string()),
         ("within_limits", summary.within_limits.to_string()),
-        ("turns", summary.is_turn.to_string()),
+        ("turns", summary.is_revolution.to_string()),
     ]);
     recorder.finish(&result).map_err(failed)?;
     Ok(summary)
