@@ -39,7 +39,8 @@ fn inputs(linkage: &Linkage) -> impl Iterator<Item = (usize, Input<'_>)> {
 /// The difference between the platform's displacements by the two legs.
 fn open(mechanism: &Mechanism, position: &Position) -> f64 {
     let (one, two) = position.joints.split_at(mechanism.legs[0].coordinates().count());
-    let [one, two] = [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q));
+    let [one, two] =
+        [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q).unwrap());
     (one.to_homogeneous() - two.to_homogeneous()).norm()
 }
 
@@ -55,7 +56,7 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
             // With the upper part at home, only the lower part's displacement is left.
             let home: Vec<f64> = leg.coordinates().map(|c| c.home).collect();
             let values = [&own[..split.lower.len()], &home[split.lower.len()..]].concat();
-            leg.displacement(&values)
+            leg.displacement(&values).unwrap()
         })
         .collect();
     let owner = linkage.imaginary().leg;

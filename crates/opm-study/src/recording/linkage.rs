@@ -55,7 +55,9 @@ pub fn record_linkage(
         let time = u64::from(number) * ROUND / steps;
         let (joints, imaginary) = (&position.joints, &[position.imaginary]);
         let frames = if recorder.shows(time) {
-            let platform = mechanism.legs[0].displacement(joints);
+            let leg = &mechanism.legs[0];
+            let own = &joints[..leg.coordinates().count()];
+            let platform = leg.displacement(own).expect("a position has a value for every joint");
             scene.frames(&core::Configuration { joints, imaginary, platform })
         } else {
             &[]
