@@ -45,7 +45,7 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
         Stop::Budget => output.warn(run.beyond(&found)),
         Stop::Exhausted => {
             output.warn(
-                "the bounds hold, but what is between them is on the rim: no split decides it",
+                "the bounds hold, but come no closer: what is between them lies on the boundary of the workspace",
             );
         }
         Stop::Cancelled => {

@@ -376,7 +376,7 @@ fn wrong_usage_names_the_flag() {
         (&cloud, &["-o", &svg, "--size", "200x100"], &["--size", "200x100", "need at least"]),
         (&turn, &["-o", &svg, "--values", "c1"], &["--values", "\"c1\"", "a1, b3, a2"]),
         (&turn, &["-o", &svg, "--panels", "slices"], &["--panels", "slices", "motion"]),
-        (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "no workspace"]),
+        (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "not a workspace"]),
     ] {
         opm(&[&["plot", file], args].concat()).fails_with_one_line(2, parts);
     }

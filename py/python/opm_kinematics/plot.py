@@ -224,7 +224,7 @@ def imaginary(
     if color is not None:
         given = np.asarray(color, dtype=np.float64)
         if given.shape != inside.shape:
-            raise OpmError(f"color has shape {given.shape}, expected {inside.shape}, a number a pose")
+            raise OpmError(f"color has shape {given.shape}, expected {inside.shape}: one number for each pose")
         shade = given[inside]
     panel: Any = ax
     if panel is None:

@@ -77,7 +77,7 @@ fn the_option_that_is_wrong_is_named() {
         (
             points(color),
             RequestOption::Color,
-            "\"w\" is none of x, y, zeta, xi, psi, theta11, theta12, theta13, S1, S2, S3, phi14, \
+            "\"w\" is not one of x, y, zeta, xi, psi, theta11, theta12, theta13, S1, S2, S3, phi14, \
              phi24, inverse_condition",
         ),
     ] {
@@ -95,7 +95,7 @@ fn names_of_places_are_those_of_their_kind() {
         RequestOption::Kind => "--kind",
         other => other.name(),
     });
-    assert_eq!(told, "\"S1\" with --kind dexterous: none of x, y, share");
+    assert_eq!(told, "\"S1\" with --kind dexterous: not one of x, y, share");
 }
 
 #[test]
