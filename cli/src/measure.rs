@@ -87,7 +87,7 @@ fn domain(
     }
     for name in beyond {
         output.warn(format_args!(
-            "the workspace goes on beyond this range along {name}; limit a joint, or give --over"
+            "the workspace continues beyond this range along {name}; limit a joint, or give --over"
         ));
     }
     checked(&over)

@@ -103,7 +103,7 @@ impl Manipulator {
             .map_err(|(leg, joint, error)| {
                 wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
             })?;
-        // The mechanism goes through a file, so that it is checked like any other, can be saved, and crosses processes.
+        // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
         let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
         Self::compile(file, text, name.to_owned())

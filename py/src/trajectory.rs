@@ -420,7 +420,7 @@ const ATTRIBUTES: [&str; 21] = [
     "rows",
 ];
 
-/// What was followed as it crosses processes: manipulator, name and text of the file, rate.
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate.
 type Followable = (Py<Manipulator>, String, String, f64);
 
 #[pymethods]

@@ -12,7 +12,7 @@ pub fn of_fitted(workspace: &Workspace, output: &Output) {
     output.note(format_args!("grid fitted to the workspace: {}", grid_flags(workspace.grid())));
     for name in workspace.unbounded().unwrap_or_default() {
         output.warn(format_args!(
-            "the workspace goes on beyond this grid along {name}; limit a joint, or give --grid"
+            "the workspace continues beyond this grid along {name}; limit a joint, or give --grid"
         ));
     }
 }

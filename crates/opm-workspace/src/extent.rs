@@ -52,7 +52,7 @@ pub struct Extent {
     pub min: f64,
     /// The highest value, radians or metres.
     pub max: f64,
-    /// Whether the workspace goes on beyond, without an end that was found.
+    /// Whether the workspace continues beyond, without an end that was found.
     pub unbounded: bool,
 }
 

@@ -47,7 +47,7 @@ pub fn fitted(
     let workspace = workspace.map_err(|error| failed(&error))?;
     for name in workspace.unbounded().unwrap_or_default() {
         let message = format!(
-            "the workspace goes on beyond this grid along {name}; limit a joint, or give {name}"
+            "the workspace continues beyond this grid along {name}; limit a joint, or give {name}"
         );
         let category = py.get_type::<PyUserWarning>();
         PyErr::warn(py, &category, &CString::new(message)?, 1)?;

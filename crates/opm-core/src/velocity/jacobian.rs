@@ -90,11 +90,11 @@ pub struct Jacobians {
 /// The unit twists that are the components of the section twist.
 #[derive(Clone, Debug)]
 struct Basis {
-    /// Those of the upper section, in its frame.
+    /// The components of the upper section, in its frame.
     upper: [LocalTwist; 3],
-    /// Those of the lower section, in its frame.
+    /// The components of the lower section, in its frame.
     lower: [LocalTwist; 3],
-    /// The numbers of upper and of lower ones; the rest are zeros.
+    /// The numbers of upper and of lower components; the rest are zeros.
     counts: [usize; 2],
     /// The same twists in base coordinates, upper ones first.
     in_base: Vec<BaseTwist>,

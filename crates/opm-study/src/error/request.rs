@@ -69,11 +69,11 @@ pub enum SetPart {
 ///
 /// let error = RequestError::NoImaginaryJoints { kind: WorkspaceKind::Imaginary };
 /// assert_eq!(error.option(), RequestOption::Kind);
-/// let told = error.problem(|option| match option {
+/// let problem = error.problem(|option| match option {
 ///     RequestOption::Kind => "--kind",
 ///     other => other.name(),
 /// });
-/// assert_eq!(told, "with --kind imaginary: this mechanism has no imaginary joints");
+/// assert_eq!(problem, "with --kind imaginary: this mechanism has no imaginary joints");
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]

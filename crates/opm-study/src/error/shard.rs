@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(missing(&[2, 3, 7], 8), [[1, 1], [4, 6], [8, 8]]);
         assert_eq!(missing(&[1], 1_000_000), [[2, 1_000_000]]);
         assert_eq!(missing(&[1, 2], 2), [[0; 2]; 0]);
-        let told = MissingShards::new(&[2, 3, 7].into(), 8).to_string();
-        assert_eq!(told, "5 of 8 shards are missing: 1,4-6,8");
+        let message = MissingShards::new(&[2, 3, 7].into(), 8).to_string();
+        assert_eq!(message, "5 of 8 shards are missing: 1,4-6,8");
     }
 }

@@ -91,11 +91,11 @@ fn the_option_that_is_wrong_is_named() {
 fn names_of_places_are_those_of_their_kind() {
     let points = PointOptions { scalars: Some(vec!["S1".to_owned()]), ..Default::default() };
     let error = wrong(WorkspaceRequest::new(Kind::Dexterous).points(points));
-    let told = error.problem(|option| match option {
+    let problem = error.problem(|option| match option {
         RequestOption::Kind => "--kind",
         other => other.name(),
     });
-    assert_eq!(told, "\"S1\" with --kind dexterous: not one of x, y, share");
+    assert_eq!(problem, "\"S1\" with --kind dexterous: not one of x, y, share");
 }
 
 #[test]
