@@ -110,7 +110,7 @@ pub enum Obstacle {
 }
 
 /// A single-loop linkage, decomposed into two spherical four-bars. It is immutable and can be
-/// shared between threads.
+/// shared between threads. See the example in the docs of [`linkage`](crate::linkage).
 #[derive(Clone, Debug)]
 pub struct Linkage {
     mechanism: Mechanism,

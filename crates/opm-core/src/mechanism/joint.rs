@@ -77,12 +77,12 @@ pub struct Joint {
     pub coordinates: Vec<JointCoordinate>,
 }
 
-/// The number of values differs from the number of coordinates of a joint or a leg.
+/// The number of values differs from the number of coordinates of a joint, a leg or a mechanism.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name}: the number of values is {given}, expected {expected}, one for each coordinate")]
 #[non_exhaustive]
 pub struct ValueCountError {
-    /// The name of the joint or the leg.
+    /// The name of the joint or the leg; for a mechanism, which of its joints the values are for.
     pub name: String,
     /// The number of values.
     pub given: usize,
@@ -91,7 +91,7 @@ pub struct ValueCountError {
 }
 
 impl ValueCountError {
-    pub(super) fn check(name: &str, values: &[f64], expected: usize) -> Result<(), Self> {
+    pub(crate) fn check(name: &str, values: &[f64], expected: usize) -> Result<(), Self> {
         match values.len() {
             given if given == expected => Ok(()),
             given => Err(Self { name: name.to_owned(), given, expected }),

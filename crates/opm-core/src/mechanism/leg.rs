@@ -18,6 +18,20 @@ pub struct ImaginaryLabel {
 }
 
 /// A leg: joints in series from the base to the platform, at the assembled home pose.
+///
+/// ```
+/// use opm_core::nalgebra::{Point3, Vector3};
+/// use opm_core::{Joint, JointKind, Leg};
+///
+/// // A crank that rotates about z, and carries a slider along the crank.
+/// let crank = Joint::new("r1", JointKind::Revolute, Vector3::z_axis(), Point3::origin());
+/// let slider = Joint::new("S1", JointKind::Prismatic, Vector3::x_axis(), Point3::origin());
+/// let leg = Leg::new("leg1", vec![crank.actuated(), slider]);
+///
+/// let moved = leg.displacement(&[90_f64.to_radians(), 0.2])? * Point3::origin();
+/// assert!((moved - Point3::new(0.0, 0.2, 0.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Leg {
