@@ -6,7 +6,6 @@ pub mod square_roots;
 
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::{examples, file};
 use opm_workspace::{Axis, Grid};
 use std::time::{Duration, Instant};
 
@@ -97,9 +96,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// # Panics
 /// If there is no mechanism with this name.
 pub fn example(name: &str) -> Manipulator {
-    let text = examples::find(name).expect("a shipped mechanism").text;
-    let file = file::read(text).expect("shipped mechanisms are read");
-    Manipulator::new(file.mechanism).expect("shipped mechanisms decompose")
+    Manipulator::example(name).expect("a shipped mechanism with closed forms")
 }
 
 /// A grid with `points` values in each direction of the plane of the 5-DoF manipulator, and

@@ -6,7 +6,7 @@ use crate::lines::{Line, Lines};
 use crate::load::Loaded;
 use crate::pose::find;
 use crate::progress::{interruptible, watch};
-use crate::text::{count, short};
+use crate::text::{count, plural, short};
 use csv::{ErrorKind, WriterBuilder};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_mcap::{PartialFile, Sink};
@@ -199,8 +199,9 @@ impl Batch<'_> {
         let given = line.fields().count();
         if given != columns.len() {
             let names: Vec<_> = columns.iter().map(|&column| name(column)).collect();
+            let given = plural(given as u64, "column");
             let (expected, names) = (columns.len(), names.join(","));
-            let problem = format_args!("{given} columns, expected {expected}: {names}");
+            let problem = format_args!("{given}, expected {expected}: {names}");
             return Err(self.at(line.number, problem));
         }
         for (field, &column) in line.fields().zip(columns) {

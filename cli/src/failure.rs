@@ -103,7 +103,7 @@ impl Display for Failure {
             Self::Usage(message) | Self::Work(message) | Self::Interrupted(message) => {
                 message.fmt(f)
             }
-            Self::Closed => f.write_str("nobody reads standard output"),
+            Self::Closed => f.write_str("standard output is closed"),
         }
     }
 }

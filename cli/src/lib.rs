@@ -42,9 +42,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let done = match Args::try_parse_from(arguments) {
         Ok(args) => run(&args),
         // Help and the version come this way, too. Failures to print them are ignored.
-        Err(told) => {
-            let _ = told.print();
-            return u8::try_from(told.exit_code()).unwrap_or(2);
+        Err(usage) => {
+            let _ = usage.print();
+            return u8::try_from(usage.exit_code()).unwrap_or(2);
         }
     };
     done.map_or_else(|failure| failure.report(), |()| 0)

@@ -45,7 +45,7 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
         Stop::Budget => output.warn(run.beyond(&found)),
         Stop::Exhausted => {
             output.warn(
-                "the bounds hold, but what is between them is on the rim: no split decides it",
+                "the bounds hold, but come no closer: what is between them lies on the boundary of the workspace",
             );
         }
         Stop::Cancelled => {
@@ -87,7 +87,7 @@ fn domain(
     }
     for name in beyond {
         output.warn(format_args!(
-            "the workspace goes on beyond this range along {name}; limit a joint, or give --over"
+            "the workspace continues beyond this range along {name}; limit a joint, or give --over"
         ));
     }
     checked(&over)

@@ -290,7 +290,7 @@ impl OverAxis {
         let Some(max) = self.max.map(end).transpose()? else {
             return Ok(CoordinateRange::new(name, min, min));
         };
-        // A range without width has measure zero, which nobody wants.
+        // A range without width has measure zero, so it is a mistake.
         if min == max {
             let end = readable(min);
             return Err(Misread(format!(

@@ -26,16 +26,16 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let mut at = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
-    let asked = Asked { loaded: &loaded, manipulator: &manipulator, pose, rates, mode };
+    let query = Query { loaded: &loaded, manipulator: &manipulator, pose, rates, mode };
     if !reached {
-        return output.print(&asked.out_of_reach(&at), asked.out_of_reach_text(&at));
+        return output.print(&query.out_of_reach(&at), query.out_of_reach_text(&at));
     }
-    let answer = Answer::new(&asked, &at, length)?;
+    let answer = Answer::new(&query, &at, length)?;
     output.print(&answer.json(), answer.text())
 }
 
 /// The request.
-struct Asked<'a> {
+struct Query<'a> {
     loaded: &'a Loaded,
     manipulator: &'a Manipulator,
     pose: Vec<f64>,
@@ -43,7 +43,7 @@ struct Asked<'a> {
     mode: Mode,
 }
 
-impl Asked<'_> {
+impl Query<'_> {
     fn head(&self) -> Map<String, Value> {
         let names = || self.manipulator.task_coordinates().iter().map(|c| c.name);
         let mut head = Map::new();
@@ -100,7 +100,7 @@ impl Asked<'_> {
 
 /// The results at the pose.
 struct Answer<'a> {
-    asked: &'a Asked<'a>,
+    query: &'a Query<'a>,
     at: &'a Solution,
     motion: JointMotion,
     /// Joint coordinates and imaginary joints that have no rate.
@@ -115,12 +115,12 @@ struct Answer<'a> {
 }
 
 impl<'a> Answer<'a> {
-    fn new(asked: &'a Asked<'a>, at: &'a Solution, length: f64) -> Result<Self, Failure> {
-        let manipulator = asked.manipulator;
+    fn new(query: &'a Query<'a>, at: &'a Solution, length: f64) -> Result<Self, Failure> {
+        let manipulator = query.manipulator;
         let failed = |error: VelocityError| Failure::flag("--rates", error);
         let mut motion = manipulator.joint_motion();
-        let still = vec![0.0; asked.rates.len()];
-        manipulator.velocity(at, &asked.rates, &still, &mut motion).map_err(failed)?;
+        let still = vec![0.0; query.rates.len()];
+        manipulator.velocity(at, &query.rates, &still, &mut motion).map_err(failed)?;
         let mut jacobians: Jacobians = manipulator.jacobians();
         manipulator.differentiate(at, &mut jacobians).map_err(failed)?;
         let mut measured = manipulator.singularities();
@@ -136,7 +136,7 @@ impl<'a> Answer<'a> {
         };
         let jacobian = manipulator.actuated().iter().map(row).collect();
         Ok(Self {
-            asked,
+            query,
             at,
             motion,
             rateless,
@@ -160,7 +160,7 @@ impl<'a> Answer<'a> {
 
     /// Names of the legs that make a measure of a section small: serial, parallel.
     fn causes(&self, section: Section) -> [Vec<&str>; 2] {
-        let manipulator = self.asked.manipulator;
+        let manipulator = self.query.manipulator;
         let name = |cause: Cause| &*manipulator.mechanism().legs[cause.leg].name;
         let serial = manipulator.serial_cause(&self.measured, section);
         let parallel = manipulator.parallel_causes(&self.measured, section);
@@ -168,7 +168,7 @@ impl<'a> Answer<'a> {
     }
 
     fn json(&self) -> Value {
-        let manipulator = self.asked.manipulator;
+        let manipulator = self.query.manipulator;
         let coordinates = manipulator.coordinates();
         let joint_rates: Map<String, Value> = (coordinates.iter().enumerate())
             .map(|(i, c)| (c.name.clone(), self.joint_rate(i).into()))
@@ -184,7 +184,7 @@ impl<'a> Answer<'a> {
         });
         let [upper, lower] = [Section::Upper, Section::Lower].map(|s| self.causes(s));
         let Singularities { upper: u, lower: l, whole, coordinates: at_pose, .. } = &self.measured;
-        let mut json = self.asked.head();
+        let mut json = self.query.head();
         json.insert("reachable".into(), true.into());
         json.insert("joint_rates".into(), joint_rates.into());
         json.insert("imaginary_rates".into(), imaginary_rates.into());
@@ -221,8 +221,8 @@ impl<'a> Answer<'a> {
     }
 
     fn text(&self) -> String {
-        let units = self.asked.loaded.file.units;
-        let mut text = self.asked.title();
+        let units = self.query.loaded.file.units;
+        let mut text = self.query.title();
         let _ = writeln!(text, "{}", self.joint_table());
         let _ = writeln!(text, "{}", self.jacobian_table());
 
@@ -248,7 +248,7 @@ impl<'a> Answer<'a> {
         let length = units.show(self.length, Quantity::Length);
         let _ = writeln!(text, "{table}\ncondition number {condition} (lengths over {length})");
         for singular in &self.motion.singular {
-            let leg = &self.asked.manipulator.mechanism().legs[singular.leg].name;
+            let leg = &self.query.manipulator.mechanism().legs[singular.leg].name;
             let _ = writeln!(text, "{leg}: {} section without rates", singular.section);
         }
         if self.measured.coordinates.abs() < opm_core::velocity::SINGULAR {
@@ -259,8 +259,8 @@ impl<'a> Answer<'a> {
     }
 
     fn joint_table(&self) -> Table {
-        let units = self.asked.loaded.file.units;
-        let manipulator = self.asked.manipulator;
+        let units = self.query.loaded.file.units;
+        let manipulator = self.query.manipulator;
         let mut table = Table::new(["leg", "joint", "", ">value", "unit", ">rate", "unit"]);
         let mut row = |leg: &str, name: &str, kind: &str, quantity, value, rate: Option<f64>| {
             let symbol = units.symbol(quantity);
@@ -289,8 +289,8 @@ impl<'a> Answer<'a> {
 
     /// Rates of the actuated joints for a unit rate of each coordinate, in the file's units.
     fn jacobian_table(&self) -> Table {
-        let units = self.asked.loaded.file.units;
-        let manipulator = self.asked.manipulator;
+        let units = self.query.loaded.file.units;
+        let manipulator = self.query.manipulator;
         let columns = manipulator.task_coordinates();
         let mut headers = vec!["Jacobian".to_owned()];
         headers.extend(columns.iter().map(|c| text::header(c.name, c.quantity, units)));

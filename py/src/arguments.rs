@@ -70,8 +70,8 @@ pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
         return Ok(None);
     }
     let names = given.extract().ok().filter(|_| !given.is_instance_of::<PyString>());
-    let told = || wrong(format!("scalars is {}, expected a sequence of names", shown(given)));
-    names.map(Some).ok_or_else(told)
+    let unsuitable = || wrong(format!("scalars is {}, expected a sequence of names", shown(given)));
+    names.map(Some).ok_or_else(unsuitable)
 }
 
 /// The argument `axes` of a cloud: three names, or the name of a point.
@@ -80,9 +80,9 @@ pub fn cloud_axes(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
         return Ok(None);
     }
     let names = given.extract().map(|name| vec![name]).or_else(|_| given.extract());
-    let told =
+    let unsuitable =
         |_: PyErr| wrong(format!("axes is {}, expected three names or \"tip\"", shown(given)));
-    names.map(Some).map_err(told)
+    names.map(Some).map_err(unsuitable)
 }
 
 /// A path, as Python's own functions take it.
@@ -96,11 +96,12 @@ pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult
     let bytes = std::fs::read(path).map_err(|error| {
         let Some(number) = error.raw_os_error() else { return error.into() };
         let missing = error.kind() == std::io::ErrorKind::NotFound;
-        let told = py.import("os").and_then(|os| os.call_method1("strerror", (number,))?.extract());
-        let told: String = told.unwrap_or_else(|_| error.to_string());
-        let told = if missing { told + hint } else { told };
+        let message =
+            py.import("os").and_then(|os| os.call_method1("strerror", (number,))?.extract());
+        let message: String = message.unwrap_or_else(|_| error.to_string());
+        let message = if missing { message + hint } else { message };
         // Python chooses the class by the number: FileNotFoundError, IsADirectoryError, ...
-        PyOSError::new_err((number, told, path.as_os_str().to_owned()))
+        PyOSError::new_err((number, message, path.as_os_str().to_owned()))
     })?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
@@ -127,7 +128,7 @@ fn numbers<'py>(
     expected: &dyn Fn() -> String,
 ) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = given.py();
-    let told = |error: PyErr| {
+    let unsuitable = |error: PyErr| {
         let known =
             error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
         if !known {
@@ -136,14 +137,14 @@ fn numbers<'py>(
         wrong(format!("{what} is {}, expected {}", shown(given), expected()))
     };
     let numpy = py.import("numpy")?;
-    let mut array = numpy.call_method1("asarray", (given,)).map_err(told)?;
+    let mut array = numpy.call_method1("asarray", (given,)).map_err(unsuitable)?;
     if array.getattr("ndim")?.extract::<usize>()? == 0 {
         return Err(wrong(format!("{what} is {}, expected {}", shown(given), expected())));
     }
     let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if kind == 'O' {
         // Objects such as fractions.
-        array = array.call_method1("astype", ("float64",)).map_err(told)?;
+        array = array.call_method1("astype", ("float64",)).map_err(unsuitable)?;
     } else if !"biuf".contains(kind) {
         let entries = array.getattr("dtype")?.str()?;
         return Err(wrong(format!("{what} has entries of {entries}, expected {}", expected())));

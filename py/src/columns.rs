@@ -4,7 +4,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyEllipsis;
 
-/// The entries of one name, along the last axis of whichever table has it: a view.
+/// The entries with this name along the last axis of the table that has it: a view.
 pub fn column<'py>(
     tables: [(&[String], &Bound<'py, PyAny>); 2],
     name: &str,

@@ -14,7 +14,7 @@ pub fn digits(number: f64) -> String {
     format!("{rounded:?}")
 }
 
-/// The HTML of an object, by the function of this name.
+/// The HTML of an object, by the function with this name.
 pub fn of<'py, T>(object: &Bound<'py, T>, function: &str) -> PyResult<Bound<'py, PyAny>> {
     object.py().import("opm_kinematics._html")?.call_method1(function, (object.as_any(),))
 }

@@ -11,8 +11,8 @@ use crate::error::{failed, wrong};
 /// The interval at which Python's signal handlers run.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// How many threads are worth it for work that comes in so many pieces: to make one takes as long as to decide
-/// some ten thousand poses of a sweep, and one without a piece has nothing to do.
+/// The number of threads for work that comes in this many pieces. To start a thread takes as long as to decide
+/// some ten thousand poses of a sweep, and a thread without a piece has nothing to do.
 pub fn few(threads: Option<NonZeroUsize>, pieces: u64) -> Option<NonZeroUsize> {
     let pieces = usize::try_from(pieces).ok().and_then(NonZeroUsize::new)?;
     match threads {
@@ -22,9 +22,9 @@ pub fn few(threads: Option<NonZeroUsize>, pieces: u64) -> Option<NonZeroUsize> {
     }
 }
 
-/// Does `work` in a thread pool of its own while this thread listens to signals; at the first that
-/// raises, asks the work to stop with `cancel`, waits for it, and gives the exception. A pool a call: one
-/// that outlives it would be lost in a forked process, and the work with it.
+/// Does `work` in a thread pool of its own while this thread runs Python's signal handlers. If one of them
+/// raises, `cancel` tells the work to stop, and the exception is returned when it has stopped. Every call makes
+/// its own pool: a forked process would lose the threads of one that outlives the call.
 pub fn run<T: Send>(
     py: Python<'_>,
     threads: Option<NonZeroUsize>,
@@ -37,14 +37,14 @@ pub fn run<T: Send>(
         pool.in_place_scope(|scope| {
             let (sender, receiver) = channel();
             scope.spawn(move |_| {
-                // There is no receiver any more if a signal handler has raised.
+                // If a signal handler has raised, the receiver is gone.
                 let _ = sender.send(work());
             });
             loop {
                 match receiver.recv_timeout(PATIENCE) {
                     Ok(result) => return Ok(result),
                     Err(RecvTimeoutError::Timeout) => {
-                        // A function of any lifetime, which the method alone is not.
+                        // The closure works for any lifetime; the method alone does not.
                         #[allow(clippy::redundant_closure_for_method_calls)]
                         let heard = Python::attach(|py| py.check_signals());
                         if let Err(raised) = heard {

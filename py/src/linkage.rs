@@ -254,7 +254,7 @@ impl Linkage {
         };
         let name = name.unwrap_or_else(actuated);
         let known = || self.joints().join(", ");
-        let told = || wrong(format!("input is {name:?}, expected one of {}", known()));
-        self.inner.input(name).ok_or_else(told)
+        let unknown = || wrong(format!("input is {name:?}, expected one of {}", known()));
+        self.inner.input(name).ok_or_else(unknown)
     }
 }

@@ -206,7 +206,7 @@ impl Manipulator {
             for item in given.items()? {
                 let (name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
                 let Ok(name) = name.extract::<String>() else {
-                    return Err(wrong(format!("{} is no name of a parameter", name.repr()?)));
+                    return Err(wrong(format!("{} is not the name of a parameter", name.repr()?)));
                 };
                 if values.iter().any(|(other, _)| *other == name) {
                     return Err(wrong(format!("`{name}` is given twice")));

@@ -16,8 +16,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyMapping};
 use std::num::{NonZeroU64, NonZeroUsize};
 
-/// Boxes of each part except the last: 12 to 64 ms of work, against the 3.5 ms that it takes another process
-/// to get them and to compile the manipulator. Rounds of no more are answered here.
+/// Least number of boxes in each part except the last. That is 12 to 64 ms of work; another process takes
+/// 3.5 ms to receive the boxes and to compile the manipulator. Smaller rounds are computed in this process.
 const LEAST_BOXES: u64 = 1 << 12;
 
 /// What is measured.
@@ -45,10 +45,10 @@ const STOPS: [(Stop, &str); 4] = [
     (Stop::Exhausted, "exhausted"),
 ];
 
-/// A measure as it crosses processes: bounds and whole, boxes, why it stopped, units, ranges.
+/// A measure as it is pickled: bounds and whole, boxes, why it stopped, units, ranges.
 type MeasureState = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
-/// A value, or lowest and highest value.
+/// The range of a coordinate: one value, or the lowest and the highest.
 #[derive(FromPyObject)]
 enum Range {
     Fixed(f64),
@@ -109,7 +109,7 @@ pub fn measure(
     };
     let given = given.into_iter().map(|(name, range)| match range.extract() {
         Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
-        // A range without width has measure zero, which is never meant.
+        // A range without width has measure zero: a mistake.
         Ok(Range::Between((min, max))) if min == max => {
             let found = range.repr()?;
             Err(wrong(format!(
@@ -124,27 +124,27 @@ pub fn measure(
     });
     let given: Vec<CoordinateRange> = given.collect::<PyResult<_>>()?;
     let modes = modes(manipulator.get(), mode)?;
-    let asked = Asked { of: manipulator, sections: sections(section)?, modes, threads };
+    let query = Query { of: manipulator, sections: sections(section)?, modes, threads };
     let goal = goal(tolerance, budget)?;
     let parts = Parts::new(executor, shards)?;
-    // Arguments are checked first: a wrong name need not wait for a sweep.
-    asked.domain(&given)?;
+    // Arguments are checked before the sweep that fits the ranges.
+    query.domain(&given)?;
     let progress = Progress::default();
     let fit = || {
-        let manipulator = &asked.of.get().inner;
-        workspace::default_ranges(manipulator, asked.sections, asked.modes, &given, &progress)
+        let manipulator = &query.of.get().inner;
+        workspace::default_ranges(manipulator, query.sections, query.modes, &given, &progress)
     };
     let fitted = interrupt::run(py, threads, fit, || progress.cancel())?;
     let (over, _) = fitted.map_err(|error| failed(&error))?;
-    asked.measured(py, &over, goal, parts)
+    query.measured(py, &over, goal, parts)
 }
 
-/// The section of this name, or both.
+/// The section with this name, or both.
 fn sections(word: &str) -> PyResult<Sections> {
     let known = SECTIONS.iter().find(|(_, known)| *known == word);
     let words = || SECTIONS.map(|(_, word)| word).join(", ");
-    let told = || wrong(format!("section is {word:?}, expected one of {}", words()));
-    known.map(|(sections, _)| *sections).ok_or_else(told)
+    let unknown = || wrong(format!("section is {word:?}, expected one of {}", words()));
+    known.map(|(sections, _)| *sections).ok_or_else(unknown)
 }
 
 /// The names of the sections.
@@ -162,15 +162,15 @@ pub fn goal(tolerance: Option<f64>, budget: Option<u64>) -> PyResult<Goal> {
     Ok(Goal { tolerance, budget: budget.unwrap_or(usual.budget) })
 }
 
-/// What is measured, of which domain apart.
-pub struct Asked {
+/// What is measured, apart from the ranges of the coordinates.
+pub struct Query {
     pub of: Py<Manipulator>,
     pub sections: Sections,
     pub modes: Modes,
     pub threads: Option<NonZeroUsize>,
 }
 
-impl Asked {
+impl Query {
     fn domain(&self, over: &[CoordinateRange]) -> PyResult<Domain> {
         let domain = Domain::new(&self.of.get().inner, self.sections, over);
         domain.map_err(|error| failed(&error))
@@ -193,7 +193,7 @@ impl Asked {
                 interrupt::run(py, self.threads, work, || progress.cancel())?
             }
             Some(parts) => {
-                let boxes = Bound::new(py, Boxes { asked: self, domain: domain.clone() })?;
+                let boxes = Bound::new(py, Boxes { query: self, domain: domain.clone() })?;
                 parts.session(py, |workers| boxes_searched(&boxes, goal, &parts, workers))?
             }
         };
@@ -231,29 +231,29 @@ fn boxes_searched(
     Ok(search.found())
 }
 
-/// The boxes of a domain, for whoever is asked for some of them.
+/// The boxes of a domain, which workers examine in parts.
 #[pyclass(frozen, name = "_Boxes", module = "opm_kinematics._native")]
 pub struct Boxes {
-    asked: Asked,
+    query: Query,
     domain: Domain,
 }
 
 impl Boxes {
     fn bounds(&self, py: Python<'_>, cells: &[Cell]) -> PyResult<Vec<Bounds>> {
-        let (asked, progress) = (&self.asked, Progress::default());
-        let asker = Evaluator::new(&asked.of.get().inner, &self.domain, asked.modes);
-        let work = || asker.evaluate(cells, &progress);
-        let known = interrupt::run(py, asked.threads, work, || progress.cancel())?;
+        let (query, progress) = (&self.query, Progress::default());
+        let evaluator = Evaluator::new(&query.of.get().inner, &self.domain, query.modes);
+        let work = || evaluator.evaluate(cells, &progress);
+        let known = interrupt::run(py, query.threads, work, || progress.cancel())?;
         known.map_err(|error| failed(&error))
     }
 }
 
-/// A domain as it crosses processes: section, mode, ranges, threads.
+/// A domain as it is pickled: section, mode, ranges, threads.
 type Spec = (String, String, Vec<(String, f64, f64)>, Option<NonZeroUsize>);
 
 #[pymethods]
 impl Boxes {
-    /// What is known of boxes, all packed.
+    /// The bounds on packed boxes, packed too.
     fn _ask<'py>(&self, py: Python<'py>, cells: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
         let cells: Vec<Cell> = cells.as_chunks().0.iter().map(Cell::unpack).collect();
         let known: Vec<u8> = self.bounds(py, &cells)?.iter().flat_map(Bounds::pack).collect();
@@ -261,7 +261,7 @@ impl Boxes {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py, (Py<Manipulator>, Spec)>> {
-        let Self { asked: Asked { of, sections, modes, threads }, domain } = slf.get();
+        let Self { query: Query { of, sections, modes, threads }, domain } = slf.get();
         let mode = match modes {
             Modes::Any => "any".to_owned(),
             Modes::One(mode) => of.get().inner.format_mode(*mode),
@@ -276,9 +276,9 @@ impl Boxes {
         let (section, mode, over, threads) = spec;
         let over = over.into_iter().map(|(name, min, max)| CoordinateRange::new(name, min, max));
         let (sections, modes) = (sections(&section)?, modes(of.get(), &mode)?);
-        let asked = Asked { of, sections, modes, threads };
-        let domain = asked.domain(&over.collect::<Vec<_>>())?;
-        Ok(Self { asked, domain })
+        let query = Query { of, sections, modes, threads };
+        let domain = query.domain(&over.collect::<Vec<_>>())?;
+        Ok(Self { query, domain })
     }
 }
 

@@ -1,10 +1,10 @@
-//! Other processes that do some work, and into how many parts it is divided.
+//! Work in other processes: the executor, and the number of parts.
 
 use crate::error::wrong;
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
-/// An object in the form that crosses processes: the function that restores it, and its arguments.
+/// A pickled object: the function that restores it, and its arguments.
 pub type Pickled<'py, T> = (Bound<'py, PyAny>, T);
 
 /// An executor, and the number of parts if it is given.
@@ -26,7 +26,8 @@ impl<'py> Parts<'py> {
         }
     }
 
-    /// How many parts so much work is worth for these workers, each of `least` or more; one at least.
+    /// The number of parts for this much work and these workers: each has at least `least`, and there is at
+    /// least one.
     pub fn count(&self, workers: &Bound<'py, PyAny>, work: u64, least: u64) -> PyResult<u64> {
         let most = work.div_ceil(least);
         if most <= 1 {
@@ -39,7 +40,7 @@ impl<'py> Parts<'py> {
         Ok(shards.min(most))
     }
 
-    /// The result of work on the executor, which goes through `run` of the workers.
+    /// The result of `work`, which gives its parts to the method `run` of the workers.
     pub fn session<T>(
         &self,
         py: Python<'py>,

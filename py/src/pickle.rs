@@ -1,4 +1,4 @@
-//! What is nothing but its attributes: pickled by them, and equal where they are; and the arrays among them.
+//! Classes that consist of their attributes. They are pickled by these, and are equal if these are equal.
 
 use numpy::PyUntypedArray;
 use pyo3::exceptions::PyValueError;
@@ -11,7 +11,7 @@ pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Py<T>> {
     Ok(array.unbind())
 }
 
-/// The attributes of these names.
+/// The attributes with these names.
 pub fn attributes<'py>(object: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(object.py());
     for name in names {
@@ -20,7 +20,7 @@ pub fn attributes<'py>(object: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<B
     Ok(dict)
 }
 
-/// Restores one of the attributes. Arrays come out of a pickle writable.
+/// Restores an attribute. An array from a pickle is writable; this makes it read-only.
 pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
     attributes: &Bound<'py, PyDict>,
     name: &str,
@@ -33,7 +33,7 @@ pub fn attribute<'py, T: pyo3::conversion::FromPyObjectOwned<'py>>(
     value.extract().map_err(Into::into)
 }
 
-/// Whether the attributes of these names are equal.
+/// Whether the attributes with these names are equal.
 pub fn equal<'py>(a: &Bound<'py, PyAny>, b: &Bound<'py, PyAny>, names: &[&str]) -> PyResult<bool> {
     for name in names {
         if !same(&a.getattr(*name)?, &b.getattr(*name)?)? {
@@ -65,7 +65,7 @@ fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<bool> {
     a.eq(b)
 }
 
-/// Gives a class that consists of its attributes only their pickling and comparison.
+/// Implements pickling and comparison for a class that consists of its attributes.
 macro_rules! pickled {
     ($class:ident { $($name:ident),+ $(,)? }) => {
         #[pymethods]

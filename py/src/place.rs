@@ -157,7 +157,7 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// Tables of what `fill` writes of where each displacement of the platform is in the motion, or beside it.
+    /// Tables that `fill` writes, from the position of each displacement in the manipulator's motion or beside it.
     fn located<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -171,7 +171,7 @@ impl Manipulator {
         let none = || ();
         Tables::fill(py, transforms.count, widths, threads, none, |(), row, out| {
             let place = isometry(transforms.row(row))
-                .map_err(|why| format!("transforms[{row}] is no displacement: {why}"))?;
+                .map_err(|why| format!("transforms[{row}] is not a displacement: {why}"))?;
             fill(self.inner.locate_platform(&place), out);
             Ok([true; 2])
         })

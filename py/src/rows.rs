@@ -22,14 +22,14 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// What is float64 in C order already is used where it is: while rows are worked on the interpreter's
-    /// lock is let go, and nobody may write to them, as to those that NumPy works on.
+    /// An array of float64 in C order is used without a copy. The interpreter's lock is released while rows
+    /// are worked on. Other threads must not write to the array then, as with functions of NumPy.
     pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
         let [count, width] = [array.shape()[0], array.shape()[1]];
         let values = match array.as_slice() {
             Ok(values) if array.is_c_contiguous() => Cow::Borrowed(values),
             _ => {
-                // A slice of it, or an element, cannot be had where elements lie at odd addresses.
+                // NumPy copies an array whose elements are not aligned: Rust cannot read these.
                 let aligned = array.is_aligned().then(|| array.as_any().clone());
                 let aligned = aligned.map_or_else(|| array.call_method0("copy"), Ok)?;
                 let aligned = aligned.cast_into::<PyArray2<f64>>()?.readonly();
@@ -41,7 +41,7 @@ impl<'a> Rows<'a> {
         Ok(Self { values, count, width })
     }
 
-    /// All of them, one after the other.
+    /// The values of all rows, one row after the other.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -51,8 +51,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Tables with one row for every row of the input, NaN where nothing was written, and two flags for
-/// each row.
+/// Tables with one row for every row of the input. Entries that were not written are NaN. Each row has two
+/// flags.
 pub struct Tables<'py, const N: usize> {
     numbers: Vec<Bound<'py, PyArray2<f64>>>,
     pub answers: [Vec<bool>; 2],
@@ -72,12 +72,12 @@ fn table<T: Clone>(count: usize, width: usize, value: T) -> PyResult<Vec<T>> {
     Ok(table)
 }
 
-/// There is no memory for this.
+/// The exception that there is no memory for `what`.
 pub fn no_memory(what: impl std::fmt::Display) -> PyErr {
     PyMemoryError::new_err(format!("no memory for {what}"))
 }
 
-/// A part of them.
+/// Some rows of the tables.
 struct Block<'a, const N: usize> {
     first: usize,
     numbers: [&'a mut [f64]; N],
@@ -85,8 +85,8 @@ struct Block<'a, const N: usize> {
 }
 
 impl<'py, const N: usize> Tables<'py, N> {
-    /// Fills tables of `count` rows: `fill` writes a row of each and gives its answers, with working
-    /// memory that `scratch` makes. The result does not depend on the number of threads.
+    /// Fills tables of `count` rows. `fill` writes a row of each table and returns the two flags of that row;
+    /// `scratch` makes its buffers. The result does not depend on the number of threads.
     pub fn fill<S>(
         py: Python<'py>,
         count: usize,
@@ -96,8 +96,8 @@ impl<'py, const N: usize> Tables<'py, N> {
         fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
-        // Python's functions allocate these, which raise if there is no memory. Only the work touches them:
-        // the system takes seconds to hand out gigabytes, and Ctrl-C would have no effect meanwhile.
+        // NumPy allocates these, and raises an exception if there is no memory. They are not filled here: the
+        // system takes seconds to provide gigabytes, and Ctrl-C would have no effect meanwhile.
         let empty = |width| -> PyResult<Bound<'py, PyArray2<f64>>> {
             Ok(numpy.call_method1("empty", ((count, width),))?.cast_into()?)
         };

@@ -103,9 +103,9 @@ impl Manipulator {
             .map_err(|(leg, joint, error)| {
                 wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
             })?;
-        // The mechanism goes through a file, so that it is checked like any other, can be saved, and crosses processes.
+        // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
-        let file = file::read(&text).map_err(|e| wrong(told(&e, &text, &legs)))?;
+        let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
         Self::compile(file, text, name.to_owned())
     }
 
@@ -159,22 +159,24 @@ fn per_joint<'py, T: FromPyObjectOwned<'py>>(
     legs: &[Leg],
 ) -> PyResult<Vec<Vec<T>>> {
     let expected = |found: String| wrong(format!("{what}: {found}"));
-    let of_legs: Vec<Bound<'py, PyAny>> = given
-        .extract()
-        .map_err(|_| expected("expected a sequence a leg, with an entry a joint".to_owned()))?;
+    let of_legs: Vec<Bound<'py, PyAny>> = given.extract().map_err(|_| {
+        expected("expected a sequence for each leg, with an entry for each joint".to_owned())
+    })?;
     if of_legs.len() != legs.len() {
         let (found, legs) = (of_legs.len(), legs.len());
-        return Err(expected(format!("{found} sequences, expected {legs}, one a leg")));
+        return Err(expected(format!("{found} sequences, expected {legs}, one for each leg")));
     }
     let read = |(given, (name, screws)): (Bound<'py, PyAny>, &Leg)| {
         let joints = screws.len();
         let list: Vec<T> = given.extract().map_err(|_| {
             let given = given.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
-            expected(format!("{given} of {name}, expected {joints} {entries}, one a joint"))
+            expected(format!("{given} of {name}, expected {joints} {entries}, one for each joint"))
         })?;
         if list.len() != joints {
             let found = list.len();
-            return Err(expected(format!("{found} of {name}, expected {joints}, one a joint")));
+            return Err(expected(format!(
+                "{found} of {name}, expected {joints}, one for each joint"
+            )));
         }
         Ok(list)
     };
@@ -182,7 +184,7 @@ fn per_joint<'py, T: FromPyObjectOwned<'py>>(
 }
 
 /// The problems of a generated file, with the joints concerned instead of lines.
-fn told(errors: &FileErrors, text: &str, legs: &[Leg]) -> String {
+fn message(errors: &FileErrors, text: &str, legs: &[Leg]) -> String {
     let (mut leg, mut joint) = (0, 0);
     let places: Vec<String> = text
         .lines()

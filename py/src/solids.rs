@@ -74,15 +74,15 @@ impl Manipulator {
             return Err(wrong(format!("the pose {pose:?} is out of reach of {}", legs.join(", "))));
         }
         let decomposition = manipulator.decomposition();
-        let cuts = ImaginaryJoints { decomposition, imaginary: manipulator.imaginary() };
-        let skeleton = Skeleton::new(manipulator.mechanism(), cuts);
+        let joints = ImaginaryJoints { decomposition, imaginary: manipulator.imaginary() };
+        let skeleton = Skeleton::new(manipulator.mechanism(), joints);
         let posture = Configuration {
             joints: solution.joints(),
             imaginary: solution.imaginary(),
             platform: manipulator.task().displacement(&pose),
         };
         let mut places = Vec::new();
-        skeleton.place(&posture, &mut places);
+        skeleton.place(&posture, &mut places).map_err(|error| failed(&error))?;
         let mut solids = Vec::new();
         for (number, body) in skeleton.bodies().iter().enumerate() {
             let mut place = places[number];

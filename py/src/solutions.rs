@@ -1,4 +1,4 @@
-//! What inverse kinematics finds for many poses, as arrays.
+//! Solutions of the inverse kinematics of many poses, as arrays.
 
 use crate::columns::columns;
 use crate::error::failed;
@@ -59,7 +59,7 @@ impl Solutions {
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
         let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
-        // Python's functions allocate these, which raise if there is no memory.
+        // NumPy allocates these, and raises an exception if there is no memory.
         let table = |width| -> PyResult<Bound<'_, PyArrayDyn<f64>>> {
             Ok(numpy.call_method1("empty", ((poses.count, width),))?.cast_into()?)
         };
@@ -230,7 +230,7 @@ impl Part<'_> {
     }
 }
 
-/// Takes the first elements of a slice away.
+/// Removes the first elements from a slice, and returns them.
 fn split<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let (taken, left) = std::mem::take(rest).split_at_mut(count);
     *rest = left;

@@ -1,4 +1,4 @@
-//! Sweeps of a grid of poses. What is asked of one that is done has a file each.
+//! Sweeps of a grid of poses. Each kind of result of a sweep has a file.
 
 mod boundary;
 mod components;
@@ -210,7 +210,7 @@ impl Sweep {
     fn __eq__(&self, other: &Self) -> bool {
         self.of.get() == other.of.get()
             && self.mode == other.mode
-            && self.workspace.is_asked_like(&other.workspace)
+            && self.workspace.has_request_of(&other.workspace)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -247,7 +247,7 @@ impl Sweep {
     }
 }
 
-/// The values of axes, by name.
+/// The values of each axis, by its name.
 fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for axis in axes {
@@ -258,7 +258,7 @@ fn values<'py>(py: Python<'py>, axes: &[Axis]) -> PyResult<Bound<'py, PyDict>> {
 }
 
 impl Sweep {
-    /// A sweep that is still to be done. If no axis is given, the grid is fitted to the workspace.
+    /// A sweep before it is done. If no axis is given, the grid is fitted to the workspace.
     fn planned(
         py: Python<'_>,
         of: Py<Manipulator>,

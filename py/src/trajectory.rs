@@ -196,7 +196,7 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
     let poses = Rows::new(&poses)?;
     if poses.count != times.len() {
         let (poses, times) = (poses.count, times.len());
-        return Err(wrong(format!("{times} times of {poses} poses, expected one a pose")));
+        return Err(wrong(format!("{times} times for {poses} poses, expected one for each pose")));
     }
     let names = manipulator.pose_names();
     for row in 0..poses.count {
@@ -213,11 +213,11 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
     text.push('\n');
     let motion = table::read(&text, "waypoints", &manipulator.inner).map_err(|errors| {
         // The first line is the header, and poses count from zero.
-        let told = errors.problems.iter().map(|problem| match problem.line {
+        let lines = errors.problems.iter().map(|problem| match problem.line {
             0 | 1 => problem.message.clone(),
             line => format!("waypoint {}: {}", line - 2, problem.message),
         });
-        wrong(told.collect::<Vec<_>>().join("\n"))
+        wrong(lines.collect::<Vec<_>>().join("\n"))
     })?;
     Ok((motion, "waypoints.csv".to_owned(), text))
 }
@@ -360,20 +360,20 @@ impl Record {
 
 impl Violation {
     fn new(violation: &core_trajectory::Violation, manipulator: &core::Manipulator) -> Self {
-        let told = ViolationReport::new(violation, manipulator);
+        let report = ViolationReport::new(violation, manipulator);
         Self {
-            kind: told.kind.to_owned(),
+            kind: report.kind.to_owned(),
             start: violation.start,
             end: violation.end,
             worst: violation.worst,
             amount: violation.amount,
-            unit: told.unit().to_owned(),
-            leg: told.leg.map(str::to_owned),
-            joint: told.joint.map(str::to_owned),
-            section: told.section.map(|section| section.to_string()),
-            bound: told.bound.map(|bound| bound.name().to_owned()),
-            singularity: told.singularity().map(str::to_owned),
-            message: told.si(),
+            unit: report.unit().to_owned(),
+            leg: report.leg.map(str::to_owned),
+            joint: report.joint.map(str::to_owned),
+            section: report.section.map(|section| section.to_string()),
+            bound: report.bound.map(|bound| bound.name().to_owned()),
+            singularity: report.singularity().map(str::to_owned),
+            message: report.si(),
         }
     }
 }
@@ -420,7 +420,7 @@ const ATTRIBUTES: [&str; 21] = [
     "rows",
 ];
 
-/// What was followed as it crosses processes: manipulator, name and text of the file, rate.
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate.
 type Followable = (Py<Manipulator>, String, String, f64);
 
 #[pymethods]

@@ -48,7 +48,7 @@ def test_measures_enclose_what_is_known(manipulator):
     share = 1 - 1.5 * (1 - np.cos(np.radians(30)))
     assert whole.lower / whole.whole <= share <= whole.upper / whole.whole
     assert whole.stop == "tolerance" and whole.units == "rad^3" and whole.upper - whole.lower <= 0.04 * whole.value
-    # A fixed orientation: against a fine grid, whose cells at the rim are all that can differ.
+    # A fixed orientation: against a fine grid, of which only the cells on the boundary can differ.
     box = {"x": (-0.2, 0.2), "y": (-0.2, 0.2)}
     area = opm.measure(manipulator, over=box, tolerance=1e-3)
     grid = opm.sweep(manipulator, x=(-0.2, 0.2, 801), y=(-0.2, 0.2, 801))

@@ -315,7 +315,7 @@ def test_a_workspace_without_an_end_warns():
     with pytest.warns(UserWarning) as told:
         opm.sweep(free, kind="constant-orientation")
     assert [str(warning.message) for warning in told] == [
-        f"the workspace goes on beyond this grid along {name}; limit a joint, or give {name}" for name in "xy"
+        f"the workspace continues beyond this grid along {name}; limit a joint, or give {name}" for name in "xy"
     ]
 
 

@@ -90,7 +90,7 @@ def test_inverse_is_what_the_formulas_say(manipulator, poses):
     found = np.hstack([solutions.imaginary, solutions.joints[:, manipulator.actuated]])[inside]
     difference = found - expected[inside]
     difference[:, [0, 1, 2, 6, 7]] -= 2 * np.pi * np.round(difference[:, [0, 1, 2, 6, 7]] / (2 * np.pi))
-    assert np.abs(difference).max() < 1e-7  # arccos near the rim
+    assert np.abs(difference).max() < 1e-7  # arccos near the boundary of reach
     assert np.median(np.abs(difference)) < 1e-14
     assert np.isnan(solutions.joints[~inside]).all()
 
@@ -109,7 +109,7 @@ def test_passive_joints_close_the_legs(manipulator, poses):
         theta_1 = solutions.imaginary[inside, leg - 1]
         # R Rz(eta) Ry(beta) = Rz(theta_1) Rx(alpha_1) Rz(theta_2) Rx(alpha_2) Rz(theta_3), with Rx(a) = Rz(-pi/2) Ry(a) Rz(pi/2).
         arcs = rotation(theta_1 - np.pi / 2, zero + ALPHA_1, theta_2) @ rotation(zero, zero + ALPHA_2, theta_3 + np.pi / 2)
-        assert np.abs(r @ rotation(zero + eta, zero + BETA, zero) - arcs).max() < 1e-7  # as near as arccos tells at the rim
+        assert np.abs(r @ rotation(zero + eta, zero + BETA, zero) - arcs).max() < 1e-7  # as accurate as arccos is at the boundary of reach
         assert np.median(np.abs(r @ rotation(zero + eta, zero + BETA, zero) - arcs)) < 1e-15
         # The slider, link a1 and link a2 end at P.
         along, link = np.exp(1j * alpha), np.exp(1j * (alpha + np.pi / 2 + phi_1))
@@ -270,7 +270,7 @@ def test_poses_are_displacements(manipulator, poses):
     np.testing.assert_array_equal(nearest.poses[1:], manipulator.locate(found[:2]))
     assert repr(nearest) == "<Nearest poses to 3 displacements: 1 outside the motion>"
     for wrong in (2 * np.eye(4), np.diag([1.0, 1, -1, 1]), np.full((4, 4), np.nan)):
-        with pytest.raises(opm.OpmError, match=r"transforms\[1\] is no displacement"):
+        with pytest.raises(opm.OpmError, match=r"transforms\[1\] is not a displacement"):
             manipulator.locate([np.eye(4), wrong])
     with pytest.raises(opm.OpmError, match=r"transforms has shape \(4, 4\), expected \(n, 4, 4\)"):
         manipulator.locate(np.eye(4))

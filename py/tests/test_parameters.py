@@ -71,7 +71,7 @@ def test_what_cannot_be_is_told(manipulator):
         ({"h": "long"}, "`h` is 'long', expected a number, a pair of numbers, or None"),
         ({"base": (1, 2, 3)}, r"`base` is \(1, 2, 3\), expected a number, a pair"),
         ({"b1": 9.0}, "leg4: home is out of this leg's reach by 8"),
-        ({3: 9.0}, "3 is no name of a parameter"),
+        ({3: 9.0}, "3 is not the name of a parameter"),
     ]:
         with pytest.raises(opm.OpmError, match=message):
             manipulator.with_parameters(changes)

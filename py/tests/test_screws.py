@@ -34,7 +34,7 @@ def exponential(screw, amount):
 
 
 def helical():
-    """Legs by the geometry: a slider square to alpha, a passive one along it, and the joint along alpha + beta."""
+    """Legs by the geometry: a slider perpendicular to alpha, a passive one along it, and the joint along alpha + beta."""
     legs = []
     for number, (alpha, beta) in enumerate(zip(ALPHA, BETA, strict=True)):
         along, across = np.array([np.cos(alpha), np.sin(alpha), 0]), np.array([-np.sin(alpha), np.cos(alpha), 0])
@@ -138,8 +138,8 @@ def test_the_screws_of_a_mechanism_make_it_again():
         ({"legs": {"a": ROWS[0], "b": [ROWS[1][0], [0] * 6, ROWS[1][2]], "c": ROWS[2]}}, "b, joint 2: all six components are zero"),
         ({"legs": [ROWS[0], ROWS[1], [*ROWS[2][:2], [0, 0, np.nan, 0, 0, 1]]]}, "leg3, joint 3: NaN is among its components"),
         ({"legs": ROWS[:1], "actuated": FLAGS[:1]}, "found 1 .*leg.*, expected at least 2 legs"),
-        ({"actuated": FLAGS[:2]}, "actuated: 2 sequences, expected 3, one a leg"),
-        ({"actuated": [[True], *FLAGS[1:]]}, "actuated: 1 of leg1, expected 3, one a joint"),
+        ({"actuated": FLAGS[:2]}, "actuated: 2 sequences, expected 3, one for each leg"),
+        ({"actuated": [[True], *FLAGS[1:]]}, "actuated: 1 of leg1, expected 3, one for each joint"),
         ({"actuated": [[0.5, 0, 0], *FLAGS[1:]]}, "actuated: .* of leg1, expected 3 bools"),
         ({"actuated": [[False] * 3] * 3}, "actuated"),
         ({"home": [[0, 0, np.inf], [0] * 3, [0] * 3]}, "leg1, joint 3: home is inf"),

@@ -92,7 +92,7 @@ def test_what_is_no_rotation_is_told():
     for matrix, message in told:
         with pytest.raises(opm.OpmError) as raised:
             manipulator.locate([np.eye(4), matrix])
-        assert str(raised.value).startswith(f"transforms[1] is no displacement: {message}"), raised.value
+        assert str(raised.value).startswith(f"transforms[1] is not a displacement: {message}"), raised.value
 
 
 def test_inverse_kinematics_of_located_poses(manipulator):

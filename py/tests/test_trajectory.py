@@ -90,7 +90,7 @@ def test_wrong_input_is_told(manipulator, tmp_path):
         opm.trajectory(manipulator, tmp_path / "wrong.csv")
     home = np.zeros((4, 5))
     for motion, options, message in [
-        (home, {"times": [0, 1, 2]}, "3 times of 4 poses"),
+        (home, {"times": [0, 1, 2]}, "3 times for 4 poses"),
         (home, {"times": [0, 1, 1, 2]}, "waypoint 2: t is 1.0 after 1.0|waypoint 2: t is 1 after 1"),
         (home[:2], {"times": [0, 1]}, "expected at least 3"),
         (home[:, :3], {"times": [0, 1, 2, 3]}, r"motion has shape \(4, 3\), expected \(n, 5\)"),

@@ -129,7 +129,7 @@ impl Closure<'_> {
 pub fn displacement(joint: &opm_core::mechanism::joint::Joint, amounts: &[f64]) -> Isometry3<f64> {
     let values: Vec<f64> =
         joint.coordinates.iter().zip(amounts).map(|(c, amount)| c.home + amount).collect();
-    joint.displacement(&values)
+    joint.displacement(&values).expect("a value for each coordinate")
 }
 
 /// The angular velocity for unit rates of a rotation vector, one per column.

@@ -245,6 +245,7 @@ pub fn displace(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
     turned(&mut task.axis);
     for frame in [&mut task.lower, &mut task.upper] {
         turned(&mut frame.x);
+        turned(&mut frame.axis);
         turned(&mut frame.w);
         turned(&mut frame.normal);
         frame.origin = frame.origin.map(|point| g * point);

@@ -144,6 +144,6 @@ pub fn gap(m: &Manipulator, joints: &[f64], target: &Isometry3<f64>) -> f64 {
     m.mechanism().legs.iter().fold(0.0, |worst: f64, leg| {
         let (own, rest) = joints.split_at(leg.coordinates().count());
         joints = rest;
-        worst.max(apart(m, &leg.displacement(own), target))
+        worst.max(apart(m, &leg.displacement(own).unwrap(), target))
     })
 }

@@ -124,8 +124,7 @@ fn shipped_mechanisms_are_solved_as_one_is() {
 /// The first invalid pose is reported by its index.
 #[test]
 fn an_invalid_pose_is_reported() {
-    let text = examples::find("plano-spherical-5dof").unwrap().text;
-    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
     let mut poses = vec![manipulator.task().home(); 100];
     poses[99][0] = f64::INFINITY;
     poses[77][3] = f64::NAN;

@@ -276,7 +276,7 @@ fn gap(manipulator: &Manipulator, pose: &[f64], solution: &Solution) -> f64 {
     let off = |leg: &Leg| {
         let (own, rest) = joints.split_at(leg.coordinates().count());
         joints = rest;
-        (leg.displacement(own).to_homogeneous() - target).norm()
+        (leg.displacement(own).unwrap().to_homogeneous() - target).norm()
     };
     manipulator.mechanism().legs.iter().map(off).fold(0.0, f64::max)
 }

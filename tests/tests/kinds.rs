@@ -4,7 +4,6 @@
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
-use opm_core::mechanism::{examples, file};
 use opm_core::task::euler;
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::random::{Options, PAIRS, mechanism};
@@ -16,8 +15,7 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 fn shipped(name: &str) -> Manipulator {
-    let example = examples::EXAMPLES.iter().find(|example| example.name == name).unwrap();
-    Manipulator::new(file::read(example.text).unwrap().mechanism).unwrap()
+    Manipulator::example(name).unwrap()
 }
 
 fn reached(sweep: &Sweep<'_>) -> GridSet {

@@ -4,7 +4,7 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::{examples, file};
+use opm_core::mechanism::examples;
 use opm_tests::random::{Options, PAIRS, direction, mechanism};
 
 const OPTIONS: Options = Options { limited: 0.0, balls: true };
@@ -77,7 +77,7 @@ fn outside_says_how_far_and_where() {
 fn the_platforms_place_is_its_point_and_its_orientation() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;
     let text = text.replace("zeta = 0, xi = 0, psi = 0", "zeta = 25, xi = 10, psi = -40");
-    let manipulator = Manipulator::new(file::read(&text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::read(&text).unwrap();
     assert!(manipulator.task().home()[2] > 0.4, "home is turned");
     let mut rng = Rng::with_seed(44);
     for _ in 0..20 {

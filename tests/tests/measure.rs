@@ -4,7 +4,6 @@
 use fastrand::Rng;
 use opm_core::Quantity;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
-use opm_core::mechanism::{examples, file};
 use opm_core::task::Task;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::measure::{
@@ -14,8 +13,7 @@ use opm_workspace::{Cancelled, Modes, Progress, Sections};
 use std::f64::consts::PI;
 
 fn example(name: &str) -> Manipulator {
-    let text = examples::find(name).unwrap().text;
-    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+    Manipulator::example(name).unwrap()
 }
 
 fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measured {

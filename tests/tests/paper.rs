@@ -4,7 +4,6 @@
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::{plano_spherical, translational_helical};
-use opm_core::mechanism::{examples, file};
 use opm_tests::paper;
 use std::f64::consts::{PI, TAU};
 
@@ -16,8 +15,7 @@ const AGREE: f64 = 1e-10;
 const REACH_MARGIN: f64 = 1e-9;
 
 fn example(name: &str) -> Manipulator {
-    let text = examples::find(name).unwrap().text;
-    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+    Manipulator::example(name).unwrap()
 }
 
 fn close_angle(a: f64, b: f64) -> bool {

@@ -423,7 +423,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
                 let joints = &manipulator.mechanism().legs[legs].joints;
                 freedoms.iter().any(|freedom| joints[freedom.joint].actuated)
             };
-            // A section that passes no motion on to an actuator is no part of the Jacobian.
+            // A section that passes no motion on to an actuator is not a part of the Jacobian.
             let parts: Vec<[bool; 2]> = (manipulator.decomposition().legs.iter().enumerate())
                 .map(|(i, split)| {
                     let [lower, upper] = [driven(i, &split.lower), driven(i, &split.upper)];

@@ -27,7 +27,9 @@ fn platform(manipulator: &Manipulator, pose: &[f64]) -> Option<Isometry3<f64>> {
     manipulator.inverse_all(pose, &mut all).unwrap();
     let mode = all.modes(manipulator).next()?;
     assert!(manipulator.solution_in_mode(&all, mode, &mut solution).is_some());
-    Some(manipulator.mechanism().legs[0].displacement(solution.joints()))
+    let leg = &manipulator.mechanism().legs[0];
+    let own = &solution.joints()[..leg.coordinates().count()];
+    Some(leg.displacement(own).unwrap())
 }
 
 fn about(axis: Unit<Vector3<f64>>, point: Point3<f64>, angle: f64) -> Isometry3<f64> {

@@ -3,7 +3,6 @@
 use fastrand::Rng;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
-use opm_core::mechanism::{examples, file};
 use opm_core::motion::{self, Harmonics, Path, PlatformMotion, Sinusoid};
 use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
 use opm_tests::random::{Options, PAIRS, mechanism};
@@ -357,6 +356,5 @@ fn samples_go_from_start_to_end() {
 }
 
 fn shipped(name: &str) -> Manipulator {
-    let text = examples::find(name).unwrap().text;
-    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+    Manipulator::example(name).unwrap()
 }

@@ -5,7 +5,6 @@ use fastrand::Rng;
 use nalgebra::{DMatrix, DVector};
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
-use opm_core::mechanism::{examples, file};
 use opm_core::velocity::{SingularCause, SingularLeg, VelocityError};
 use opm_tests::differences::{Estimate, derivatives};
 use opm_tests::random::{Options, PAIRS, mechanism};
@@ -185,8 +184,7 @@ fn jacobians_compose_to_the_rates() {
 /// mechanism does not depend on it.
 #[test]
 fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
-    let text = examples::find("plano-spherical-5dof").unwrap().text;
-    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
     let ball: Vec<usize> = (manipulator.coordinates().iter().enumerate())
         .filter_map(|(i, c)| c.name.starts_with("s4.").then_some(i))
         .collect();
@@ -287,8 +285,7 @@ fn enormous_poses_and_rates_give_numbers_or_are_refused() {
 
 #[test]
 fn what_is_no_rate_is_refused() {
-    let text = examples::find("translational-helical-3dof").unwrap().text;
-    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::example("translational-helical-3dof").unwrap();
     let (mut at, mut motion) = (manipulator.solution(), manipulator.joint_motion());
     let still = [0.0; 3];
     for (rates, message) in [
@@ -306,8 +303,7 @@ fn what_is_no_rate_is_refused() {
     }
     // Before any pose, a solution is home.
     assert!(manipulator.velocity(&at, &still, &still, &mut motion).unwrap());
-    let text = examples::find("plano-spherical-5dof").unwrap().text;
-    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
     (at, motion) = (manipulator.solution(), manipulator.joint_motion());
     assert!(manipulator.inverse(&[9.0; 5], manipulator.home_mode(), &mut at).unwrap().is_none());
     let refused = manipulator.velocity(&at, &[0.0; 5], &[0.0; 5], &mut motion);

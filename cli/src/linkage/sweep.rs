@@ -59,7 +59,7 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
         "input": { "joint": run.input.coordinate().name },
         "range": input_intervals(&run.input),
         "full_turn": run.input.range().is_full_turn(),
-        "turns": summary.is_turn,
+        "turns": summary.is_revolution,
         "positions": summary.positions,
         "within_limits": summary.within_limits,
     });
@@ -113,7 +113,8 @@ impl Sweep<'_> {
     fn report(&self, path: Option<&Path>, summary: &RoundSummary, output: &Output) {
         let name = &self.run.input.coordinate().name;
         if let Some(path) = path {
-            let round = if summary.is_turn { "one turn of" } else { "there and back with" };
+            let round =
+                if summary.is_revolution { "one revolution of" } else { "there and back with" };
             output.note(format_args!(
                 "{}: {} positions, {round} {name}",
                 path.display(),

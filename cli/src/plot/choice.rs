@@ -37,20 +37,20 @@ pub fn home(coordinate: &Coordinate) -> u64 {
 }
 
 /// The selection of `--slice`: coordinates with the indices of their grid values.
-pub fn asked(
+pub fn selected(
     layout: &Layout,
     args: &PlotArgs,
     view: [usize; 2],
 ) -> Result<Vec<(usize, Vec<u64>)>, Failure> {
     let wrong = |problem: String| Err(Failure::flag("--slice", problem));
-    let mut asked: Vec<(usize, Vec<u64>)> = vec![];
+    let mut selected: Vec<(usize, Vec<u64>)> = vec![];
     for given in &args.slice {
         let name = &given.name;
         let Some(number) = layout.find(name) else {
             if layout.lost.contains(name) {
                 return wrong(format!("{name} is not stored with the points of this recording"));
             }
-            return wrong(format!("{name:?} is none of {}", layout.names()));
+            return wrong(format!("{name:?} is not one of {}", layout.names()));
         };
         if view.contains(&number) {
             return wrong(format!("{name} is an axis of the slices; --values chooses others"));
@@ -70,17 +70,17 @@ pub fn asked(
             return wrong(format!("{name} = {value}: the grid goes from {min} to {max}"));
         }
         let value = nearest(axis, value);
-        match asked.iter_mut().find(|(known, _)| *known == number) {
+        match selected.iter_mut().find(|(known, _)| *known == number) {
             Some((_, values)) if values.contains(&value) => {}
             Some((_, values)) => values.push(value),
-            None => asked.push((number, vec![value])),
+            None => selected.push((number, vec![value])),
         }
     }
-    if let Some((number, values)) = asked.iter().find(|(_, values)| values.len() > MOST) {
+    if let Some((number, values)) = selected.iter().find(|(_, values)| values.len() > MOST) {
         let name = &layout.coordinates[*number].name;
         return wrong(format!("{} values of {name}, expected at most {MOST}", values.len()));
     }
-    Ok(asked)
+    Ok(selected)
 }
 
 /// The coordinate that has another value in each tile. It is the one with several given values, or else one
@@ -88,9 +88,9 @@ pub fn asked(
 pub fn varied(
     layout: &Layout,
     free: &[usize],
-    asked: &[(usize, Vec<u64>)],
+    selected: &[(usize, Vec<u64>)],
 ) -> Result<Option<usize>, Failure> {
-    let several: Vec<usize> = asked.iter().filter(|a| a.1.len() > 1).map(|a| a.0).collect();
+    let several: Vec<usize> = selected.iter().filter(|a| a.1.len() > 1).map(|a| a.0).collect();
     if let [a, b, ..] = several[..] {
         let [a, b] = [a, b].map(|number| &layout.coordinates[number].name);
         let problem = format!("several values of both {a} and {b}, expected of one coordinate");
@@ -99,7 +99,7 @@ pub fn varied(
     if let [one] = several[..] {
         return Ok(Some(one));
     }
-    let open = || free.iter().copied().filter(|n| !asked.iter().any(|(known, _)| known == n));
+    let open = || free.iter().copied().filter(|n| !selected.iter().any(|(known, _)| known == n));
     // The third axis of the cloud, or the value of its colours.
     let color = layout.colored.as_deref().and_then(|name| layout.find(name));
     let third = [layout.axes.get(2).copied(), color].into_iter().flatten();

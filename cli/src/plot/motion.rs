@@ -5,7 +5,7 @@ use super::options::PanelName;
 use super::sized::drawn;
 use super::source::{Rate, Source, Stop};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
-use super::violations::{listed, told, violations};
+use super::violations::{count_of, listed, violations};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;
@@ -20,7 +20,7 @@ const SECOND: f64 = 1e9;
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     if let Some(slices) = args.slice.first() {
-        let problem = format!("{}: {} is no workspace", slices.name, source.label);
+        let problem = format!("{}: {} is not a workspace", slices.name, source.label);
         return Err(Failure::flag("--slice", problem));
     }
     let topics = || source.recording.topics.iter();
@@ -232,7 +232,7 @@ impl<'a> Motion<'a> {
         let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
         let violations = violations(source);
-        let mut notes = listed(&violations, told(source, &violations));
+        let mut notes = listed(&violations, count_of(source, &violations));
         // Violations between samples are marked too, if they are recorded.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {
@@ -264,8 +264,8 @@ impl<'a> Motion<'a> {
             )));
         }
         for panel in &args.panels {
-            let asked = rows_of(*panel);
-            if !asked.is_empty() && !rows.keys().any(|(group, _)| asked.contains(group)) {
+            let wanted = rows_of(*panel);
+            if !wanted.is_empty() && !rows.keys().any(|(group, _)| wanted.contains(group)) {
                 let (label, name) = (&source.label, panel.name());
                 return Err(Failure::work(format!("{label}: no {name} in what --panels asks for")));
             }
@@ -313,7 +313,7 @@ fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
                     true
                 }
             });
-            let problem = format!("{name:?} is none of {}", known.join(", "));
+            let problem = format!("{name:?} is not one of {}", known.join(", "));
             return Err(Failure::flag("--values", problem));
         }
     }

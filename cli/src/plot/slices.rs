@@ -1,6 +1,6 @@
 //! Slices of a workspace: its reachable part with all coordinates held except two.
 
-use super::choice::{asked, columns, fast, home, several, varied};
+use super::choice::{columns, fast, home, selected, several, varied};
 use super::grid::{is_home, nearest};
 use super::label::value_label;
 use super::layout::{Coordinate, Layout, Place};
@@ -69,16 +69,16 @@ impl<'a> Slices<'a> {
                 source.label
             )));
         }
-        let asked = asked(layout, args, view)?;
+        let selected = selected(layout, args, view)?;
         let free: Vec<usize> = (0..layout.coordinates.len())
             .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
             .collect();
-        let varied = varied(layout, &free, &asked)?;
+        let varied = varied(layout, &free, &selected)?;
         let held: Vec<(usize, u64)> = free
             .iter()
             .filter(|number| Some(**number) != varied)
             .map(|&number| {
-                let given = asked.iter().find(|(asked, _)| *asked == number);
+                let given = selected.iter().find(|(selected, _)| *selected == number);
                 let value = given.map_or_else(|| home(&layout.coordinates[number]), |g| g.1[0]);
                 (number, value)
             })
@@ -98,11 +98,12 @@ impl<'a> Slices<'a> {
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
         let mut slices =
             Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
-        let values = match (varied, asked.into_iter().find(|(number, _)| Some(*number) == varied)) {
-            (None, _) => vec![0],
-            (_, Some((_, values))) => values,
-            (Some(number), None) => slices.spread(source, number)?,
-        };
+        let values =
+            match (varied, selected.into_iter().find(|(number, _)| Some(*number) == varied)) {
+                (None, _) => vec![0],
+                (_, Some((_, values))) => values,
+                (Some(number), None) => slices.spread(source, number)?,
+            };
         let extents = &source.recording.extents;
         let content = |slices: &Self| slices.content(extents);
         slices.tiles = values.into_iter().map(|value| (value, content(&slices))).collect();

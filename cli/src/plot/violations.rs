@@ -59,13 +59,13 @@ pub fn violations(source: &Source<'_>) -> Vec<Violation> {
 }
 
 /// The number of all violations: a recording may hold only the first of many.
-pub fn told(source: &Source<'_>, violations: &[Violation]) -> usize {
-    let told = source.metadata("result").get("violations").and_then(|count| count.parse().ok());
-    told.unwrap_or(0).max(violations.len())
+pub fn count_of(source: &Source<'_>, violations: &[Violation]) -> usize {
+    let all = source.metadata("result").get("violations").and_then(|count| count.parse().ok());
+    all.unwrap_or(0).max(violations.len())
 }
 
-/// Notes that explain the marks; `told` is the number of all violations.
-pub fn listed(violations: &[Violation], told: usize) -> Vec<String> {
+/// Notes that explain the marks; `all` is the number of all violations.
+pub fn listed(violations: &[Violation], all: usize) -> Vec<String> {
     let note = |(number, violation): (usize, &Violation)| {
         let Violation { start, end, text } = violation;
         let [start, end] = [*start, *end].map(|time| label(time, 3));
@@ -75,10 +75,10 @@ pub fn listed(violations: &[Violation], told: usize) -> Vec<String> {
         }
     };
     let mut notes: Vec<String> = (1..).zip(violations).take(LISTED).map(note).collect();
-    let more = told - notes.len();
+    let more = all - notes.len();
     if more > 0 {
         let marked = match violations.len() {
-            marked if marked < told => format!("; the first {} are marked", count(marked as u64)),
+            marked if marked < all => format!("; the first {} are marked", count(marked as u64)),
             _ => String::new(),
         };
         notes.push(format!("and {} more{marked}", count(more as u64)));

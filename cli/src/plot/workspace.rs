@@ -17,7 +17,7 @@ use opm_study::WorkspaceKind;
 use opm_workspace::Axis;
 
 pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
-    let asked = |panel: PanelName| args.panels.contains(&panel);
+    let wanted = |panel: PanelName| args.panels.contains(&panel);
     for panel in &args.panels {
         if !matches!(panel, PanelName::Slices | PanelName::Imaginary) {
             let problem = format!("{} are of a motion, not of a workspace", panel.name());
@@ -34,20 +34,20 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let (view, joints) = chosen(&layout, source, args)?;
     // A set without an axis on a grid has no slices, unless they are requested.
     let default = args.panels.is_empty() && layout.kind != WorkspaceKind::Imaginary;
-    let mut slices = match default || asked(PanelName::Slices) {
+    let mut slices = match default || wanted(PanelName::Slices) {
         true => Some(Slices::new(&layout, source, args, view)?),
         false => None,
     };
     let mut cloud = JointCloud::new(layout.kind, source, &joints);
     let meant = args.panels.is_empty() && layout.kind.is_of_poses();
-    if cloud.is_none() && (meant || asked(PanelName::Imaginary)) {
+    if cloud.is_none() && (meant || wanted(PanelName::Imaginary)) {
         let hint = missing(source);
-        if asked(PanelName::Imaginary) && slices.is_none() {
+        if wanted(PanelName::Imaginary) && slices.is_none() {
             return Err(Failure::work(format!("{}: {hint}", source.label)));
         }
         output.note(format_args!("{}: {hint}", source.label));
     }
-    if !args.panels.is_empty() && !asked(PanelName::Imaginary) {
+    if !args.panels.is_empty() && !wanted(PanelName::Imaginary) {
         cloud = None;
     }
 
@@ -102,7 +102,7 @@ fn chosen(
             joints.push(name.clone());
         } else {
             let known = [&[layout.names()], &layout.scalars[..]].concat().join(", ");
-            return wrong(format!("{name:?} is none of {known}"));
+            return wrong(format!("{name:?} is not one of {known}"));
         }
     }
     let view = match view[..] {

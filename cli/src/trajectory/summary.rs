@@ -142,6 +142,6 @@ impl Report<'_> {
     }
 }
 
-fn json(told: &ViolationReport<'_>) -> Value {
-    violation_fields(told).into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+fn json(report: &ViolationReport<'_>) -> Value {
+    violation_fields(report).into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

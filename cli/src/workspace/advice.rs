@@ -12,7 +12,7 @@ pub fn of_fitted(workspace: &Workspace, output: &Output) {
     output.note(format_args!("grid fitted to the workspace: {}", grid_flags(workspace.grid())));
     for name in workspace.unbounded().unwrap_or_default() {
         output.warn(format_args!(
-            "the workspace goes on beyond this grid along {name}; limit a joint, or give --grid"
+            "the workspace continues beyond this grid along {name}; limit a joint, or give --grid"
         ));
     }
 }
@@ -22,8 +22,9 @@ pub fn before(workspace: &Workspace, output: &Output) {
     let (kind, manipulator) = (workspace.kind(), workspace.manipulator());
     if kind.sections() != Sections::Whole && !manipulator.workspace_factorises() {
         output.note(
-            "a leg that is cut in its lower section has upper joints that are limited, actuated or may \
-             be out of reach, which no section alone is asked for: the whole reaches less than both",
+            "a leg that is split in its lower section has upper joints that are limited, actuated or \
+             sometimes out of reach. Neither section alone tests them, so the whole workspace is \
+             smaller than where both sections agree",
         );
     }
     if let Some(warning) = one_orientation(kind, workspace.grid()) {
@@ -51,7 +52,7 @@ fn one_orientation(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     let names: Vec<String> =
         upper.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
     let names = names.join(", ");
-    Some(format!("--kind {kind} has one orientation alone; for more give {names}"))
+    Some(format!("--kind {kind} has only one orientation here; for more, give {names}"))
 }
 
 /// Advice to request fewer orientations if no place is in reach at all of them.

@@ -209,7 +209,7 @@ fn bad_rows_are_named_by_file_line_and_column() {
         ("x,yaw\n0,0\n", &["in.csv:1: column \"yaw\"", "expected one of x, y, zeta, xi, psi"]),
         ("x,,y\n0,0,0\n", &["in.csv:1: column \"\""]),
         ("x,y,x\n0,0,0\n", &["in.csv:1: column \"x\": given twice"]),
-        ("x,y\n0,0\n1\n", &["in.csv:3: 1 columns, expected 2: x,y"]),
+        ("x,y\n0,0\n1\n", &["in.csv:3: 1 column, expected 2: x,y"]),
         ("x,y\n0,0\n1,2,3\n", &["in.csv:3: 3 columns, expected 2: x,y"]),
         ("x,y\r\n0,0\r\n1,2,3\r\n", &["in.csv:3: 3 columns"]),
         ("x,y\n\n\n0,zero\n", &["in.csv:4: column y: \"zero\" is not a number"]),

@@ -288,11 +288,11 @@ fn what_varies_is_seen() {
 
     let run = opm(&["workspace", PLANO, "--kind", "reachable", "--grid=x=0:0.1:5"]);
     run.text();
-    assert!(run.stderr.contains("one orientation alone") && run.stderr.contains("--grid xi="));
+    assert!(run.stderr.contains("only one orientation") && run.stderr.contains("--grid xi="));
     let run =
         opm(&["workspace", PLANO, "--kind", "reachable", "--grid=x=0:0.1:5", "--grid=xi=0:1:2"]);
     run.text();
-    assert!(!run.stderr.contains("one orientation alone"), "{}", run.stderr);
+    assert!(!run.stderr.contains("only one orientation"), "{}", run.stderr);
 }
 
 /// A set of one coordinate is a bar along its axis: the other has neither name nor numbers.

@@ -142,13 +142,13 @@ fn a_sweep_of_a_limited_input_goes_there_and_back() {
 fn a_sweep_goes_to_a_file() {
     let folder = Folder::new();
     let printed = linkage(&["--sweep", "--count", "5"]);
-    let csv = folder.arg("turn.csv");
+    let csv = folder.arg("round.csv");
     let run = linkage(&["--sweep", "--count", "5", "-o", &csv]);
     assert_eq!(run.text(), "");
-    assert!(run.stderr.contains("5 positions, one turn of a1"), "{}", run.stderr);
-    assert_eq!(folder.read("turn.csv"), printed.text());
+    assert!(run.stderr.contains("5 positions, one revolution of a1"), "{}", run.stderr);
+    assert_eq!(folder.read("round.csv"), printed.text());
 
-    let mcap = folder.arg("turn.mcap");
+    let mcap = folder.arg("round.mcap");
     let run = linkage(&["--sweep", "--count", "5", "-o", &mcap, "--format", "json", "--quiet"]);
     assert_eq!(run.stderr, "");
     let found = run.json();
@@ -162,7 +162,7 @@ fn a_sweep_goes_to_a_file() {
     }
     assert_eq!(inside["metadata"]["run"]["input"], "a1");
     assert_eq!(inside["attachments"][0]["name"], format!("{BENNETT}.toml"));
-    assert_eq!(folder.names(), ["turn.csv", "turn.mcap"]);
+    assert_eq!(folder.names(), ["round.csv", "round.mcap"]);
 }
 
 #[test]

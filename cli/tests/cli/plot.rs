@@ -43,7 +43,7 @@ fn workspace(folder: &Folder) -> String {
 }
 
 fn turn(folder: &Folder) -> String {
-    let output = folder.arg("turn.mcap");
+    let output = folder.arg("round.mcap");
     opm(&["linkage", BENNETT, "--sweep", "--count", "73", "-o", &output]).text();
     output
 }
@@ -318,7 +318,7 @@ fn a_png_has_twice_the_pixels_and_the_same_bytes_each_time() {
     let document = Document::parse(&svg).unwrap();
     assert_eq!(document.root_element().attribute("width"), Some("900"));
     assert_eq!(svg, plot(&folder, &file, &["--size", "900x400"]).1);
-    assert_eq!(folder.names(), ["a.png", "b.png", "picture.svg", "turn.mcap"]);
+    assert_eq!(folder.names(), ["a.png", "b.png", "picture.svg", "round.mcap"]);
 }
 
 #[test]
@@ -376,7 +376,7 @@ fn wrong_usage_names_the_flag() {
         (&cloud, &["-o", &svg, "--size", "200x100"], &["--size", "200x100", "need at least"]),
         (&turn, &["-o", &svg, "--values", "c1"], &["--values", "\"c1\"", "a1, b3, a2"]),
         (&turn, &["-o", &svg, "--panels", "slices"], &["--panels", "slices", "motion"]),
-        (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "no workspace"]),
+        (&turn, &["-o", &svg, "--slice", "xi=0"], &["--slice", "not a workspace"]),
     ] {
         opm(&[&["plot", file], args].concat()).fails_with_one_line(2, parts);
     }
@@ -384,8 +384,8 @@ fn wrong_usage_names_the_flag() {
     opm(&["plot", &turn, "-o", &svg, "--size", "9000x10"]).fails(2, &["--size", "4000"]);
     opm(&["plot", &turn]).fails(2, &["--output"]);
     opm(&["plot", &turn, "-o", &svg, "--panels", "condition"])
-        .fails_with_one_line(1, &["turn.mcap", "--panels"]);
-    assert_eq!(folder.names(), ["cloud.mcap", "turn.mcap"]);
+        .fails_with_one_line(1, &["round.mcap", "--panels"]);
+    assert_eq!(folder.names(), ["cloud.mcap", "round.mcap"]);
 }
 
 #[test]

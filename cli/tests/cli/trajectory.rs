@@ -145,7 +145,7 @@ fn a_table_is_followed_like_its_formula() {
     let zeta = |t: f64| (0.2 * PI * t + PI).rem_euclid(2.0 * PI) - PI;
     let rows: String =
         (0..=400).map(|i| f64::from(i) / 40.0).map(|t| format!("{t},{}\n", zeta(t))).collect();
-    let table = folder.write("turn.csv", format!("t,zeta\n{rows}"));
+    let table = folder.write("poses.csv", format!("t,zeta\n{rows}"));
     let found = json(PLANO, &table, &["--quiet"]);
     let turned = &found["joints"]["s4.z"]["velocity"];
     // Unwrapped, it rotates at a constant speed.

@@ -59,6 +59,7 @@ use nalgebra::{Unit, Vector3};
 
 /// Why a mechanism is not a linkage that this module can solve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LinkageError {
     /// The mechanism cannot be decomposed.
     #[error(transparent)]
@@ -84,6 +85,7 @@ pub enum LinkageError {
 
 /// What a mechanism has that keeps it from being two spherical four-bars.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// More than one loop; the number of legs.
     #[error("{0} legs")]
@@ -110,7 +112,7 @@ pub enum Obstacle {
 }
 
 /// A single-loop linkage, decomposed into two spherical four-bars. It is immutable and can be
-/// shared between threads.
+/// shared between threads. See the example in the docs of [`linkage`](crate::linkage).
 #[derive(Clone, Debug)]
 pub struct Linkage {
     mechanism: Mechanism,

@@ -19,6 +19,17 @@ use crate::mechanism::leg::Leg;
 use nalgebra::Point3;
 
 /// A parallel mechanism at an assembled home pose, in base coordinates: metres and radians.
+///
+/// A mechanism file gives one ([`Manipulator::read`](crate::Manipulator::read)), and so does a
+/// [`family`]. Or build one from [`Leg`]s.
+///
+/// ```
+/// let manipulator = opm_core::Manipulator::example("plano-spherical-5dof")?;
+/// let mechanism: &opm_core::Mechanism = manipulator.mechanism();
+/// let legs: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
+/// assert_eq!(legs, ["leg1", "leg2", "leg3", "leg4"]);
+/// # Ok::<(), opm_core::ReadError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Mechanism {

@@ -27,7 +27,7 @@ use crate::group::screw::Screw;
 use crate::group::subspace::SubspaceClass;
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, ValueCountError};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use solid::Sizes;
 
@@ -107,6 +107,25 @@ pub struct Configuration<'a> {
 }
 
 /// The bodies of a mechanism, and the joints that move them.
+///
+/// ```
+/// use opm_core::nalgebra::Isometry3;
+/// use opm_core::skeleton::{Configuration, ImaginaryJoints, Skeleton};
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
+/// let joints = ImaginaryJoints { decomposition, imaginary };
+/// let skeleton = Skeleton::new(manipulator.mechanism(), joints);
+///
+/// let solution = manipulator.solution(); // home
+/// let (joints, imaginary) = (solution.joints(), solution.imaginary());
+/// let platform = Isometry3::identity();
+/// let mut transforms = Vec::new();
+/// skeleton.place(&Configuration { joints, imaginary, platform }, &mut transforms)?;
+/// assert_eq!(transforms.len(), skeleton.bodies().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     bodies: Vec<Body>,
@@ -168,11 +187,15 @@ impl Skeleton {
     /// Writes the transform from every body's frame to its parent's into `out`, in the order of
     /// [`Skeleton::bodies`]. The base's is the identity.
     ///
-    /// # Panics
-    /// If the configuration does not have as many coordinates as the mechanism.
-    pub fn place(&self, configuration: &Configuration<'_>, out: &mut Vec<Isometry3<f64>>) {
-        assert_eq!(configuration.joints.len(), self.coordinates, "joint coordinates");
-        assert_eq!(configuration.imaginary.len(), self.imaginary.len(), "imaginary joints");
+    /// # Errors
+    /// The configuration does not have as many coordinates as the mechanism. Then `out` stays as it is.
+    pub fn place(
+        &self,
+        configuration: &Configuration<'_>,
+        out: &mut Vec<Isometry3<f64>>,
+    ) -> Result<(), ValueCountError> {
+        ValueCountError::check("joints", configuration.joints, self.coordinates)?;
+        ValueCountError::check("imaginary joints", configuration.imaginary, self.imaginary.len())?;
         out.clear();
         out.resize(self.bodies.len(), Isometry3::identity());
         let at = |body: usize, displacement: Isometry3<f64>| {
@@ -212,6 +235,7 @@ impl Skeleton {
             }
             first += coordinate;
         }
+        Ok(())
     }
 }
 

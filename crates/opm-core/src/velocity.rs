@@ -1,6 +1,6 @@
 //! Velocities and accelerations of every joint, from those of the task coordinates.
 //!
-//! A leg's closure `exp(I τ) · U = b`, `L = v · exp(I τ)` (or, with its cut in the lower section,
+//! A leg's closure `exp(I τ) · U = b`, `L = v · exp(I τ)` (or, if it is split in its lower section,
 //! `L · exp(-I τ) = v`, `U = exp(-I τ) · b`) is differentiated one section at a time. A section's chain
 //! has as many joints as its subspace has dimensions, so that in the subspace's own frame its screws
 //! are a square matrix of at most 3 × 3. The rows of its inverse are the reciprocal screws. Each of them
@@ -320,10 +320,9 @@ impl Manipulator {
             singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
-        sections
-            .into_iter()
-            .filter(move |(_, other)| whole_leg || *other == section)
-            .flat_map(|(section, _)| section.coordinates.iter().flatten().map(|slot| slot.number))
+        sections.into_iter().filter(move |(_, other)| whole_leg || *other == section).flat_map(
+            |(section, _)| section.coordinates.iter().flatten().map(|coordinate| coordinate.number),
+        )
     }
 
     /// The number of the imaginary joint of a singular leg, if that has no rate either.
@@ -377,16 +376,18 @@ impl Manipulator {
             Section::Lower => {
                 let lower = solve(lower, twists.v);
                 let last = leg.lower.chain.freedoms() - 1;
-                let cut = lower.map(|l| l[last]);
+                let along_rates = lower.map(|l| l[last]);
                 let kind = task.upper.kind;
                 let along = task.upper_intersection.unit_twist();
-                let cut_displacement: JointDisplacement = solved.tau.inverse();
+                let displacement: JointDisplacement = solved.tau.inverse();
                 let [twist, derivative] =
-                    twists.b.map(|twist| task.upper_intersection.adjoint(cut_displacement, &twist));
+                    twists.b.map(|twist| task.upper_intersection.adjoint(displacement, &twist));
                 let twist_rate = kind.bracket(&along, &twist);
-                let target =
-                    [along * cut[0] + twist, along * cut[1] + derivative + twist_rate * cut[0]];
-                LegMotion { lower, upper: solve(upper, target), tau: cut.map(|c| -c) }
+                let target = [
+                    along * along_rates[0] + twist,
+                    along * along_rates[1] + derivative + twist_rate * along_rates[0],
+                ];
+                LegMotion { lower, upper: solve(upper, target), tau: along_rates.map(|c| -c) }
             }
         }
     }
@@ -398,10 +399,10 @@ impl Manipulator {
         for (section, [rates, accelerations]) in
             [(&leg.lower, &motion.lower), (&leg.upper, &motion.upper)]
         {
-            for (i, slot) in section.coordinates.iter().enumerate() {
-                let Some(slot) = slot else { continue };
-                out.joint_rates[slot.number] = rates[i];
-                out.joint_accelerations[slot.number] = accelerations[i];
+            for (i, coordinate) in section.coordinates.iter().enumerate() {
+                let Some(coordinate) = coordinate else { continue };
+                out.joint_rates[coordinate.number] = rates[i];
+                out.joint_accelerations[coordinate.number] = accelerations[i];
             }
         }
         if let Some(imaginary) = leg.imaginary {

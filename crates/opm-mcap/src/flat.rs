@@ -1,4 +1,4 @@
-//! Messages that are nothing but named doubles, which are read by the schema that comes with them.
+//! Messages that consist of named doubles. They are read by the schema that comes with them.
 
 use crate::decode::varint;
 

@@ -54,7 +54,7 @@
 //! | [`table`] | points as NPY for NumPy and PLY for mesh tools |
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
 //! | [`scene`] | bodies made of simple solids |
-//! | [`joints`] | messages that are nothing but named numbers |
+//! | [`joints`] | messages that consist of named numbers |
 //!
 //! [`read`] reads every kind. Recordings go to a [`Sink`], usually a [`PartialFile`].
 //!

@@ -100,7 +100,7 @@ pub struct Message<'a> {
     pub time: u64,
     /// The encoded message.
     pub data: &'a [u8],
-    /// The names of its values, if its schema says that it has nothing but doubles.
+    /// The names of its values, if its schema says that all of them are doubles.
     pub flat: Option<&'a Flat>,
 }
 
@@ -132,7 +132,7 @@ impl<'a> Message<'a> {
         Cloud::decode(self.data).map(Some).map_err(|reason| self.malformed(reason))
     }
 
-    /// Puts the values of a message that has nothing but doubles into `values`, in the order of the names of
+    /// Puts the values of a message of doubles into `values`, in the order of the names of
     /// [`Self::flat`]. Returns false, with no values, for any other message.
     ///
     /// # Errors

@@ -160,10 +160,10 @@ pub(crate) fn decode(message: &[u8]) -> Result<Vec<[u64; 2]>, &'static str> {
     let mut runs = Vec::new();
     while !rest.is_empty() {
         let mut next = || varint(&mut rest).and_then(|length| end.checked_add(length));
-        let from = next().ok_or("a gap is no number")?;
+        let from = next().ok_or("a gap is not a number")?;
         end = from;
         let mut next = || varint(&mut rest).and_then(|length| end.checked_add(length));
-        let to = next().filter(|&to| to > from).ok_or("a run is no number, or empty")?;
+        let to = next().filter(|&to| to > from).ok_or("a run is not a number, or is empty")?;
         end = to;
         runs.push([from, to]);
     }

@@ -96,7 +96,7 @@ pub enum StudyError {
     Shard(#[from] ShardError),
     /// The work was cancelled while a shard was written. The unfinished file is of no use.
     #[cfg(feature = "recording")]
-    #[error("interrupted; {} is no whole shard: sweep it again", partial.display())]
+    #[error("interrupted; {} is not a complete shard: sweep that shard again", partial.display())]
     CancelledShard {
         /// The unfinished file.
         partial: PathBuf,
@@ -108,14 +108,14 @@ pub enum StudyError {
     #[error("there are no shards to join")]
     NoShards,
     /// A set is to be recorded, but its points are not known.
-    #[error("there is no set to record: its points have to be analysed first")]
+    #[error("there is no set to record: analyse the workspace first")]
     NoSet,
     /// Shards are missing.
     #[cfg(feature = "recording")]
     #[error(transparent)]
     MissingShards(#[from] MissingShards),
     /// The receiver of the data has stopped.
-    #[error("nobody takes what is read")]
+    #[error("the receiver of the data has stopped")]
     Closed,
 }
 

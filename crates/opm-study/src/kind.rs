@@ -42,7 +42,7 @@ pub enum WorkspaceKind {
 
 /// A name that is not one of a kind of workspace.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name:?} is no kind of workspace, expected one of {}", kind_names())]
+#[error("{name:?} is not a kind of workspace, expected one of {}", kind_names())]
 pub struct UnknownKind {
     /// The name that was given.
     pub name: String,
@@ -90,11 +90,11 @@ impl WorkspaceKind {
                 "Poses in reach with the lower section's coordinates held, each at one value"
             }
             Self::Reachable => {
-                "Places, of the lower section's coordinates, in reach at any orientation of the grid"
+                "Places (values of the lower section's coordinates) in reach at some orientation of the grid"
             }
             Self::Dexterous => "Places in reach at every orientation of the grid",
             Self::Imaginary => {
-                "Values of the imaginary joints at orientations with any place in reach"
+                "Values of the imaginary joints at orientations with some place in reach"
             }
             Self::Upper => "Orientations at which the upper section alone closes",
             Self::Lower => "Places and imaginary joints at which the lower section alone closes",
@@ -219,7 +219,7 @@ impl WorkspaceKind {
         };
         match self {
             Self::Dexterous => {
-                format!("no place of the grid is in reach{well} at every orientation of it")
+                format!("no place of the grid is in reach{well} at all of its orientations")
             }
             Self::Upper | Self::Lower => {
                 "the section closes at no point of the grid within the limits".to_owned()
@@ -261,7 +261,7 @@ mod tests {
             assert!(!kind.description().is_empty() && !kind.title().is_empty());
         }
         let error = "Grid".parse::<WorkspaceKind>().unwrap_err().to_string();
-        assert!(error.starts_with("\"Grid\" is no kind of workspace, expected one of grid, "));
+        assert!(error.starts_with("\"Grid\" is not a kind of workspace, expected one of grid, "));
     }
 
     /// These are the sets for which several slices decide together.

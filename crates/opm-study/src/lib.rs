@@ -14,15 +14,15 @@
 //! The dexterous workspace of a mechanism as a set, its boundary, and its recording:
 //!
 //! ```
-//! use opm_core::manipulator::Manipulator;
-//! use opm_core::mechanism::{examples, file};
+//! use opm_core::Manipulator;
+//! use opm_core::mechanism::examples;
 //! use opm_study::recording::{Attachment, Findings, WorkspaceRecording};
 //! use opm_study::{PointOptions, WorkspaceKind, WorkspaceRequest};
 //! use opm_workspace::{Axis, Progress};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let example = examples::find("plano-spherical-5dof").ok_or("no such example")?;
-//! let manipulator = Manipulator::new(file::read(example.text)?.mechanism)?;
+//! let manipulator = Manipulator::read(example.text)?;
 //!
 //! let progress = Progress::default();
 //! let workspace = WorkspaceRequest::new(WorkspaceKind::Dexterous)
@@ -100,9 +100,6 @@ pub use workspace::Workspace;
 
 /// A shipped mechanism, for the tests.
 #[cfg(test)]
-fn example() -> opm_core::manipulator::Manipulator {
-    use opm_core::mechanism::{examples, file};
-    let example = examples::find("plano-spherical-5dof").expect("a shipped example");
-    let mechanism = file::read(example.text).expect("a mechanism file").mechanism;
-    opm_core::manipulator::Manipulator::new(mechanism).expect("a manipulator")
+fn example() -> opm_core::Manipulator {
+    opm_core::Manipulator::example("plano-spherical-5dof").expect("a shipped example")
 }

@@ -24,7 +24,7 @@ pub struct RoundSummary {
     /// Number of positions within all limits.
     pub within_limits: u64,
     /// Whether the input made a full revolution.
-    pub is_turn: bool,
+    pub is_revolution: bool,
 }
 
 impl LinkageRound<'_> {
@@ -50,8 +50,8 @@ impl LinkageRound<'_> {
             within_limits += u64::from(position.within_limits);
             take(number, &position)?;
         }
-        let (positions, is_turn) = (self.count.into(), cycle.is_turn());
-        Ok(RoundSummary { positions, within_limits, is_turn })
+        let (positions, is_revolution) = (self.count.into(), cycle.is_revolution());
+        Ok(RoundSummary { positions, within_limits, is_revolution })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Motions of the platform, followed from end to end.
 
+mod batch;
 mod summary;
 
 pub use summary::{CoordinateRanges, MOST_LISTED, MotionSummary, Range};
@@ -7,22 +8,13 @@ pub use summary::{CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 use crate::error::StudyError;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::PlatformMotion;
-use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError, Violation};
-use std::panic::resume_unwind;
-use std::sync::mpsc::{self, Receiver, SyncSender};
-use std::thread;
+use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError};
 
 /// Samples per second of a motion without a rate of its own.
 pub const DEFAULT_RATE: f64 = 100.0;
 
 /// Longest motion, seconds: the stamps of a recording count seconds in 32 bits.
 const LONGEST: f64 = 4e9;
-
-/// Number of samples in a batch. The work can be cancelled between two batches.
-const BATCH: usize = 256;
-
-/// Number of batches that may wait for the receiver.
-const WAITING: usize = 4;
 
 /// A motion for a manipulator to follow.
 #[derive(Clone, Copy, Debug)]
@@ -77,9 +69,9 @@ impl<'a> MotionRequest<'a> {
         StudyError::Trajectory { motion: self.label.to_owned(), error }
     }
 
-    /// Follows the motion from end to end on a thread of its own. On this thread, calls `take` with every
-    /// sample, its number, and the transitions up to it. `go_on` gets the number of finished samples and
-    /// returns whether to continue.
+    /// Follows the motion from end to end, on a thread of its own if one can be started. On this thread, calls
+    /// `take` with every sample, its number, and the transitions up to it. `go_on` gets the number of finished
+    /// samples and returns whether to continue.
     ///
     /// # Errors
     /// A pose is not finite, `take` fails, or the work was cancelled.
@@ -90,65 +82,22 @@ impl<'a> MotionRequest<'a> {
         go_on: impl Fn(u64) -> bool,
     ) -> Result<MotionSummary, StudyError> {
         let mut summary = MotionSummary::new(self.manipulator);
-        let open = thread::scope(|scope| {
-            let (ahead, batches) = mpsc::sync_channel::<Batch>(WAITING);
-            let (back, used) = mpsc::channel::<Batch>();
-            let follower = scope.spawn(move || follow(trajectory, &ahead, &used));
-            let mut number = 0;
-            for batch in batches {
-                for (sample, changes) in &batch {
-                    summary.add(sample);
-                    take(number, sample, changes)?;
-                    for change in changes {
-                        if let Change::Ends(violation) = change {
-                            summary.add_violation(*violation);
-                        }
+        let mut number = 0;
+        let open = self.each_batch(trajectory, |batch| {
+            for (sample, changes) in batch {
+                summary.add(sample);
+                take(number, sample, changes)?;
+                for change in changes {
+                    if let Change::Ends(violation) = change {
+                        summary.add_violation(*violation);
                     }
-                    number += 1;
                 }
-                if !go_on(number) {
-                    return Err(StudyError::Cancelled);
-                }
-                // When the follower has finished, it needs no more buffers.
-                let _ = back.send(batch);
+                number += 1;
             }
-            let followed = follower.join().unwrap_or_else(|panic| resume_unwind(panic));
-            followed.map_err(|error| self.failed(error))
+            if go_on(number) { Ok(()) } else { Err(StudyError::Cancelled) }
         })?;
         open.into_iter().for_each(|violation| summary.add_violation(violation));
         summary.sort();
         Ok(summary)
-    }
-}
-
-/// A batch of samples, from the thread that follows the motion to the one that receives them.
-type Batch = Vec<(Sample, Vec<Change>)>;
-
-/// Sends all samples in batches that are reused. Returns the violations that last to the end.
-fn follow(
-    mut trajectory: Trajectory<'_>,
-    ahead: &SyncSender<Batch>,
-    used: &Receiver<Batch>,
-) -> Result<Vec<Violation>, TrajectoryError> {
-    loop {
-        let mut batch = used.try_recv().unwrap_or_default();
-        let mut length = 0;
-        while length < BATCH && trajectory.advance()? {
-            let (sample, changes) = (trajectory.sample(), trajectory.changes());
-            match batch.get_mut(length) {
-                Some((held, held_changes)) => {
-                    held.copy_from(sample);
-                    held_changes.clear();
-                    held_changes.extend_from_slice(changes);
-                }
-                None => batch.push((sample.clone(), changes.to_vec())),
-            }
-            length += 1;
-        }
-        batch.truncate(length);
-        // The receiver has gone if the work failed or was cancelled.
-        if length == 0 || ahead.send(batch).is_err() {
-            return Ok(trajectory.open().copied().collect());
-        }
     }
 }

@@ -85,9 +85,9 @@ impl Workspace {
 
     /// Whether another workspace has the same kind, grid, working modes, and limit on condition numbers with
     /// their characteristic length: the same points, if it is one of the same mechanism.
-    pub fn is_asked_like(&self, other: &Self) -> bool {
-        let asked = |one: &Self| (one.kind, one.modes, one.limit, one.length);
-        asked(self) == asked(other) && self.grid == other.grid
+    pub fn has_request_of(&self, other: &Self) -> bool {
+        let request = |one: &Self| (one.kind, one.modes, one.limit, one.length);
+        request(self) == request(other) && self.grid == other.grid
     }
 
     /// The sweep of the grid.

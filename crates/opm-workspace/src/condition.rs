@@ -80,9 +80,8 @@ impl ConditionLimit {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{ConditionLimit, Conditioned, Modes};
 ///
 /// let home: Vec<f64> = manipulator.task_coordinates().iter().map(|c| c.home).collect();

@@ -14,9 +14,8 @@ const UNIT: f64 = (1_u64 << 60) as f64;
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, ConditioningIndex, Grid, Modes, Progress, Sweep};
 ///
 /// let axes = vec![Axis::new("x", -0.2, 0.2, 9), Axis::new("y", -0.2, 0.2, 9)];

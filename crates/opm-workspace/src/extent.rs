@@ -52,12 +52,12 @@ pub struct Extent {
     pub min: f64,
     /// The highest value, radians or metres.
     pub max: f64,
-    /// Whether the workspace goes on beyond, without an end that was found.
+    /// Whether the workspace continues beyond, without an end that was found.
     pub unbounded: bool,
 }
 
 /// A grid over the whole workspace, and how far the workspace reaches along each task coordinate. Angles of
-/// which whole turns do not matter are kept to one turn, and coordinates without an end to the size of
+/// which full revolutions do not matter are kept to one revolution, and coordinates without an end to the size of
 /// the mechanism.
 ///
 /// # Errors
@@ -65,9 +65,8 @@ pub struct Extent {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Modes, Progress, default_grid};
 ///
 /// let mode = Modes::One(manipulator.home_mode());
@@ -435,7 +434,7 @@ struct Hit {
     poses: [Vec<f64>; 2],
 }
 
-/// The range of an angle of which whole turns do not matter. Of Euler angles and tilts it gives every
+/// The range of an angle whose full revolutions do not matter. Of Euler angles and tilts it gives every
 /// orientation or direction once, that of home among them.
 pub(crate) fn one_turn(kind: CoordinateKind, home: f64) -> [f64; 2] {
     use CoordinateKind::{Mu, Nu, Phi, Psi, Theta, W, X, Xi, Y, Z, Zeta};
@@ -452,7 +451,7 @@ fn axis(name: &str, min: f64, max: f64, count: u64) -> Axis {
     if min < max { Axis::new(name, min, max, count) } else { Axis::fixed(name, min) }
 }
 
-/// The whole turns nearest to an angle, radians; zero for an angle of at most half a turn.
+/// The full revolutions nearest to an angle, radians; zero for an angle of at most half a turn.
 fn whole_turns(angle: f64) -> f64 {
     if angle.abs() <= PI { 0.0 } else { TAU * (angle / TAU).round() }
 }

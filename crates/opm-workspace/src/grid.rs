@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Most poses of a grid: larger numbers are not exact in double precision, which JSON readers use.
 const MOST_POSES: u64 = 1 << 53;
 
-/// An angle's values cover a whole turn if their range is that to within this, radians.
+/// An angle's values cover a full revolution if their range is that to within this, radians.
 const WHOLE: f64 = 1e-9;
 
 /// Equally spaced values of one coordinate.
@@ -162,7 +162,7 @@ pub struct Coordinate {
     pub quantity: Quantity,
     /// The value at home, radians or metres.
     pub home: f64,
-    /// Whether it is an angle of which whole turns matter, because a helical joint follows them.
+    /// Whether it is an angle whose full revolutions matter, because a helical joint follows them.
     pub counts_turns: bool,
 }
 
@@ -203,9 +203,8 @@ impl Sections {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, Grid};
 ///
 /// // Coordinates without an axis stay at home.

@@ -1,18 +1,18 @@
 //! Workspaces of manipulators: which poses are in reach and within the limits, and what follows from that.
 //!
 //! A [`Sweep`] finds this out for every pose of a [`Grid`], in parallel. Its poses make sets with connected
-//! components and boundaries, reachable and dexterous workspaces, and conditioning indices. [`measure`](mod@measure) bounds areas and volumes with a guarantee. Results do not
-//! depend on the number of threads: sums are of whole numbers, and points come in the order of their number.
+//! components and boundaries, reachable and dexterous workspaces, and conditioning indices.
+//! [`measure`](mod@measure) bounds areas and volumes with a guarantee. Results do not depend on the number of
+//! threads: sums are of whole numbers, and points come in the order of their number.
 //!
 //! The kinematics are in [`opm_core`], which this crate exports again.
 //!
 //! ```
-//! use opm_workspace::opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+//! use opm_workspace::opm_core::Manipulator;
 //! use opm_workspace::{Axis, Grid, GridSet, Modes, Progress, Sweep, boundary};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let example = examples::find("plano-spherical-5dof").ok_or("no such example")?;
-//! let manipulator = Manipulator::new(file::read(example.text)?.mechanism)?;
+//! let manipulator = Manipulator::example("plano-spherical-5dof")?;
 //!
 //! // The workspace in x and y, with all other coordinates at home, in steps of 5 mm.
 //! let axes = vec![Axis::new("x", -0.3, 0.3, 121), Axis::new("y", -0.3, 0.3, 121)];

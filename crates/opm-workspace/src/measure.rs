@@ -9,9 +9,8 @@
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-//! # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-//! # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+//! # use opm_core::Manipulator;
+//! # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 //! use opm_workspace::measure::{CoordinateRange, Domain, Goal, measure};
 //! use opm_workspace::{Modes, Progress, Sections};
 //!
@@ -222,9 +221,8 @@ pub struct WrongAnswer {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// # use opm_workspace::measure::{CoordinateRange, Domain, Evaluator, Goal, Search};
 /// # use opm_workspace::{Modes, Progress, Sections};
 /// # let ranges = [CoordinateRange::new("x", -0.2, 0.2)];

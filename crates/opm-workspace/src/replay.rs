@@ -16,9 +16,8 @@ const BLOCK: u64 = 1 << 15;
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, Cancelled, Grid, Progress, Run, replay};
 ///
 /// let grid = Grid::new(&manipulator, vec![Axis::new("x", 0.0, 0.4, 5)])?;

@@ -44,9 +44,8 @@ pub enum SetError {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, Components, Grid, GridSet, Modes, Progress, Sweep, boundary};
 ///
 /// let axes = vec![Axis::new("x", -0.3, 0.3, 121), Axis::new("y", -0.3, 0.3, 121)];

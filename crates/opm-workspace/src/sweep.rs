@@ -138,9 +138,8 @@ impl Hits<'_> {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, Grid, Modes, Progress, Shard, Sweep};
 ///
 /// let axes = vec![Axis::new("x", -0.3, 0.3, 61), Axis::new("y", -0.3, 0.3, 61)];
@@ -271,10 +270,9 @@ impl<'a> Sweep<'a> {
     ///
     /// ```
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
+    /// # use opm_core::Manipulator;
     /// # use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
-    /// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-    /// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+    /// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
     /// # let grid = Grid::new(&manipulator, vec![Axis::new("x", -0.3, 0.3, 61)])?;
     /// # let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
     /// // The first coordinates of all reachable poses.

@@ -19,9 +19,8 @@ pub struct OtherGrid;
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # use opm_core::{manipulator::Manipulator, mechanism::{examples, file}};
-/// # let text = examples::find("plano-spherical-5dof").ok_or("no such example")?.text;
-/// # let manipulator = Manipulator::new(file::read(text)?.mechanism)?;
+/// # use opm_core::Manipulator;
+/// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, Visits};
 ///
 /// let grid = Grid::new(

@@ -1,7 +1,6 @@
 //! Wrong sizes and impossible questions are errors, not panics.
 
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::{examples, file};
 use opm_workspace::measure::{CoordinateRange, Domain, DomainError, Goal, Search, WrongAnswer};
 use opm_workspace::{
     Axis, ConditionError, ConditionLimit, ConditioningIndex, Grid, MaskError, Modes, OtherGrid,
@@ -9,8 +8,7 @@ use opm_workspace::{
 };
 
 fn manipulator() -> Manipulator {
-    let example = examples::find("plano-spherical-5dof").unwrap();
-    Manipulator::new(file::read(example.text).unwrap().mechanism).unwrap()
+    Manipulator::example("plano-spherical-5dof").unwrap()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 """Parts of some work on any executor: submitted as pickled specifications, run again if a worker is lost.
 
-What the work itself gives or raises comes back in an :class:`_Answer`. So whatever else a future gives or raises was made by the
-executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
+What the work itself returns or raises comes back in an :class:`_Answer`. Anything else that a future returns or raises comes
+from the executor, and says that the part was lost. Parts have no side effects: a lost one runs again.
 
 A future may also never complete: an error can end the coroutine that completes a future of Dask's executor, where a worker
 is lost while a result is fetched. So where nothing comes for a while, the missing parts are submitted once more. The first
@@ -118,7 +118,7 @@ class Workers:
                 return results.all(len(parts))
             if isinstance(lost, BrokenExecutor):
                 if self._given is not None:
-                    break  # such a one never takes work again
+                    break  # a broken executor never takes work again
                 self.close()
         hint = "; give a function that makes executors, to go on in a new one" if isinstance(lost, BrokenExecutor) else ""
         raise OpmError(
@@ -169,7 +169,7 @@ def _round(
 ) -> BaseException | None:
     """Runs the parts that are missing once, removes those that have a result, and returns the evidence of a lost worker.
 
-    A broken executor is the sign that it gives first: such a one takes no more work.
+    If the executor is broken, that is the evidence: it takes no more work.
     """
     submitted = _Submitted(pool, plan, task)
     patience = PATIENCE
@@ -254,7 +254,7 @@ def _number_of_workers(executor: Executor) -> int | None:
 
 
 class _Answer:
-    """What a part gave, or what its work raised: nothing but :func:`_work` makes one."""
+    """The result of a part, or the exception that its work raised. Only :func:`_work` makes one."""
 
     __slots__ = ("error", "result")
 

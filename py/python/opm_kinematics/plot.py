@@ -224,7 +224,7 @@ def imaginary(
     if color is not None:
         given = np.asarray(color, dtype=np.float64)
         if given.shape != inside.shape:
-            raise OpmError(f"color has shape {given.shape}, expected {inside.shape}, a number a pose")
+            raise OpmError(f"color has shape {given.shape}, expected {inside.shape}: one number for each pose")
         shade = given[inside]
     panel: Any = ax
     if panel is None:
@@ -351,7 +351,7 @@ def _take(free: list[str], what: str) -> str:
 
 def _faces(solid: Solid) -> list[_Array]:
     """Polygons of a solid, corners counter-clockwise as seen from outside: four of them, some twice, since
-    matplotlib projects whatever is in memory where one polygon has fewer corners than another."""
+    matplotlib reads uninitialised memory if one polygon has fewer corners than another."""
     start, end = solid.ends
     radius = solid.width / 2
     if solid.shape == "ball":

@@ -33,7 +33,7 @@ pub struct Outline {
     rings: Vec<(f64, Py<PyArray2<f64>>)>,
 }
 
-/// An outline as it crosses processes.
+/// An outline as it is pickled.
 type Spec = ((String, String), BTreeMap<String, f64>, f64, Vec<(f64, Py<PyArray2<f64>>)>);
 
 #[pymethods]
@@ -76,7 +76,7 @@ impl Outline {
         area: f64,
         rings: Vec<(f64, Py<PyArray2<f64>>)>,
     ) -> PyResult<Self> {
-        // Arrays come out of a pickle writable.
+        // An array from a pickle is writable.
         let rings = rings.into_iter().map(|(area, ring)| Ok((area, frozen(ring.into_bound(py))?)));
         Ok(Self { axes, at, area, rings: rings.collect::<PyResult<_>>()? })
     }

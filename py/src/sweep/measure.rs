@@ -3,7 +3,7 @@
 use super::Sweep;
 use crate::arguments;
 use crate::error::wrong;
-use crate::measure::{Asked, Measure, goal};
+use crate::measure::{Measure, Query, goal};
 use crate::parts::Parts;
 use opm_workspace::measure::CoordinateRange;
 use pyo3::prelude::*;
@@ -50,7 +50,7 @@ impl Sweep {
         let over: Vec<_> =
             axes.map(|a| CoordinateRange::new(a.name.as_str(), a.min, a.max)).collect();
         let (of, sections) = (self.of.clone_ref(py), self.workspace.grid().sections());
-        let asked = Asked { of, sections, modes: self.workspace.modes(), threads: self.threads };
-        asked.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)
+        let query = Query { of, sections, modes: self.workspace.modes(), threads: self.threads };
+        query.measured(py, &over, goal(tolerance, budget)?, Parts::new(executor, shards)?)
     }
 }

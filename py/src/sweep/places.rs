@@ -54,8 +54,8 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// In how many slices of a part of the grid each point is reached; nothing of a kind whose points are points of
-    /// the grid.
+    /// The number of slices of a part of the grid in which each point is reached. It is empty for a kind whose
+    /// points are points of the grid.
     fn tallied(&self, py: Python<'_>, shard: Shard) -> PyResult<Vec<u64>> {
         let (progress, sweep) = (Progress::default(), self.swept(shard));
         let work = || self.workspace.visits(&sweep, &progress);
@@ -64,7 +64,7 @@ impl Sweep {
         Ok(done.map_err(|error: SetError| failed(&error))?.unwrap_or_default())
     }
 
-    /// The same for the whole grid. The result is kept.
+    /// The number of slices of the whole grid in which each point is reached. The result is kept.
     pub fn tally<'py>(
         slf: &Bound<'py, Self>,
         parts: Option<&Parts<'py>>,
@@ -76,7 +76,7 @@ impl Sweep {
         let tally = match parts {
             None => this.tallied(py, Shard::WHOLE)?,
             Some(parts) => {
-                // Parts add up: in place, so that there is never more than one sum.
+                // The parts are added in place, so that there is never more than one sum.
                 let add = py.import("operator")?.getattr("iadd")?;
                 let sum = spread(slf, parts, "_tally", Some(add))?;
                 sum.cast_into::<PyArray1<u64>>()?.to_vec()?

@@ -139,7 +139,7 @@ impl Sweep {
     ) -> PyResult<Bound<'py, PyAny>> {
         let axes = &self.workspace.grid().axes()[self.span()];
         let shape: Vec<usize> = axes.iter().map(|axis| axis.count as usize).collect();
-        // The first coordinate is the fastest: an array in Fortran's order, which numpy sees as such.
+        // The first coordinate is the fastest, so this is an array in Fortran's order.
         Ok(flat.reshape_with_order(shape, NPY_ORDER::NPY_FORTRANORDER)?.into_any())
     }
 
@@ -190,7 +190,7 @@ impl Sweep {
         all.into_pyarray(py).reshape([count, width])
     }
 
-    /// Sweeps again to find the points: what `make` keeps of the hits goes to `take`, in their order.
+    /// Sweeps again to find the points. `make` extracts values from the hits, and `take` gets them in order.
     pub fn visit<T: Default + Send>(
         &self,
         py: Python<'_>,

@@ -18,7 +18,7 @@ enum Range {
     Several((f64, f64, u64)),
 }
 
-/// The axes of these names.
+/// The axes with these names.
 pub fn axes(given: BTreeMap<String, Bound<'_, PyAny>>) -> PyResult<Vec<Axis>> {
     let axis = |(name, range): (String, Bound<'_, PyAny>)| match range.extract::<Range>() {
         Ok(Range::Fixed(value)) => Ok(Axis::fixed(name, value)),
@@ -31,7 +31,7 @@ pub fn axes(given: BTreeMap<String, Bound<'_, PyAny>>) -> PyResult<Vec<Axis>> {
     given.into_iter().map(axis).collect()
 }
 
-/// The workspace of a request. Where no grid is given, one is fitted, with a warning where the workspace goes on
+/// The workspace of a request. If no grid is given, one is fitted, with a warning if the workspace continues
 /// beyond it.
 pub fn fitted(
     py: Python<'_>,
@@ -47,7 +47,7 @@ pub fn fitted(
     let workspace = workspace.map_err(|error| failed(&error))?;
     for name in workspace.unbounded().unwrap_or_default() {
         let message = format!(
-            "the workspace goes on beyond this grid along {name}; limit a joint, or give {name}"
+            "the workspace continues beyond this grid along {name}; limit a joint, or give {name}"
         );
         let category = py.get_type::<PyUserWarning>();
         PyErr::warn(py, &category, &CString::new(message)?, 1)?;
@@ -55,7 +55,7 @@ pub fn fitted(
     Ok(workspace)
 }
 
-/// The kind of this name.
+/// The kind with this name.
 pub fn named(word: &str) -> PyResult<WorkspaceKind> {
     let names = || WorkspaceKind::ALL.map(WorkspaceKind::name).join(", ");
     word.parse().map_err(|_| wrong(format!("kind is {word:?}, expected one of {}", names())))

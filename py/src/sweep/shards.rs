@@ -11,13 +11,13 @@ use opm_workspace::{Axis, Count, Progress, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// The least number of poses in a part: fewer are not worth sending to another process.
+/// The least number of poses in a part. Fewer are not worth sending to another process.
 const LEAST_PART: u64 = 1 << 15;
 
-/// Poses, reachable ones, and ranges of the imaginary joints: a [`Count`] as it crosses processes.
+/// A pickled [`Count`]: the number of poses, the number of reachable ones, ranges of the imaginary joints.
 pub type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 
-/// A sweep that is still to be done, as it crosses processes: axes, kind, mode, largest condition number,
+/// A sweep before it is done, as it is pickled: axes, kind, mode, largest condition number,
 /// characteristic length, threads.
 type Spec = (Vec<(String, f64, f64, u64)>, String, String, Option<f64>, f64, Option<NonZeroUsize>);
 

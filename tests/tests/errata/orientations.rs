@@ -3,7 +3,6 @@
 use crate::{ROUNDING, wrapped};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
-use opm_core::mechanism::{examples, file};
 use opm_core::task::Displacement;
 use opm_tests::paper::PlanoSpherical;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
@@ -26,8 +25,7 @@ const RANGE_TOLERANCE: f64 = 1e-5;
 const NOT_READING: f64 = 0.1;
 
 fn printed_manipulator() -> Manipulator {
-    let text = examples::find("plano-spherical-5dof").unwrap().text;
-    Manipulator::new(file::read(text).unwrap().mechanism).unwrap()
+    Manipulator::example("plano-spherical-5dof").unwrap()
 }
 
 /// The imaginary joint of a leg at an orientation that it reaches. Its second arc must be the angle

@@ -6,7 +6,6 @@ use nalgebra::{Matrix2, Rotation2, Vector2, Vector3};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::translational_helical;
-use opm_core::mechanism::{examples, file};
 use opm_tests::paper::TranslationalLeg;
 use std::f64::consts::TAU;
 
@@ -128,8 +127,7 @@ fn the_printed_axis_is_not_y() {
         let apart = wrapped(leg.alpha + leg.beta - 255_f64.to_radians());
         assert!(apart.abs() < ROUNDING, "{leg:?}");
     }
-    let text = examples::find("translational-helical-3dof").unwrap().text;
-    let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let manipulator = Manipulator::example("translational-helical-3dof").unwrap();
     let SubspaceClass::Cylindrical { axis, .. } = manipulator.decomposition().upper else {
         panic!("{:?}", manipulator.decomposition().upper)
     };

@@ -50,7 +50,7 @@ impl<'a> Closure<'a> {
         self.mechanism.joints().all(|joint| {
             let range = first..first + joint.freedoms();
             first = range.end;
-            let (a, b) = (joint.displacement(&a[range.clone()]), joint.displacement(&b[range]));
+            let [a, b] = [a, b].map(|q| joint.displacement(&q[range.clone()]).unwrap());
             match joint.kind {
                 // The revolutions of a screw matter, but the end of its leg shows them.
                 JointKind::Helical { .. } => a.rotation.angle_to(&b.rotation) < 1e-5,
@@ -132,7 +132,7 @@ impl<'a> Closure<'a> {
                 let values = &joints[first..first + joint.freedoms()];
                 first += joint.freedoms();
                 twists.extend(rates(joint, values).iter().map(|s| (number, s.transformed(&g))));
-                g *= joint.displacement(values);
+                g *= joint.displacement(values).unwrap();
             }
             ends.push(g);
         }
@@ -168,12 +168,12 @@ fn rates(joint: &Joint, values: &[f64]) -> Vec<Screw> {
         JointKind::Spherical => {
             // By differences, because a rotation vector has no fixed screws.
             const STEP: f64 = 1e-6;
-            let here = joint.displacement(values);
+            let here = joint.displacement(values).unwrap();
             (0..3)
                 .map(|i| {
                     let mut moved = values.to_vec();
                     moved[i] += STEP;
-                    let step = joint.displacement(&moved) * here.inverse();
+                    let step = joint.displacement(&moved).unwrap() * here.inverse();
                     let turn = step.rotation.scaled_axis() / STEP;
                     Screw { angular: turn, linear: joint.point.coords.cross(&turn) }
                 })

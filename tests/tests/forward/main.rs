@@ -103,7 +103,7 @@ fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
     for leg in &m.mechanism().legs {
         let (own, rest) = joints.split_at(leg.coordinates().count());
         joints = rest;
-        let end = leg.displacement(own);
+        let end = leg.displacement(own).unwrap();
         let way = (end * m.mechanism().platform - target * m.mechanism().platform).norm();
         // The angle is found by a square root, so it has half of the digits. Lengths here are below
         // ten.

@@ -39,7 +39,8 @@ fn inputs(linkage: &Linkage) -> impl Iterator<Item = (usize, Input<'_>)> {
 /// The difference between the platform's displacements by the two legs.
 fn open(mechanism: &Mechanism, position: &Position) -> f64 {
     let (one, two) = position.joints.split_at(mechanism.legs[0].coordinates().count());
-    let [one, two] = [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q));
+    let [one, two] =
+        [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q).unwrap());
     (one.to_homogeneous() - two.to_homogeneous()).norm()
 }
 
@@ -55,7 +56,7 @@ fn imaginary(linkage: &Linkage, position: &Position) -> f64 {
             // With the upper part at home, only the lower part's displacement is left.
             let home: Vec<f64> = leg.coordinates().map(|c| c.home).collect();
             let values = [&own[..split.lower.len()], &home[split.lower.len()..]].concat();
-            leg.displacement(&values)
+            leg.displacement(&values).unwrap()
         })
         .collect();
     let owner = linkage.imaginary().leg;
@@ -304,7 +305,7 @@ fn a_cycle_is_one_motion() {
                 assert_eq!(position.branch, home.branch);
                 let turned = position.joints.iter().zip(&home.joints);
                 let turned = turned.filter(|(a, b)| (*a - *b).abs() > PI).count();
-                if cycle.is_turn() {
+                if cycle.is_revolution() {
                     turns += 1;
                     assert!(turned > 0);
                     assert!((cycle.at(1.0).0 - cycle.at(0.0).0 - TAU).abs() < 1e-12);
@@ -324,7 +325,7 @@ fn the_shipped_linkage_is_driven_by_a_crank() {
     let linkage = compiled(&shipped("bennett-double-spherical-6r"));
     let crank = linkage.input("a1").unwrap();
     assert!(crank.range().is_full_turn());
-    assert!(crank.cycle().is_turn());
+    assert!(crank.cycle().is_revolution());
     assert!(linkage.input("b3").is_some() && linkage.input("j1").is_none());
     assert_eq!(linkage.imaginary().name, "tau.leg1");
     for i in 0..360 {

@@ -40,8 +40,8 @@ impl<'a> Closure<'a> {
     /// The difference between the platform's displacements by the two legs.
     fn residual(&self, joints: &[f64; 6]) -> Residual {
         let [one, two] = [0, 1].map(|i| &self.mechanism.legs[i]);
-        let error = one.displacement(&joints[..self.first]).inverse()
-            * two.displacement(&joints[self.first..]);
+        let error = one.displacement(&joints[..self.first]).unwrap().inverse()
+            * two.displacement(&joints[self.first..]).unwrap();
         let (turn, slide) = (error.rotation.scaled_axis(), error.translation.vector);
         Residual::from_iterator(turn.iter().chain(slide.iter()).copied())
     }

@@ -15,7 +15,8 @@ fn shipped() -> Mechanism {
 /// How far the platform by one leg is from the platform by the other, from the products of exponentials.
 fn gap(mechanism: &Mechanism, joints: &[f64]) -> f64 {
     let (one, two) = joints.split_at(mechanism.legs[0].coordinates().count());
-    let [one, two] = [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q));
+    let [one, two] =
+        [(0, one), (1, two)].map(|(leg, q)| mechanism.legs[leg].displacement(q).unwrap());
     (one.to_homogeneous() - two.to_homogeneous()).norm()
 }
 

@@ -30,8 +30,7 @@ fn lines_stay_lines() {
 /// Half a turn from line to line goes on the way that the lines say.
 #[test]
 fn half_turns_go_on() {
-    let text = examples::find("plano-spherical-5dof").unwrap().text;
-    let m = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+    let m = Manipulator::example("plano-spherical-5dof").unwrap();
     for sign in [1.0, -1.0] {
         let lines: Vec<String> =
             (0..5).map(|i| format!("{i},{:?}", sign * f64::from(i) * PI)).collect();

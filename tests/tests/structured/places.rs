@@ -56,7 +56,7 @@ fn mechanisms_are_the_same_anywhere() {
 /// How far what two bodies hold of a joint is apart, at worst: metres.
 fn torn(skeleton: &Skeleton, posture: &Configuration<'_>) -> f64 {
     let mut placed = Vec::new();
-    skeleton.place(posture, &mut placed);
+    skeleton.place(posture, &mut placed).unwrap();
     let mut frames: Vec<Isometry3<f64>> = Vec::new();
     for (body, g) in skeleton.bodies().iter().zip(&placed) {
         frames.push(body.parent.map_or(*g, |parent| frames[parent] * g));

@@ -168,10 +168,10 @@ impl Search<'_> {
         displacements: &[JointDisplacement; 3],
     ) -> f64 {
         let mut error = 0.0_f64;
-        for (slot, &displacement) in section.coordinates.iter().zip(displacements) {
-            if let Some(ChainCoordinate { number: coordinate, actuated: Some(drive) }) = *slot {
-                let (value, direction) = (self.displacements[drive], self.directions[drive]);
-                error = error.max(self.distance(coordinate, displacement, value, direction));
+        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
+            if let Some(ChainCoordinate { number, actuated: Some(actuated) }) = *coordinate {
+                let (value, direction) = (self.displacements[actuated], self.directions[actuated]);
+                error = error.max(self.distance(number, displacement, value, direction));
             }
         }
         error
@@ -186,10 +186,13 @@ impl Search<'_> {
             (&compiled.upper, &one.upper, &other.upper),
         ];
         sections.iter().all(|(section, one, other)| {
-            section.coordinates.iter().zip(one.iter().zip(*other)).all(|(slot, (one, other))| {
-                let Some(slot) = slot else { return true };
-                self.distance(slot.number, *one, other.value(), other.unit_direction()) < APART
-            })
+            section.coordinates.iter().zip(one.iter().zip(*other)).all(
+                |(coordinate, (one, other))| {
+                    let Some(coordinate) = coordinate else { return true };
+                    self.distance(coordinate.number, *one, other.value(), other.unit_direction())
+                        < APART
+                },
+            )
         })
     }
 

@@ -274,15 +274,13 @@ impl Newton<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{examples, file};
 
     /// Each step leaves the square of the error before it, times a constant of the mechanism.
     #[test]
     fn convergence_is_quadratic() {
         let mut squared = 0;
         for name in ["plano-spherical-5dof", "translational-planar-4dof", "planar-planar-5dof"] {
-            let text = examples::find(name).unwrap().text;
-            let m = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+            let m = Manipulator::example(name).unwrap();
             let home = m.task().home();
             for sign in [-1.0, 1.0] {
                 let aim: Vec<f64> = home.iter().map(|q| q + 0.02 * sign).collect();

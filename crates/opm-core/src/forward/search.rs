@@ -125,17 +125,17 @@ impl<'a> Search<'a> {
                     if legs.contains(&number) {
                         let tau = self.coupled_tau(number, functional);
                         known[number] = Some(tau);
-                        let cut = m.task().lower_intersection.displacement(tau);
+                        let along = m.task().lower_intersection.displacement(tau);
                         let own = held
                             .lower
                             .iter()
-                            .filter_map(|slot| self.lower_condition(number, *slot));
-                        conditions.extend(own.map(|c| c.before(&cut)));
+                            .filter_map(|joint| self.lower_condition(number, *joint));
+                        conditions.extend(own.map(|c| c.before(&along)));
                     } else if leg.split_section == Section::Lower {
                         let own = held
                             .lower
                             .iter()
-                            .filter_map(|slot| self.lower_condition(number, *slot));
+                            .filter_map(|joint| self.lower_condition(number, *joint));
                         conditions.extend(own);
                     }
                 }
@@ -154,36 +154,35 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The displacement of the joint in a slot; zero if that joint is not actuated.
-    fn displacement(&self, leg: usize, section: Section, slot: usize) -> JointDisplacement {
-        let slot = self.manipulator.legs[leg].section(section).coordinates[slot];
-        JointDisplacement::Value(
-            slot.and_then(|slot| slot.actuated).map_or(0.0, |drive| self.displacements[drive]),
-        )
+    /// The displacement of a joint of a leg's chain; zero if that joint is not actuated.
+    fn displacement(&self, leg: usize, section: Section, joint: usize) -> JointDisplacement {
+        let coordinate = self.manipulator.legs[leg].section(section).coordinates[joint];
+        let actuated = coordinate.and_then(|coordinate| coordinate.actuated);
+        JointDisplacement::Value(actuated.map_or(0.0, |number| self.displacements[number]))
     }
 
     /// The condition that an actuated joint of the lower section puts on `v`, or on `v · exp(I τ)`.
-    fn lower_condition(&self, leg: usize, slot: usize) -> Option<Condition> {
+    fn lower_condition(&self, leg: usize, joint: usize) -> Option<Condition> {
         let chain = &self.manipulator.legs[leg].lower.chain;
-        Condition::new(chain, slot, self.displacement(leg, Section::Lower, slot))
+        Condition::new(chain, joint, self.displacement(leg, Section::Lower, joint))
     }
 
     /// The track on which a leg keeps the axis of the intersection motion.
-    fn track(&self, leg: usize, slot: usize) -> Option<Track> {
+    fn track(&self, leg: usize, joint: usize) -> Option<Track> {
         let compiled = &self.manipulator.legs[leg];
         match compiled.split_section {
-            Section::Lower => Track::of_condition(&self.lower_condition(leg, slot)?),
+            Section::Lower => Track::of_condition(&self.lower_condition(leg, joint)?),
             Section::Upper => {
                 let displacements =
-                    [0, 1, 2].map(|slot| self.displacement(leg, Section::Lower, slot));
-                Track::of_chain(&compiled.lower.chain, slot, &displacements)
+                    [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
+                Track::of_chain(&compiled.lower.chain, joint, &displacements)
             }
         }
     }
 
     /// The displacement of the lower section of a leg whose lower joints are all actuated.
     fn actuated_lower_section(&self, leg: usize) -> Displacement {
-        let q = [0, 1, 2].map(|slot| self.displacement(leg, Section::Lower, slot));
+        let q = [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
         match &self.manipulator.legs[leg].lower.chain {
             Chain::Rigid => Displacement::Identity(()),
             Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
@@ -199,10 +198,10 @@ impl<'a> Search<'a> {
     /// The τ of one of several coupled legs, where the functional of `b` that couples them is zero.
     fn coupled_tau(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
         let held = self.plan.legs[leg].upper.first();
-        let driven = held.and_then(|&slot| {
+        let driven = held.and_then(|&joint| {
             let chain = &self.manipulator.legs[leg].upper.chain;
-            let [p, q] = flat_joints(chain)?[slot];
-            let value = self.displacement(leg, Section::Upper, slot).value();
+            let [p, q] = flat_joints(chain)?[joint];
+            let value = self.displacement(leg, Section::Upper, joint).value();
             Some(-(functional[0] * p + functional[1] * q) * value)
         });
         JointDisplacement::Value(driven.unwrap_or(0.0))
@@ -244,7 +243,7 @@ impl<'a> Search<'a> {
                     taus[leg] = options[leg][1];
                 }
             }
-            self.with_cuts(v, &taus);
+            self.with_taus(v, &taus);
         }
     }
 
@@ -254,8 +253,8 @@ impl<'a> Search<'a> {
         let (leg, held) = (&m.legs[number], &self.plan.legs[number]);
         match leg.split_section {
             Section::Upper => {
-                for &slot in &held.lower {
-                    let Some(condition) = self.lower_condition(number, slot) else { continue };
+                for &joint in &held.lower {
+                    let Some(condition) = self.lower_condition(number, joint) else { continue };
                     match along(&condition, v, &m.task().lower_intersection, m.closure.size) {
                         along::Solutions::At(taus) => return Taus::At(taus),
                         along::Solutions::None(deficit) => return Taus::None(deficit),
@@ -290,15 +289,15 @@ impl<'a> Search<'a> {
     }
 
     /// Finds `b` from the legs' conditions, with `v` and every τ known.
-    fn with_cuts(&mut self, v: &Displacement, taus: &[Option<JointDisplacement>]) {
+    fn with_taus(&mut self, v: &Displacement, taus: &[Option<JointDisplacement>]) {
         let m = self.manipulator;
         let upper = m.task().upper.kind;
         let mut conditions = Vec::with_capacity(2 * taus.len());
         let slider_angle = self.slider_angle(taus);
         for (number, (leg, tau)) in m.legs.iter().zip(taus).enumerate() {
             let chain = &leg.upper.chain;
-            let own = self.plan.legs[number].upper.iter().filter_map(|&slot| {
-                Condition::new(chain, slot, self.displacement(number, Section::Upper, slot))
+            let own = self.plan.legs[number].upper.iter().filter_map(|&joint| {
+                Condition::new(chain, joint, self.displacement(number, Section::Upper, joint))
             });
             match (leg.split_section, tau) {
                 (Section::Upper, Some(tau)) => {
@@ -318,8 +317,8 @@ impl<'a> Search<'a> {
                 }
                 (Section::Upper, None) => conditions.extend(own),
                 (Section::Lower, Some(tau)) => {
-                    let cut = m.task().upper_intersection.displacement(*tau);
-                    conditions.extend(own.map(|condition| condition.after(&cut)));
+                    let along = m.task().upper_intersection.displacement(*tau);
+                    conditions.extend(own.map(|condition| condition.after(&along)));
                 }
                 (Section::Lower, None) => {}
             }
@@ -351,9 +350,9 @@ impl<'a> Search<'a> {
     fn whole_turns(&self, leg: usize) -> f64 {
         let Chain::Planar(chain) = &self.manipulator.legs[leg].lower.chain else { return 0.0 };
         let joints = chain.joints();
-        let revolutions = |&slot: &usize| match joints[slot] {
+        let revolutions = |&joint: &usize| match joints[joint] {
             PlanarJoint::Revolute { reversed, .. } => {
-                let count = whole_turns(self.displacement(leg, Section::Lower, slot).value());
+                let count = whole_turns(self.displacement(leg, Section::Lower, joint).value());
                 if reversed { -count } else { count }
             }
             PlanarJoint::Prismatic { .. } => 0.0,
@@ -413,7 +412,8 @@ fn first_independent<G>(
     None
 }
 
-/// Whether a chain of the cut and one joint is a splined shaft: the cut rotates, and the joint only slides.
+/// Whether a chain of the imaginary joint and one other is a splined shaft: the imaginary joint rotates,
+/// and the other only slides.
 fn only_slides(chain: &Chain) -> bool {
     match chain {
         Chain::Cylindrical(chain) => {

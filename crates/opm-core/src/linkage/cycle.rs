@@ -68,7 +68,7 @@ impl Cycle {
     }
 
     /// Whether the input makes a full revolution.
-    pub fn is_turn(&self) -> bool {
+    pub fn is_revolution(&self) -> bool {
         matches!(self.shape, CycleShape::Revolution(_))
     }
 }

@@ -128,28 +128,30 @@ impl<'a> Input<'a> {
     ) -> bool {
         let linkage = self.linkage;
         let displacement = value - self.coordinate().home;
-        let Some([own, other]) = self.amounts(unit(displacement), branch) else { return false };
+        let Some([own, other]) = self.displacements(unit(displacement), branch) else {
+            return false;
+        };
         position.branch = branch;
         position.within_limits =
             linkage.limits[self.coordinate].admits(JointDisplacement::Value(displacement));
         position.joints[self.coordinate] = value;
-        let mut put = |coordinate: usize, amount: JointDisplacement| {
+        let mut put = |coordinate: usize, displacement: JointDisplacement| {
             let home = linkage.coordinates[coordinate].home;
             let held = held(coordinate, position).map(|held| held - home);
-            let (value, within) = linkage.limits[coordinate].place(amount, held);
+            let (value, within) = linkage.limits[coordinate].place(displacement, held);
             position.joints[coordinate] = home + value;
             position.within_limits &= within;
         };
-        for (i, &amount) in own.iter().enumerate() {
+        for (i, &displacement) in own.iter().enumerate() {
             let index = (self.loop_index + 1 + i) % 4;
             if index > 0 {
-                put(self.own().coordinates[index - 1], amount);
+                put(self.own().coordinates[index - 1], displacement);
             }
         }
-        for (&coordinate, amount) in self.other().coordinates.iter().zip(other) {
-            put(coordinate, amount);
+        for (&coordinate, displacement) in self.other().coordinates.iter().zip(other) {
+            put(coordinate, displacement);
         }
-        let tau = own[self.imaginary_amount()];
+        let tau = own[self.imaginary_index()];
         let tau = if linkage.reversed { tau.inverse() } else { tau };
         position.imaginary = linkage.imaginary.value(tau, imaginary);
         true
@@ -158,19 +160,19 @@ impl<'a> Input<'a> {
     /// The rotations of the three joints after the input in its loop, and of the three after the
     /// imaginary joint in the other loop.
     #[inline]
-    fn amounts(
+    fn displacements(
         &self,
         turn: Complex<f64>,
         branch: LinkageBranch,
     ) -> Option<[[JointDisplacement; 3]; 2]> {
         let own = self.own().four_bar.driven_by(self.loop_index).solve(turn, branch.first).ok()?;
-        let tau = own[self.imaginary_amount()].unit_direction();
+        let tau = own[self.imaginary_index()].unit_direction();
         let other = self.other().four_bar.driven_by(0).solve(tau, branch.second).ok()?;
         Some([own, other])
     }
 
     /// The index of the imaginary joint among the joints after the input.
-    pub(super) fn imaginary_amount(&self) -> usize {
+    pub(super) fn imaginary_index(&self) -> usize {
         3 - self.loop_index
     }
 

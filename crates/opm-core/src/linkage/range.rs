@@ -13,7 +13,7 @@ use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// Values of the input that differ by less than this are equal. Two roots that meet differ by the
-/// square root of their rounding, and a gap as small as this cannot be distinguished from none.
+/// square root of their rounding, and a difference as small as this cannot be distinguished from zero.
 const SAME: f64 = 1e-12;
 
 /// The reported values of the input at which the loop closes, modulo 2π. Isolated values, with no
@@ -148,9 +148,11 @@ impl Input<'_> {
             .collect();
         for tau in self.other().four_bar.driven_by(0).dead_points() {
             for branch in Branch::BOTH {
-                if let Ok(amounts) = own.driven_by(0).solve(tau, branch) {
-                    folds
-                        .push((angle(amounts[self.loop_index - 1].unit_direction()), Fold::Second));
+                if let Ok(displacements) = own.driven_by(0).solve(tau, branch) {
+                    folds.push((
+                        angle(displacements[self.loop_index - 1].unit_direction()),
+                        Fold::Second,
+                    ));
                 }
             }
         }
@@ -162,8 +164,8 @@ impl Input<'_> {
     /// Whether both four-bars close at this rotation of the input.
     fn closes(&self, rotation: Complex<f64>, first: Branch) -> bool {
         let own = self.own().four_bar.driven_by(self.loop_index).solve(rotation, first);
-        own.is_ok_and(|amounts| {
-            let tau = amounts[self.imaginary_amount()].unit_direction();
+        own.is_ok_and(|displacements| {
+            let tau = displacements[self.imaginary_index()].unit_direction();
             self.other().four_bar.driven_by(0).closes(tau)
         })
     }

@@ -77,6 +77,28 @@ pub struct Joint {
     pub coordinates: Vec<JointCoordinate>,
 }
 
+/// The number of values differs from the number of coordinates of a joint, a leg or a mechanism.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name}: the number of values is {given}, expected {expected}, one for each coordinate")]
+#[non_exhaustive]
+pub struct ValueCountError {
+    /// The name of the joint or the leg; for a mechanism, which of its joints the values are for.
+    pub name: String,
+    /// The number of values.
+    pub given: usize,
+    /// The number of coordinates.
+    pub expected: usize,
+}
+
+impl ValueCountError {
+    pub(crate) fn check(name: &str, values: &[f64], expected: usize) -> Result<(), Self> {
+        match values.len() {
+            given if given == expected => Ok(()),
+            given => Err(Self { name: name.to_owned(), given, expected }),
+        }
+    }
+}
+
 impl Joint {
     /// Builds a passive joint without limits. Its coordinates are zero at home.
     pub fn new(
@@ -153,19 +175,23 @@ impl Joint {
     /// as reported, so they include the home values. The three values of a spherical joint are one
     /// rotation vector.
     ///
-    /// # Panics
-    /// If `values` is not as long as [`Joint::coordinates`].
-    pub fn displacement(&self, values: &[f64]) -> Isometry3<f64> {
-        assert_eq!(values.len(), self.coordinates.len(), "joint {}: coordinates", self.name);
+    /// # Errors
+    /// `values` is not as long as [`Joint::coordinates`].
+    pub fn displacement(&self, values: &[f64]) -> Result<Isometry3<f64>, ValueCountError> {
+        ValueCountError::check(&self.name, values, self.coordinates.len())?;
+        Ok(self.moved_to(values))
+    }
+
+    /// The displacement for as many values as there are coordinates.
+    pub(super) fn moved_to(&self, values: &[f64]) -> Isometry3<f64> {
         let from_home = |i: usize| values[i] - self.coordinates[i].home;
         if self.kind == JointKind::Spherical {
             let rotation = UnitQuaternion::from_scaled_axis(Vector3::from_fn(|i, _| from_home(i)));
             let p = self.point.coords;
             return Isometry3::from_parts(Translation3::from(p - rotation * p), rotation);
         }
-        self.screws()
-            .iter()
-            .enumerate()
-            .fold(Isometry3::identity(), |g, (i, screw)| g * screw.exp(from_home(i)))
+        let screws = self.screws();
+        let motions = screws.iter().enumerate().map(|(i, screw)| screw.exp(from_home(i)));
+        motions.fold(Isometry3::identity(), |g, motion| g * motion)
     }
 }

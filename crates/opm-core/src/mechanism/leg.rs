@@ -1,7 +1,7 @@
 //! A leg: joints in series from the base to the platform.
 
 use crate::group::screw::Screw;
-use crate::mechanism::joint::{Joint, JointCoordinate};
+use crate::mechanism::joint::{Joint, JointCoordinate, ValueCountError};
 use nalgebra::{Isometry3, Vector3};
 use std::fmt;
 
@@ -18,6 +18,20 @@ pub struct ImaginaryLabel {
 }
 
 /// A leg: joints in series from the base to the platform, at the assembled home pose.
+///
+/// ```
+/// use opm_core::nalgebra::{Point3, Vector3};
+/// use opm_core::{Joint, JointKind, Leg};
+///
+/// // A crank that rotates about z, and carries a slider along the crank.
+/// let crank = Joint::new("r1", JointKind::Revolute, Vector3::z_axis(), Point3::origin());
+/// let slider = Joint::new("S1", JointKind::Prismatic, Vector3::x_axis(), Point3::origin());
+/// let leg = Leg::new("leg1", vec![crank.actuated(), slider]);
+///
+/// let moved = leg.displacement(&[90_f64.to_radians(), 0.2])? * Point3::origin();
+/// assert!((moved - Point3::new(0.0, 0.2, 0.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Leg {
@@ -58,15 +72,16 @@ impl Leg {
     /// The platform's displacement from home for the joint coordinates of this leg. It is the
     /// product of exponentials of the leg's joints and uses no decomposition.
     ///
-    /// # Panics
-    /// If there are fewer values than [`Leg::coordinates`].
-    pub fn displacement(&self, values: &[f64]) -> Isometry3<f64> {
+    /// # Errors
+    /// There are not as many values as [`Leg::coordinates`].
+    pub fn displacement(&self, values: &[f64]) -> Result<Isometry3<f64>, ValueCountError> {
+        ValueCountError::check(&self.name, values, self.coordinates().count())?;
         let mut rest = values;
-        self.joints.iter().fold(Isometry3::identity(), |g, joint| {
-            let (own, after) = rest.split_at(joint.freedoms());
+        Ok(self.joints.iter().fold(Isometry3::identity(), |g, joint| {
+            let (own, after) = rest.split_at(joint.coordinates.len());
             rest = after;
-            g * joint.displacement(own)
-        })
+            g * joint.moved_to(own)
+        }))
     }
 }
 
@@ -86,5 +101,28 @@ impl fmt::Display for Section {
             Self::Lower => "lower",
             Self::Upper => "upper",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::joint::JointKind;
+    use nalgebra::Point3;
+
+    /// Too few and too many values are an error that names the leg.
+    #[test]
+    fn a_displacement_needs_a_value_for_each_coordinate() {
+        let ball = Joint::new("s", JointKind::Spherical, Vector3::z_axis(), Point3::origin());
+        let leg = Leg { name: "leg1".to_owned(), joints: vec![ball], imaginary: None };
+        assert_eq!(leg.displacement(&[0.0; 3]), Ok(Isometry3::identity()));
+        for given in [0, 2, 4] {
+            let error = leg.displacement(&vec![0.0; given]).unwrap_err().to_string();
+            let expected = format!(
+                "leg1: the number of values is {given}, expected 3, one for each coordinate"
+            );
+            assert_eq!(error, expected);
+            assert!(leg.joints[0].displacement(&vec![0.0; given]).is_err());
+        }
     }
 }

@@ -24,6 +24,7 @@ pub struct ScrewJoint {
 
 /// Why six numbers are not the screw of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScrewError {
     /// All six components are zero.
     #[error("all six components are zero, expected the twist (omega; v) of a joint")]

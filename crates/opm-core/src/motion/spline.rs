@@ -51,7 +51,7 @@ struct Column {
 #[non_exhaustive]
 pub enum SplineError {
     /// There are too few knots.
-    #[error("{0} times given, expected at least {FEWEST}")]
+    #[error("{0} {noun} given, expected at least {FEWEST}", noun = if *.0 == 1 { "time" } else { "times" })]
     TooFew(usize),
     /// The times do not increase.
     #[error("the times do not increase")]

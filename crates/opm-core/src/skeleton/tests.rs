@@ -45,7 +45,7 @@ fn at_home_frames_stand_at_their_origins() {
         let platform = Isometry3::identity();
         let configuration = Configuration { joints: &joints, imaginary: &imaginary, platform };
         let mut placed = Vec::new();
-        skeleton.place(&configuration, &mut placed);
+        skeleton.place(&configuration, &mut placed).unwrap();
         for (body, g) in skeleton.bodies().iter().zip(absolute(&skeleton, &placed)) {
             assert!((g.translation.vector - body.origin.coords).norm() < ROUNDING, "{}", body.name);
             assert!(g.rotation.angle() < ROUNDING, "{}", body.name);
@@ -85,7 +85,7 @@ fn what_shares_a_joint_stays_together() {
             reached += 1;
             let platform = manipulator.task().displacement(&pose);
             let (joints, imaginary) = (&solution.joints, &solution.imaginary);
-            skeleton.place(&Configuration { joints, imaginary, platform }, &mut placed);
+            skeleton.place(&Configuration { joints, imaginary, platform }, &mut placed).unwrap();
             let frames = absolute(&skeleton, &placed);
             let mut seats: Vec<(&Seat, Isometry3<f64>)> = Vec::new();
             for (body, g) in skeleton.bodies().iter().zip(&frames) {

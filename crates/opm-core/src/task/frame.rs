@@ -60,7 +60,8 @@ pub(super) fn lay(
             let on_axis = point + line.into_inner() * line.dot(&(reference - point));
             let hinted = match hints.axis {
                 Some(hint) if hint.dot(line) < 0.0 => -*line,
-                Some(_) | None => *line,
+                Some(_) => *line,
+                None => upward(*line),
             };
             (SubspaceKind::Cylindrical, on_axis, meeting.third(hinted))
         }

@@ -16,11 +16,11 @@ use nalgebra::DMatrix;
 const SHORT: f64 = 1e-6;
 
 /// Which joints of a leg's section are its inputs, which are held when the section is locked: the actuated
-/// joints, and the cut if the section takes it as an input.
+/// joints, and the imaginary joint if the section takes it as an input.
 pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     let compiled = leg.section(section);
     let mut inputs =
-        compiled.coordinates.map(|slot| slot.is_some_and(|slot| slot.actuated.is_some()));
+        compiled.coordinates.map(|joint| joint.is_some_and(|joint| joint.actuated.is_some()));
     if let Some(joint) = leg.imaginary_joint() {
         inputs[joint] |= match (leg.split_section, section) {
             (Section::Upper, Section::Upper) => true,
@@ -126,10 +126,10 @@ fn constraints_of_passive(
     }
 }
 
-/// The unit of a rate along the cut: one radian or the characteristic length. If the cut swings the last link
+/// The unit of a rate along the intersection motion: one radian or the characteristic length. If that motion swings the last link
 /// of a planar section, from the leg's last pivot to the axis, it is the angle by which the end of that link
 /// moves one characteristic length.
-pub(super) fn cut_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f64) -> f64 {
+pub(super) fn along_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: f64) -> f64 {
     if !motion.is_rotation() {
         return length;
     }

@@ -48,14 +48,14 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Jacobians {
-    /// `J_s` (Eqs. 8-9): rates along the cuts from the upper section's twist. It has a row for every leg
-    /// that is cut in its upper section ([`Jacobians::bridged`]), with the sign of the leg's imaginary joint
+    /// `J_s` (Eqs. 8-9): rates along the intersection motion from the upper section's twist. It has a row for every leg
+    /// that is split in its upper section ([`Jacobians::bridged`]), with the sign of the leg's imaginary joint
     /// if it has one. These rates are relative to a lower section that does not move along the intersection
     /// motion. Some task coordinates make it do so (`mu nu` of a tilt, `w phi` of an upper plane). The rate
     /// that is reported, [`JointMotion::imaginary_rates`](super::JointMotion), then includes that motion.
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`]) from
-    /// the rates along the cuts, in the order of the rows of [`Jacobians::upper`], and the lower section's
+    /// the rates along the intersection motion, in the order of the rows of [`Jacobians::upper`], and the lower section's
     /// twist.
     pub lower: DMatrix<f64>,
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
@@ -69,7 +69,7 @@ pub struct Jacobians {
     pub platform: Matrix6xX<f64>,
     /// The legs with joints that have no rates. The rows of these joints are zeros without a meaning.
     pub singular: Vec<SingularLeg>,
-    /// The numbers of the legs that are cut in their upper section: the rows of [`Jacobians::upper`].
+    /// The numbers of the legs that are split in their upper section: the rows of [`Jacobians::upper`].
     pub bridged: Vec<usize>,
     /// The numbers of the joint coordinates that are rows of [`Jacobians::lower`], ascending.
     pub lower_rows: Vec<usize>,
@@ -84,17 +84,17 @@ pub struct Jacobians {
     /// The displacement of the lower section.
     pub(super) v: Displacement,
     /// Every leg's displacement along the intersection motion.
-    pub(super) cuts: Vec<JointDisplacement>,
+    pub(super) taus: Vec<JointDisplacement>,
 }
 
 /// The unit twists that are the components of the section twist.
 #[derive(Clone, Debug)]
 struct Basis {
-    /// Those of the upper section, in its frame.
+    /// The components of the upper section, in its frame.
     upper: [LocalTwist; 3],
-    /// Those of the lower section, in its frame.
+    /// The components of the lower section, in its frame.
     lower: [LocalTwist; 3],
-    /// The numbers of upper and of lower ones; the rest are zeros.
+    /// The numbers of upper and of lower components; the rest are zeros.
     counts: [usize; 2],
     /// The same twists in base coordinates, upper ones first.
     in_base: Vec<BaseTwist>,
@@ -178,8 +178,8 @@ impl Manipulator {
                 bridges[number] = Some(bridged.len());
                 bridged.push(number);
             }
-            let slots = leg.lower.coordinates.iter().flatten();
-            lower_rows.extend(slots.filter(|s| s.actuated.is_some()).map(|s| s.number));
+            let coordinates = leg.lower.coordinates.iter().flatten();
+            lower_rows.extend(coordinates.filter(|c| c.actuated.is_some()).map(|c| c.number));
         }
         lower_rows.sort_unstable();
         let joints = self.coordinates().len();
@@ -204,7 +204,7 @@ impl Manipulator {
             basis,
             legs: (0..self.legs.len()).map(|number| self.leg_differential(&home, number)).collect(),
             v: home.solved.v,
-            cuts: home.legs.iter().map(|leg| leg.tau).collect(),
+            taus: home.legs.iter().map(|leg| leg.tau).collect(),
         }
     }
 
@@ -231,7 +231,7 @@ impl Manipulator {
                 self.clear_rows(number, out);
             }
             out.legs[number] = differential;
-            out.cuts[number] = at.legs[number].tau;
+            out.taus[number] = at.legs[number].tau;
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
@@ -244,9 +244,9 @@ impl Manipulator {
             out.upper.row_mut(bridge).fill(0.0);
         }
         let leg = &self.legs[number];
-        for slot in leg.lower.coordinates.iter().chain(&leg.upper.coordinates).flatten() {
-            out.joints.row_mut(slot.number).fill(0.0);
-            if let Some(row) = out.driven[slot.number] {
+        for coordinate in leg.lower.coordinates.iter().chain(&leg.upper.coordinates).flatten() {
+            out.joints.row_mut(coordinate.number).fill(0.0);
+            if let Some(row) = out.driven[coordinate.number] {
                 out.lower.row_mut(row).fill(0.0);
             }
         }
@@ -266,15 +266,15 @@ impl Manipulator {
         let leg = &self.legs[number];
         let sign = leg.imaginary.map_or(1.0, |i| self.imaginary()[i].sign);
         let [n_upper, n_lower] = out.basis.counts;
-        // Rates along the cut for each component of the section twist. In the section that is solved second,
+        // Rates along the intersection motion for each component of the section twist. In the section that is solved second,
         // they add to the twist: `carried` is the twist of a unit rate.
-        let mut cut = [0.0; 6];
+        let mut along = [0.0; 6];
         let (upper_twists, carried) = match leg.split_section {
             Section::Upper => {
                 if let Some(bridge) = out.bridges[number] {
                     for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
-                        cut[i] = upper.rate(0, twist);
-                        out.upper[(bridge, i)] = sign * cut[i];
+                        along[i] = upper.rate(0, twist);
+                        out.upper[(bridge, i)] = sign * along[i];
                     }
                 }
                 (out.basis.upper, moved.along)
@@ -282,7 +282,7 @@ impl Manipulator {
             Section::Lower => {
                 let last = leg.lower.chain.freedoms() - 1;
                 for (i, twist) in moved.lower.iter().enumerate() {
-                    cut[n_upper + i] = lower.rate(last, twist);
+                    along[n_upper + i] = lower.rate(last, twist);
                 }
                 let inverse = tau.inverse();
                 let carried = |twist: LocalTwist| task.upper_intersection.adjoint(inverse, &twist);
@@ -298,15 +298,15 @@ impl Manipulator {
                 Section::Upper => (&upper_twists, 0),
                 Section::Lower => (&moved.lower, n_upper),
             };
-            for (slot, joint) in compiled.coordinates.iter().zip(0..) {
-                let Some(slot) = slot else { continue };
-                let row = slot.number;
-                let by_cut = if section == leg.split_section {
+            for (coordinate, joint) in compiled.coordinates.iter().zip(0..) {
+                let Some(coordinate) = coordinate else { continue };
+                let row = coordinate.number;
+                let by_along = if section == leg.split_section {
                     0.0
                 } else {
                     differential.rate(joint, &carried)
                 };
-                let mut rates = cut.map(|cut| by_cut * cut);
+                let mut rates = along.map(|rate| by_along * rate);
                 for (i, twist) in own.iter().enumerate() {
                     rates[start + i] += differential.rate(joint, twist);
                 }
@@ -319,11 +319,11 @@ impl Manipulator {
                     continue;
                 };
                 if let Some(bridge) = out.bridges[number] {
-                    out.lower[(row, bridge)] = sign * by_cut;
+                    out.lower[(row, bridge)] = sign * by_along;
                 }
                 let entries = &mut out.lower.as_mut_slice()[bridges * rows..];
                 for i in 0..n - n_upper {
-                    // For a leg that is cut in its upper section, the rate along the cut has a column of its
+                    // For a leg that is split in its upper section, the rate along the intersection motion has a column of its
                     // own, and does not depend on the lower section's twist.
                     entries[i * rows + row] = rates[n_upper + i];
                 }

@@ -36,7 +36,7 @@ impl Differential {
         vector: impl FnOnce(usize) -> LocalTwist,
     ) -> Self {
         if let Chain::Ball(ball) = &section.chain {
-            let first = section.coordinates[0].map_or(0, |slot| slot.number);
+            let first = section.coordinates[0].map_or(0, |coordinate| coordinate.number);
             let vector = RotationVector::new(ball.axes.tr_mul(&vector(first)));
             let rows = ball.axes * vector.angular_velocity_to_rates();
             let reciprocal = if vector.is_singular() {

@@ -21,7 +21,7 @@
 //! signs themselves depend on the directions of the sections' frames.
 
 use super::Jacobians;
-use super::closure::{cut_unit, inputs, row_unit, section_rows, twist_unit, volume};
+use super::closure::{along_unit, inputs, row_unit, section_rows, twist_unit, volume};
 use crate::group::LocalTwist;
 use crate::manipulator::{Manipulator, Section};
 use crate::numeric::svd::Svd;
@@ -88,7 +88,7 @@ pub struct Singularities {
     /// (`sin xi` for Euler angles, `cos nu` for a tilt). The mechanism is not singular there.
     pub coordinates: f64,
     /// The closure of both sections with the inputs locked. It has a row for each input, those of the lower
-    /// section first. The columns are the rates along the cuts, then the components of the lower section's
+    /// section first. The columns are the rates along the intersection motion, then the components of the lower section's
     /// twist, then those of the upper section's.
     closure: DMatrix<f64>,
     /// The rows and columns of the closure.
@@ -109,10 +109,10 @@ pub struct Cause {
 /// The rows and columns of the closure.
 #[derive(Clone, Debug)]
 struct Layout {
-    /// For each leg, the column of the rate along its cut; `None` if the sections do not move along it.
-    cuts: Vec<Option<usize>>,
-    /// The number of columns for the cuts.
-    cut_count: usize,
+    /// For each leg, the column of the rate along the intersection motion; `None` if the sections do not move along it.
+    along: Vec<Option<usize>>,
+    /// The number of those columns.
+    along_count: usize,
     /// The components of the lower section's twist, in its frame.
     lower_basis: Vec<LocalTwist>,
     /// The components of the upper section's twist, in its frame.
@@ -127,18 +127,18 @@ impl Layout {
     fn new(manipulator: &Manipulator) -> Self {
         let task = manipulator.task();
         let legs = &manipulator.legs;
-        let mut cut_count = 0;
-        let cuts: Vec<_> = legs
+        let mut along_count = 0;
+        let along: Vec<_> = legs
             .iter()
             .map(|leg| {
                 let moves = match leg.split_section {
                     Section::Upper => leg.imaginary.is_some(),
-                    // The lower section passes the cut on to an upper section that has an actuated joint.
+                    // The lower section passes that motion on to an upper section that has an actuated joint.
                     Section::Lower => leg.upper.driven,
                 };
                 moves.then(|| {
-                    cut_count += 1;
-                    cut_count - 1
+                    along_count += 1;
+                    along_count - 1
                 })
             })
             .collect();
@@ -156,12 +156,12 @@ impl Layout {
         let lower_rows = rows_of(Section::Lower).count();
         let rows = rows_of(Section::Lower).chain(rows_of(Section::Upper)).collect();
         let upper_basis = task.upper.kind.basis();
-        Self { cuts, cut_count, lower_basis, upper_basis, rows, lower_rows }
+        Self { along, along_count, lower_basis, upper_basis, rows, lower_rows }
     }
 
-    /// The number of columns of the lower section: the cuts and the section's own twist.
+    /// The number of columns of the lower section: those of the intersection motion, and the section's own twist.
     fn lower_columns(&self) -> usize {
-        self.cut_count + self.lower_basis.len()
+        self.along_count + self.lower_basis.len()
     }
 }
 
@@ -246,9 +246,9 @@ impl Manipulator {
             numbers.map(|(number, _)| number).collect::<Vec<_>>()
         };
         let moving = involved(weakest(block.into_owned()).as_slice());
-        let is_cut = |column: &usize| section == Section::Lower && *column < layout.cut_count;
-        let mut causes: Vec<Cause> = if moving.iter().all(is_cut) {
-            let of = |column: &usize| layout.cuts.iter().position(|cut| *cut == Some(*column));
+        let is_along = |column: &usize| section == Section::Lower && *column < layout.along_count;
+        let mut causes: Vec<Cause> = if moving.iter().all(is_along) {
+            let of = |column: &usize| layout.along.iter().position(|along| *along == Some(*column));
             moving.iter().filter_map(of).map(|leg| Cause { leg, section }).collect()
         } else if block.nrows() == block.ncols() {
             let dependent = involved(weakest(block.transpose()).as_slice());
@@ -261,7 +261,7 @@ impl Manipulator {
     }
 
     /// Computes the closure.
-    fn fill_closure(&self, Jacobians { legs, v, cuts, .. }: &Jacobians, out: &mut Singularities) {
+    fn fill_closure(&self, Jacobians { legs, v, taus, .. }: &Jacobians, out: &mut Singularities) {
         let Singularities { closure, layout, .. } = out;
         closure.fill(0.0);
         let task = self.task();
@@ -273,19 +273,19 @@ impl Manipulator {
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let kind = task.lower.kind;
             let (rows, count) = section_rows(leg, Section::Lower, &differential.lower, length);
-            let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
+            let unit = along_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
-                if let Some(column) = layout.cuts[number] {
+                if let Some(column) = layout.along[number] {
                     closure[(row, column)] = match leg.split_section {
-                        Section::Upper => cut * w.dot(&along),
+                        Section::Upper => unit * w.dot(&along),
                         Section::Lower => {
                             let last = leg.lower.chain.freedoms() - 1;
-                            -cut * w.dot(&differential.lower.screws.moved[last])
+                            -unit * w.dot(&differential.lower.screws.moved[last])
                         }
                     };
                 }
                 for (i, twist) in layout.lower_basis.iter().enumerate() {
-                    closure[(row, layout.cut_count + i)] =
+                    closure[(row, layout.along_count + i)] =
                         w.dot(&v.adjoint(twist)) * twist_unit(kind, twist, length);
                 }
                 row += 1;
@@ -294,19 +294,19 @@ impl Manipulator {
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let (rows, count) = section_rows(leg, Section::Upper, &differential.upper, length);
             let kind = task.upper.kind;
-            let cut = cut_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
+            let unit = along_unit(leg, task.lower_intersection, length) / row_unit(kind, length);
             for w in &rows[..count] {
-                if let Some(column) = layout.cuts[number] {
+                if let Some(column) = layout.along[number] {
                     closure[(row, column)] = match leg.split_section {
-                        Section::Upper => -cut * w.dot(&upper_along),
-                        Section::Lower => cut * w.dot(&upper_along),
+                        Section::Upper => -unit * w.dot(&upper_along),
+                        Section::Lower => unit * w.dot(&upper_along),
                     };
                 }
                 for (i, twist) in layout.upper_basis.iter().enumerate() {
                     let carried = match leg.split_section {
                         Section::Upper => *twist,
                         Section::Lower => {
-                            let inverse = cuts[number].inverse();
+                            let inverse = taus[number].inverse();
                             task.upper_intersection.adjoint(inverse, twist)
                         }
                     };

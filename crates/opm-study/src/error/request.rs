@@ -69,11 +69,11 @@ pub enum SetPart {
 ///
 /// let error = RequestError::NoImaginaryJoints { kind: WorkspaceKind::Imaginary };
 /// assert_eq!(error.option(), RequestOption::Kind);
-/// let told = error.problem(|option| match option {
+/// let problem = error.problem(|option| match option {
 ///     RequestOption::Kind => "--kind",
 ///     other => other.name(),
 /// });
-/// assert_eq!(told, "with --kind imaginary: this mechanism has no imaginary joints");
+/// assert_eq!(problem, "with --kind imaginary: this mechanism has no imaginary joints");
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]
@@ -214,8 +214,8 @@ impl RequestError {
                 format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
             }
             Self::UnusedLength => format!(
-                "there is no condition number that it would be of; {}, {} or {} \
-                 {INVERSE_CONDITION} ask for one",
+                "no condition number uses it; {}, {} or {} {INVERSE_CONDITION} \
+                 asks for one",
                 spell(RequestOption::MaxCondition),
                 spell(RequestOption::Conditioning),
                 spell(RequestOption::Scalars),
@@ -247,8 +247,8 @@ impl RequestError {
             Self::UnknownColumn { name, kind, known, .. } => {
                 let known = known.join(", ");
                 match kind.is_of_poses() {
-                    true => format!("{name:?} is none of {known}"),
-                    false => format!("{name:?} with {}: none of {known}", with(kind)),
+                    true => format!("{name:?} is not one of {known}"),
+                    false => format!("{name:?} with {}: not one of {known}", with(kind)),
                 }
             }
             Self::UnknownCoordinate { name, known } => {
@@ -278,7 +278,7 @@ impl RequestError {
             Self::KindIsMcap { path, kind } => mcap_only(path, &with(kind)),
             Self::ContentIsMcap { path, content } => mcap_only(path, content),
             Self::TooManySlices { part: SetPart::Slices, given, axis, most } => format!(
-                "{} slices, one a value of {axis}, expected at most {}",
+                "{} slices, one for each value of {axis}, expected at most {}",
                 count(*given),
                 count(*most)
             ),

@@ -23,16 +23,16 @@ pub enum ShardProblem {
     #[error("not a shard of a workspace")]
     NoShard,
     /// It ends before its description.
-    #[error("cut short, before it says which shard it is: sweep that one again")]
+    #[error("cut short before it says which shard it is: sweep that shard again")]
     CutShortEarly,
     /// It is incomplete.
     #[error("cut short: sweep this shard again")]
     CutShort,
     /// It lacks data that every shard has.
-    #[error("not a shard that this program knows")]
+    #[error("not a shard of this program: it lacks data that every shard has")]
     UnknownShard,
     /// Its description does not fit its mechanism.
-    #[error("not a run that this program knows")]
+    #[error("the description of its run does not fit its mechanism")]
     UnknownRun,
     /// Another version of the program wrote it, and may have other counts.
     #[error("written by {by}, but this is {this}")]
@@ -75,7 +75,7 @@ pub enum ShardProblem {
     #[error("a shard of another run: its mechanism file differs")]
     OtherMechanism,
     /// It has an invalid range of an imaginary joint.
-    #[error("a range of {text:?}")]
+    #[error("the range of an imaginary joint is {text:?}, expected MIN:MAX")]
     Range {
         /// The range.
         text: String,
@@ -84,7 +84,7 @@ pub enum ShardProblem {
     #[error("its conditioning index is not that of its poses")]
     Conditioning,
     /// Its poses do not agree with its description.
-    #[error("its poses are not those that it says")]
+    #[error("its poses do not agree with its description")]
     Poses,
     /// Its total number of parts differs from that of the first file.
     #[error("shard {shard}, but {} is {first}", file.display())]
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(missing(&[2, 3, 7], 8), [[1, 1], [4, 6], [8, 8]]);
         assert_eq!(missing(&[1], 1_000_000), [[2, 1_000_000]]);
         assert_eq!(missing(&[1, 2], 2), [[0; 2]; 0]);
-        let told = MissingShards::new(&[2, 3, 7].into(), 8).to_string();
-        assert_eq!(told, "5 of 8 shards are missing: 1,4-6,8");
+        let message = MissingShards::new(&[2, 3, 7].into(), 8).to_string();
+        assert_eq!(message, "5 of 8 shards are missing: 1,4-6,8");
     }
 }

@@ -55,7 +55,9 @@ pub fn record_linkage(
         let time = u64::from(number) * ROUND / steps;
         let (joints, imaginary) = (&position.joints, &[position.imaginary]);
         let frames = if recorder.shows(time) {
-            let platform = mechanism.legs[0].displacement(joints);
+            let leg = &mechanism.legs[0];
+            let own = &joints[..leg.coordinates().count()];
+            let platform = leg.displacement(own).expect("a position has a value for every joint");
             scene.frames(&core::Configuration { joints, imaginary, platform })
         } else {
             &[]
@@ -68,7 +70,7 @@ pub fn record_linkage(
     let result = record([
         ("positions", summary.positions.to_string()),
         ("within_limits", summary.within_limits.to_string()),
-        ("turns", summary.is_turn.to_string()),
+        ("turns", summary.is_revolution.to_string()),
     ]);
     recorder.finish(&result).map_err(failed)?;
     Ok(summary)

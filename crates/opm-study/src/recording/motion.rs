@@ -123,10 +123,10 @@ impl<'a> MotionRecorder<'a> {
         self.measures.push(sample.condition);
         for (parallel, measures) in self.parallel.into_iter().zip([sample.upper, sample.lower]) {
             // Out of reach the measures are not defined; plots show a gap.
-            let told = |measure: f64| if sample.reached { measure } else { f64::NAN };
-            self.measures.push(told(measures.serial));
+            let defined = |measure: f64| if sample.reached { measure } else { f64::NAN };
+            self.measures.push(defined(measures.serial));
             if parallel {
-                self.measures.push(told(measures.parallel.unwrap_or_default()));
+                self.measures.push(defined(measures.parallel.unwrap_or_default()));
             }
         }
         let recorded = Recorded {
@@ -201,22 +201,22 @@ fn recorded<'a>(
 }
 
 /// Keys and values of a violation, the same in JSON and in a recording.
-pub fn violation_fields(told: &ViolationReport<'_>) -> Vec<(&'static str, Value)> {
-    let Violation { start, end, worst, amount, .. } = *told.violation;
+pub fn violation_fields(report: &ViolationReport<'_>) -> Vec<(&'static str, Value)> {
+    let Violation { start, end, worst, amount, .. } = *report.violation;
     let mut fields = vec![
-        ("kind", json!(told.kind)),
+        ("kind", json!(report.kind)),
         ("start", json!(start)),
         ("end", json!(end)),
         ("worst", json!(worst)),
         ("amount", json!(amount)),
-        ("unit", json!(told.unit())),
+        ("unit", json!(report.unit())),
     ];
     let words = [
-        ("leg", told.leg.map(String::from)),
-        ("joint", told.joint.map(String::from)),
-        ("section", told.section.map(|section| section.to_string())),
-        ("bound", told.bound.map(|bound| bound.name().to_owned())),
-        ("singularity", told.singularity().map(String::from)),
+        ("leg", report.leg.map(String::from)),
+        ("joint", report.joint.map(String::from)),
+        ("section", report.section.map(|section| section.to_string())),
+        ("bound", report.bound.map(|bound| bound.name().to_owned())),
+        ("singularity", report.singularity().map(String::from)),
     ];
     fields.extend(words.into_iter().filter_map(|(key, word)| Some((key, json!(word?)))));
     fields

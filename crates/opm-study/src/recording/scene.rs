@@ -43,7 +43,8 @@ impl Scene {
 
     /// The poses of all bodies except the base.
     pub fn frames(&mut self, posture: &Configuration<'_>) -> &[Frame] {
-        self.skeleton.place(posture, &mut self.placed);
+        let placed = self.skeleton.place(posture, &mut self.placed);
+        placed.expect("the posture is of the skeleton's mechanism");
         self.frames.clear();
         self.frames.extend(self.placed.iter().skip(1).map(|g| {
             let q = g.rotation.coords;

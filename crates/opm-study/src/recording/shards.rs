@@ -30,7 +30,7 @@ impl Shards {
             Some(program) if program == PROGRAM => Ok(Self { parts }),
             // Another program may count or record differently.
             other => {
-                let by = other.map_or("nobody", |program| program).to_owned();
+                let by = other.map_or("an unknown program", |program| program).to_owned();
                 Err(first.wrong(ShardProblem::Program { by, this: PROGRAM }).into())
             }
         }

@@ -77,7 +77,7 @@ fn the_option_that_is_wrong_is_named() {
         (
             points(color),
             RequestOption::Color,
-            "\"w\" is none of x, y, zeta, xi, psi, theta11, theta12, theta13, S1, S2, S3, phi14, \
+            "\"w\" is not one of x, y, zeta, xi, psi, theta11, theta12, theta13, S1, S2, S3, phi14, \
              phi24, inverse_condition",
         ),
     ] {
@@ -91,11 +91,11 @@ fn the_option_that_is_wrong_is_named() {
 fn names_of_places_are_those_of_their_kind() {
     let points = PointOptions { scalars: Some(vec!["S1".to_owned()]), ..Default::default() };
     let error = wrong(WorkspaceRequest::new(Kind::Dexterous).points(points));
-    let told = error.problem(|option| match option {
+    let problem = error.problem(|option| match option {
         RequestOption::Kind => "--kind",
         other => other.name(),
     });
-    assert_eq!(told, "\"S1\" with --kind dexterous: none of x, y, share");
+    assert_eq!(problem, "\"S1\" with --kind dexterous: not one of x, y, share");
 }
 
 #[test]

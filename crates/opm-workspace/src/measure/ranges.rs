@@ -9,9 +9,9 @@ use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 
 /// Completes the ranges that are given, which may be none. Returns the ranges to measure over, and the names of
-/// the coordinates along which the workspace goes on beyond them.
+/// the coordinates along which the workspace continues beyond them.
 ///
-/// * In a measure of the upper section alone, an angle without a range gets a whole turn, so that Euler
+/// * In a measure of the upper section alone, an angle without a range gets a full revolution, so that Euler
 ///   angles take every orientation once.
 /// * If no range is given, the other task coordinates get ranges that are fitted to the workspace:
 ///   [`default_grid`].

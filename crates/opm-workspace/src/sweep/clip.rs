@@ -168,23 +168,23 @@ impl Intersection {
     }
 }
 
-/// What is known of one clipped row.
+/// Whether the poses of a clipped row are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowState {
     /// Its poses are known, and counted.
     Counted,
     /// Its poses are known, but not counted: holes overlap in it that were only counted in pairs.
     Uncounted,
-    /// An answer is too close to call: its poses have to be asked for in another way.
+    /// Rounding could change an answer: its poses have to be decided in another way.
     Doubtful,
 }
 
 /// Rows clipped to some regions: the whole numbers of a window that lie in all of them, row by row.
 #[derive(Clone, Debug)]
 pub struct ClippedRows {
-    /// What the regions without their holes have in common.
+    /// The intersection of the regions without their holes.
     intersection: Intervals,
-    /// What the holes take of it.
+    /// What the holes remove from the intersection.
     holes: Vec<Hole>,
     doubtful: RowMarks,
     /// Rows in which more than [`MOST_HOLES`] holes take something, if any two holes overlap.
@@ -192,18 +192,18 @@ pub struct ClippedRows {
     /// The number of poses of each row that is counted.
     counts: [f64; ROWS],
     total: u64,
-    /// What some of the regions have in common, and what one more leaves of it, in alternation: a loop that
-    /// writes over what it reads is compiled to stores under a mask, which are slow.
+    /// The intersection of some of the regions, and that with one more region, in alternation. A loop that
+    /// overwrites its own input would be compiled to masked stores, which are slow.
     partial: [Intervals; 2],
 }
 
-/// What one hole takes of the rows.
+/// What one hole removes from the rows.
 #[derive(Clone, Debug)]
 struct Hole {
     /// The rows that it can meet; the intervals of other rows have no meaning.
     rows: Range<usize>,
     missing: Intervals,
-    /// Something is missing in any row.
+    /// Whether something is missing in any row.
     met: bool,
 }
 
@@ -230,7 +230,7 @@ impl ClippedRows {
         !(self.doubtful.any || self.crowded.any)
     }
 
-    /// What is known of row number `row`.
+    /// Whether the poses of row number `row` are known.
     pub fn state(&self, row: usize) -> RowState {
         if self.doubtful.has(row) {
             RowState::Doubtful

@@ -29,7 +29,7 @@ pub struct Worker<'a> {
 /// Rows that are being clipped.
 struct Clipping {
     rows: Rows,
-    /// What the legs have in common whose regions are the same in every slice.
+    /// The intersection of the regions that are the same in every slice.
     shared: Intersection,
     /// What `rows` and `shared` belong to.
     shared_of: Option<(u64, Range<u64>, Run, SheetKind)>,

@@ -135,9 +135,9 @@ proptest! {
         prop_assert_eq!(driven.closes(unit(input - home)), expected.is_some());
         let Some(expected) = expected else { return Ok(()) };
         let found = Branch::BOTH.map(|branch| {
-            let amounts = driven.solve(unit(input - home), branch).unwrap();
+            let displacements = driven.solve(unit(input - home), branch).unwrap();
             // Seen from the base, which rotates about the output's axis as the loop's last joint.
-            output - amounts[2].value()
+            output - displacements[2].value()
         });
         for (psi, other) in [(found[0], found[1]), (found[1], found[0])] {
             prop_assert!((a * psi.cos() + b * psi.sin() - c).abs() < 1e-9, "{arcs:?}");
@@ -152,16 +152,16 @@ proptest! {
     ) {
         let Assembled { axes, four_bar, .. } = assembled;
         for branch in Branch::BOTH {
-            let Ok(amounts) = four_bar.driven_by(driver).solve(unit(input), branch) else { continue };
+            let Ok(displacements) = four_bar.driven_by(driver).solve(unit(input), branch) else { continue };
             let mut q = [0.0; 4];
             q[driver] = input;
-            for (i, amount) in amounts.iter().enumerate() {
-                q[(driver + 1 + i) % 4] = amount.value();
+            for (i, displacement) in displacements.iter().enumerate() {
+                q[(driver + 1 + i) % 4] = displacement.value();
             }
             prop_assert!(closure(&axes, q) < 1e-9, "{}", closure(&axes, q));
             let [a1, a2, a3] = [1, 2, 3].map(|i| axes[(driver + i) % 4]);
-            let r1 = UnitQuaternion::from_axis_angle(&a1, amounts[0].value());
-            let r2 = r1 * UnitQuaternion::from_axis_angle(&a2, amounts[1].value());
+            let r1 = UnitQuaternion::from_axis_angle(&a1, displacements[0].value());
+            let r2 = r1 * UnitQuaternion::from_axis_angle(&a2, displacements[1].value());
             let triple = a1.dot(&(r1 * a2).cross(&(r2 * a3)));
             prop_assert!(triple * branch.sign() > -1e-6, "{triple}");
         }
@@ -175,8 +175,8 @@ proptest! {
         let [a1, a2, a3] = [1, 2, 3].map(|i| axes[(driver + i) % 4]);
         // A folded home loses half of the digits.
         prop_assume!(a1.dot(&a2.cross(&a3)).abs() > 1e-3);
-        for amount in driven.solve(unit(0.0), driven.home()).unwrap() {
-            prop_assert!(amount.value().abs() < 1e-9, "{amount:?}");
+        for displacement in driven.solve(unit(0.0), driven.home()).unwrap() {
+            prop_assert!(displacement.value().abs() < 1e-9, "{displacement:?}");
         }
     }
 
@@ -211,8 +211,13 @@ fn change_points_are_inside() {
     }
     for folded in [0.0, PI] {
         for branch in Branch::BOTH {
-            let amounts = driven.solve(unit(folded - 0.7), branch).unwrap();
-            let q = [folded - 0.7, amounts[0].value(), amounts[1].value(), amounts[2].value()];
+            let displacements = driven.solve(unit(folded - 0.7), branch).unwrap();
+            let q = [
+                folded - 0.7,
+                displacements[0].value(),
+                displacements[1].value(),
+                displacements[2].value(),
+            ];
             assert!(closure(&axes, q) < 1e-9, "{folded}");
         }
     }
@@ -225,9 +230,10 @@ fn a_free_angle_is_home() {
     let output = arcs.outputs(1.0).unwrap()[1];
     let Assembled { four_bar, axes, .. } = Assembled::new(arcs, 1.0, output);
     for branch in Branch::BOTH {
-        let amounts = four_bar.driven_by(0).solve(unit(-1.0), branch).unwrap();
-        let q = [-1.0, amounts[0].value(), amounts[1].value(), amounts[2].value()];
-        assert_eq!(amounts[0].value(), 0.0);
+        let displacements = four_bar.driven_by(0).solve(unit(-1.0), branch).unwrap();
+        let q =
+            [-1.0, displacements[0].value(), displacements[1].value(), displacements[2].value()];
+        assert_eq!(displacements[0].value(), 0.0);
         assert!(closure(&axes, q) < 1e-9);
     }
 }

@@ -101,7 +101,7 @@ pub enum AssemblyReason {
         /// The links that are too short or too long.
         links: &'static str,
         /// The reach deficit: by how much the leg misses.
-        gap: ReachDeficit,
+        deficit: ReachDeficit,
     },
     /// The value of a joint at home is outside its limits.
     OutsideLimits {
@@ -155,9 +155,9 @@ impl AssemblyReason {
             Self::Degenerate(error) => {
                 format!("the joints of the leg are linearly dependent: {error}")
             }
-            Self::OutOfReach { links, gap } => format!(
+            Self::OutOfReach { links, deficit } => format!(
                 "home is out of this leg's reach by {}, expected {links} that reach it",
-                units.show(gap.excess, gap.quantity)
+                units.show(deficit.excess, deficit.quantity)
             ),
             Self::OutsideLimits { joint, home, limits: [low, high], quantity } => format!(
                 "exclude home: {joint} is {} there, expected it between {} and {}",
@@ -236,7 +236,7 @@ impl From<ChainError> for Problems {
 
 /// Makes the problem of a leg that does not reach, given the links concerned.
 pub(super) fn out_of_reach(links: &'static str) -> impl Fn(ReachDeficit) -> Problems {
-    move |gap| Problems(vec![(None, AssemblyReason::OutOfReach { links, gap })])
+    move |deficit| Problems(vec![(None, AssemblyReason::OutOfReach { links, deficit })])
 }
 
 /// Assembles all legs, or collects every problem of the legs and of home. Each leg comes with its
@@ -272,9 +272,9 @@ pub(super) fn carried(
     let mut g = Isometry3::identity();
     let mut joints = Vec::new();
     let mut problems = Problems::default();
-    for (mut joint, amount) in reference {
+    for (mut joint, displacement) in reference {
         let coordinate = &mut joint.coordinates[0];
-        let home = home_value(amount, coordinate.limits);
+        let home = home_value(displacement, coordinate.limits);
         if let Some(limits @ [low, high]) = coordinate.limits
             && !(low - ON_LIMIT..=high + ON_LIMIT).contains(&home)
         {
@@ -282,7 +282,7 @@ pub(super) fn carried(
             let reason = AssemblyReason::OutsideLimits { joint, home, limits, quantity };
             problems.add(Some("limits"), reason);
         }
-        let own = joint.displacement(&[home]);
+        let own = joint.moved_to(&[home]);
         joint.coordinates[0].home = home;
         joint.axis = g.rotation * joint.axis;
         joint.point = g * joint.point;
@@ -292,11 +292,17 @@ pub(super) fn carried(
     problems.none().map(|()| joints)
 }
 
-fn home_value(amount: JointDisplacement, limits: Option<[f64; 2]>) -> f64 {
-    match (amount, limits) {
-        (JointDisplacement::Direction(_), Some([low, high])) => amount.nearest((low + high) / 2.0),
+fn home_value(displacement: JointDisplacement, limits: Option<[f64; 2]>) -> f64 {
+    match (displacement, limits) {
+        (JointDisplacement::Direction(_), Some([low, high])) => {
+            displacement.nearest((low + high) / 2.0)
+        }
         // atan2 gives -π for a rotation of -1 with a negative zero.
-        _ if matches!(amount, JointDisplacement::Direction(_)) && amount.value() <= -PI => PI,
-        _ => amount.value(),
+        _ if matches!(displacement, JointDisplacement::Direction(_))
+            && displacement.value() <= -PI =>
+        {
+            PI
+        }
+        _ => displacement.value(),
     }
 }

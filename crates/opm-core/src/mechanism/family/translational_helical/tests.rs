@@ -60,7 +60,7 @@ fn assert_geometry(
         }
         // Rotating the last joint alone, with the sliders held, moves P by -p dφ k̂; so S grows by
         // p dφ.
-        let rotated = leg.displacement(&[home(s), home(r), phi + 0.3]);
+        let rotated = leg.displacement(&[home(s), home(r), phi + 0.3]).unwrap();
         let moved = rotated * platform - platform;
         let expected = -k_hat * (0.3 * given.pitch.unwrap_or(0.0));
         prop_assert!((moved - expected).norm() < ROUNDING);

@@ -1,0 +1,107 @@
+//! Arguments of the commands that follow a motion: of a platform, or of a single loop.
+
+use crate::linkage::input::InputValue;
+use clap::ValueHint;
+use std::path::PathBuf;
+
+/// Most samples per second. The clock of a recording counts nanoseconds; faster samples would coincide.
+const HIGHEST_RATE: f64 = 1e9;
+
+/// Positions of a linkage: every joint for one value of its input, or for a revolution of it
+///
+/// The linkage is a single loop that decomposes into two spherical four-bars which share an imaginary
+/// joint (Bennett's double spherical 6R). Any joint can be the input; without --input it is the actuated
+/// one, at home. The answer has every branch, named by its signs, and the range of the input. An input out
+/// of its range is an answer (exit status 0).
+///
+/// --sweep follows the branch of home for one round. An input that can make a revolution makes one.
+/// Otherwise it goes to the end of its range, back in the branch that meets the first one there, and so on
+/// until the linkage is home. CSV: all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in
+/// radians. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm linkage bennett-double-spherical-6r --input a1=30deg
+  opm linkage bennett-double-spherical-6r --input b3=10deg --format json
+  opm linkage bennett-double-spherical-6r --input a1 --sweep > round.csv
+  opm linkage bennett-double-spherical-6r --sweep --count 1001 -o round.mcap")]
+pub struct LinkageArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The joint that moves the linkage, and its value if it is not at home
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    pub input: Option<InputValue>,
+    /// One round of the input instead of one value
+    #[arg(long)]
+    pub sweep: bool,
+    /// Number of positions of the sweep; the first and the last are home
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "sweep",
+        default_value_t = 361,
+        value_parser = clap::value_parser!(u32).range(2..=10_000_000)
+    )]
+    pub count: u32,
+    /// Output file, in the format of its ending; CSV on standard output if it is - or not given
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv|OUT.mcap",
+        requires = "sweep",
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
+}
+
+/// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
+///
+/// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
+/// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task
+/// coordinates, in seconds, metres and radians), or the name of a shipped motion. The working mode
+/// stays the same, and angles are continuous.
+///
+/// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
+/// reach, past the limit of a joint (passive joints too), through a singularity. Violations between two
+/// samples are found too, unless one comes and goes more than once there. The rest of the motion is
+/// recorded; with --strict the exit status is then 1.
+///
+/// The recording has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
+/// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
+/// Rerun.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
+pub struct TrajectoryArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The motion: a TOML or CSV file, or the name of a shipped one
+    #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
+    pub motion: PathBuf,
+    /// Record it in this MCAP file
+    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Samples per second, instead of the motion file's rate (100 for a CSV file)
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = rate)]
+    pub rate: Option<f64>,
+    /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+    /// Exit with status 1 if the mechanism cannot follow all of it
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Parses a number of samples per second.
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if rate > 0.0 && rate <= HIGHEST_RATE => Ok(rate),
+        _ => Err(format!("expected a number of hertz above 0 and at most {HIGHEST_RATE:e}")),
+    }
+}

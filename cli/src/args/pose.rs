@@ -1,0 +1,127 @@
+//! Arguments of the commands for one pose or many: inverse and forward kinematics, velocities.
+
+use crate::pose::{Number, Pose};
+use crate::transform::Transform;
+use clap::ValueHint;
+use std::path::PathBuf;
+
+/// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
+///
+/// A task coordinate that is not given has its home value; `opm decompose` lists the coordinates. A pose
+/// out of reach is an answer (exit status 0): it names the legs that do not reach, and by how much.
+///
+/// --transform takes the platform's pose in SE(3) instead: the position of its reference point and the
+/// quaternion of its orientation, both in base coordinates. The orientation at home is the identity, or
+/// that of the Euler angles at home. If the manipulator cannot move the platform there at all, the answer
+/// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
+///
+/// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians.
+/// CSV out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
+/// the actuated joints. A pose out of reach keeps its row; its joint cells are empty.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm ik plano-spherical-5dof --pose x=10mm,y=0,xi=15deg
+  opm ik plano-spherical-5dof --pose xi=15deg --mode \"-+ ++ ++ +\"
+  opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
+  opm ik plano-spherical-5dof --transform 10mm,0,0,0.8,0.6,0,0
+  opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
+  generate-poses | opm ik plano-spherical-5dof --poses - | head")]
+#[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses", "transform"]))]
+pub struct IkArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// One pose, for example x=10mm,y=0,xi=15deg
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub pose: Option<Pose>,
+    /// Pose in SE(3): position of the reference point, and a unit quaternion, scalar first
+    #[arg(long, value_name = "X,Y,Z,QW,QX,QY,QZ", allow_hyphen_values = true)]
+    pub transform: Option<Transform>,
+    /// A CSV file of poses; - reads standard input
+    #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
+    pub poses: Option<PathBuf>,
+    /// Every working mode in which the pose is in reach, not just one
+    #[arg(long, conflicts_with = "mode")]
+    pub all_modes: bool,
+    /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Output file for the CSV; standard output if it is - or not given
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv",
+        requires = "poses",
+        conflicts_with_all = ["pose", "transform"],
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
+}
+
+/// Velocities: the rates of every joint for rates of the task coordinates, at a pose
+///
+/// Also prints the Jacobian of the actuated joints, and how near the pose is to a singularity of each
+/// section: signed measures that are zero at a singularity, with the legs that come nearest to it. Serial:
+/// a leg is stretched, folded or flat, and its joints have no rates there (null). Parallel: the platform
+/// can move although the inputs are locked; null if there are too few inputs to hold the section at all.
+///
+/// The condition number relates the actuated joints to the platform's twist, with lengths divided by
+/// --length. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
+/// Singularities of the Euler angles (xi = 0) are not counted; `coordinates` is 0 there. A pose out of
+/// reach is an answer (exit status 0).
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm velocity plano-spherical-5dof --pose x=10mm,xi=15deg --rates zeta=1,x=10mm
+  opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
+  opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
+pub struct VelocityArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub pose: Pose,
+    /// Rates of the task coordinates per second, for example zeta=1,x=10mm; other rates are 0
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub rates: Pose,
+    /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Characteristic length of the condition number, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub length: Option<Number>,
+}
+
+/// Forward kinematics: every pose that given actuated joints allow
+///
+/// If the mechanism's sections can be solved one after the other, the closed form finds all assemblies,
+/// each with its working mode and with how well its legs close (`residual`, radians and shares of the
+/// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
+/// in the working mode of --mode or home.
+///
+/// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
+/// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
+/// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm fk plano-spherical-5dof --joints S1=170mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
+  opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
+  opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
+pub struct FkArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The value of every actuated joint, for example S1=10mm,phi14=15deg
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub joints: Pose,
+    /// Start Newton's method at this pose; other coordinates start at home
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub near: Option<Pose>,
+    /// Only assemblies in this working mode: `home`, or a sign for every two-valued choice
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+}

@@ -1,0 +1,64 @@
+//! Arguments of the commands that read a recording.
+
+use crate::plot::options::{PanelName, PictureSize};
+use crate::pose::SliceValue;
+use clap::ValueHint;
+use std::path::PathBuf;
+
+/// Draw a recording as a picture, SVG or PNG
+///
+/// The picture of a motion shows poses, imaginary joints, actuated joints and their velocities over time;
+/// each value is beside its velocity. Spans in which the mechanism cannot follow are shaded. The picture of
+/// a workspace shows slices, and the values that the imaginary joints take if they were recorded
+/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is part of the
+/// recording. An unfinished .partial file can be drawn too, as far as it was written.
+///
+/// Pictures stay small: curves of more than 32768 samples are drawn by their extremes in 4096 spans of
+/// time, and a panel of more than 5000 cells or dots becomes an image within the picture. Fonts are part of
+/// the program.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm plot cloud.mcap -o cloud.svg
+  opm plot cloud.mcap -o tilted.png --slice zeta=0,psi=0,xi=30deg,xi=60deg
+  opm plot cloud.mcap -o joints.svg --panels imaginary --values theta11,theta12
+  opm plot round.mcap -o round.png --values a1,b3 --size 900x300")]
+pub struct PlotArgs {
+    /// MCAP file of `opm workspace`, `opm linkage` or any other command that records
+    #[arg(value_name = "RECORDING", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Output file; its ending selects the format
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// Panels to draw, instead of those that suit the recording
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
+    pub panels: Vec<PanelName>,
+    /// Only these values: for a motion, joints or task coordinates; for a workspace, the two task
+    /// coordinates that the slices show, or stored values instead of the imaginary joints
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub values: Vec<String>,
+    /// Slices of a workspace: task coordinates are held at the grid values nearest to these. One
+    /// coordinate may have several values, with a slice for each
+    #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
+    pub slice: Vec<SliceValue>,
+    /// Width and height in screen pixels, up to 4000 each, instead of a size that suits the panels; a
+    /// PNG has twice as many pixels
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<PictureSize>,
+}
+
+/// List the contents of a recording
+///
+/// Prints topics with their schemas and counts, the range of every value of the points, the run that made
+/// the recording, and whether it is complete. An unfinished .partial file can be read too, as far as it was
+/// written.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm inspect cloud.mcap
+  opm inspect cloud.mcap.partial --format json")]
+pub struct InspectArgs {
+    /// MCAP file
+    #[arg(value_name = "FILE.mcap", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}

@@ -1,0 +1,165 @@
+//! Arguments of the commands that sweep a workspace, and join the shards of one.
+
+use crate::pose::{GridAxis, Number};
+use clap::ValueHint;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use opm_study::WorkspaceKind;
+use opm_workspace::{MOST_THREADS, Shard};
+use std::path::PathBuf;
+
+/// Sweep a grid of poses: how many are in reach, and where they are
+///
+/// Without --grid the grid is fitted to the workspace; with it, a coordinate that is not given stays
+/// at home. Counts the poses in reach and within all joint limits; with -o, records them as point
+/// clouds in an MCAP file for Foxglove, Lichtblick or Rerun: an overview, and every point slice by
+/// slice.
+///
+/// --kind selects another set than that of poses. A place is one value for each coordinate of the lower
+/// section (for example x and y), an orientation one value for each coordinate of the upper section.
+/// `reachable` and `dexterous` store with each place the share of the orientations that reach it, as
+/// `share`. The lower section alone has the imaginary joints as coordinates too, by their names; they stay
+/// at home unless --grid says otherwise. The whole workspace is where `lower` and `upper` agree on the
+/// imaginary joints.
+///
+/// Boundary and connected components are given for every kind; for `grid`, add --shape. A boundary needs a
+/// set that varies in two coordinates, or in slices of a third. It consists of closed lines with the inside
+/// on their left: in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
+/// `imaginary` has neither boundary nor measure, since values of joints lie on no grid.
+///
+/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
+/// takes longer, and does not change the grid that is fitted.
+///
+/// -o points.npy writes a structured NumPy array (float64) of the coordinates and joints that --axes,
+/// --scalars and --color name. -o cloud.ply writes a binary PLY file whose vertices are the points of the
+/// cloud. Without --scalars, both have every task coordinate; PLY leaves out those named x, y or z. The
+/// columns come in the order --axes, --scalars, --color, and none comes twice. Without --axes, coordinates
+/// that vary come first; without --scalars, the other task coordinates come last. Select columns by name:
+/// `points["x"]`; `points.dtype.names` lists them. Both formats hold poses only: the kinds reachable,
+/// dexterous, imaginary, upper and lower, and all shards, are written as MCAP only.
+///
+/// --shard sweeps one part of the grid, so that several machines can share the work. A shard whose file
+/// exists already is not swept again. `opm merge` joins the parts, and takes --axes, --color, --scalars and
+/// --shape.
+///
+/// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
+/// one value. It is an estimate: it may be too small by half a step at every edge of the box that the
+/// workspace does not touch. Angles have equal weight. `opm measure` gives bounds, and weighs orientations
+/// by the Haar measure. `seconds` is the time of the count.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm workspace plano-spherical-5dof
+  opm workspace plano-spherical-5dof -o cloud.mcap --color theta11
+  opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
+  opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
+  opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
+  opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
+  opm workspace plano-spherical-5dof --kind reachable -o places.mcap
+  opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
+  opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
+  opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
+pub struct WorkspaceArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// What the workspace consists of
+    #[arg(long, value_name = "KIND", value_parser = kind(), default_value = "grid")]
+    pub kind: WorkspaceKind,
+    /// Values of one task coordinate: minimum, maximum and number of values, or a single value
+    #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE")]
+    pub grid: Vec<GridAxis>,
+    /// Working mode: `home`, `any`, or a sign for every two-valued choice ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Count a pose only if its condition number is at most C in one of the working modes
+    #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
+    pub max_condition: Option<f64>,
+    /// Also compute the global conditioning index, the mean of 1 / condition number (a few us per pose)
+    #[arg(long)]
+    pub conditioning: bool,
+    /// Characteristic length of condition numbers, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub length: Option<Number>,
+    /// Also find the boundary and the connected components, as all kinds but `grid` do
+    #[arg(long)]
+    pub shape: bool,
+    /// Sweep only part I of N (I counts from 1), and write it to -o, for `opm merge`
+    #[arg(
+        long,
+        value_name = "I/N",
+        requires = "output",
+        conflicts_with_all = ["axes", "color", "scalars", "shape"]
+    )]
+    pub shard: Option<Shard>,
+    /// Sweep a shard even if its file exists, and replace the file
+    #[arg(long, requires = "shard")]
+    pub force: bool,
+    /// How points are recorded.
+    #[command(flatten)]
+    pub cloud: CloudArgs,
+    /// Number of threads, instead of one per processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    pub threads: Option<u16>,
+}
+
+/// How points are recorded.
+#[derive(Debug, clap::Args)]
+pub struct CloudArgs {
+    /// Record the points in this file: MCAP, a NumPy array (its columns are --axes, then --scalars,
+    /// then --color), or a PLY cloud for mesh tools
+    #[arg(short, long, value_name = "OUT.mcap|.npy|.ply", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// x, y and z of the cloud: three coordinates (for the kind `imaginary`, three imaginary joints), or
+    /// `tip`, the position of the reference point
+    #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
+    pub axes: Vec<String>,
+    /// The value that the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
+    /// `inverse_condition`, one over the condition number
+    #[arg(long, value_name = "NAME", requires = "output")]
+    pub color: Option<String>,
+    /// Values stored with every point, with names as for --color
+    #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
+    pub scalars: Option<Vec<String>>,
+}
+
+/// Join the shards of a sweep into the result of a single run
+///
+/// Takes all files of `opm workspace --shard`, in any order, and prints what a single run prints. Only the
+/// time is unknown: `seconds` and `poses_per_second` are null. With -o, the recording equals that of a
+/// single run byte for byte. Shards of different runs are an error, and so are two files of the same part.
+/// If parts are missing, the error message lists the commands that make them.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  seq 8 | xargs -P 4 -I {} opm workspace plano-spherical-5dof --shard {}/8 -o part-{}.mcap
+  opm merge part-*.mcap
+  opm merge part-*.mcap -o cloud.mcap --color theta11")]
+pub struct MergeArgs {
+    /// The files of all shards
+    #[arg(value_name = "PART.mcap", required = true, value_hint = ValueHint::FilePath)]
+    pub parts: Vec<PathBuf>,
+    /// Also find the boundary and the connected components, as all kinds but `grid` do
+    #[arg(long)]
+    pub shape: bool,
+    /// How points are recorded.
+    #[command(flatten)]
+    pub cloud: CloudArgs,
+    /// Number of threads, instead of one per processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    pub threads: Option<u16>,
+}
+
+/// Parses a kind of workspace; the help lists the names.
+fn kind() -> impl TypedValueParser<Value = WorkspaceKind> {
+    let value = |kind: WorkspaceKind| PossibleValue::new(kind.name()).help(kind.description());
+    let names = PossibleValuesParser::new(WorkspaceKind::ALL.map(value));
+    names.try_map(|name| name.parse::<WorkspaceKind>())
+}
+
+/// Parses the largest condition number that counts.
+fn condition_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number >= 1.0 && number.is_finite() => Ok(number),
+        _ => Err(format!("{text:?}, expected a number of at least 1")),
+    }
+}
