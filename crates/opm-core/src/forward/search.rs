@@ -77,7 +77,7 @@ impl<'a> Search<'a> {
                             self.out.unmet.push(Unmet::Section(Section::Lower));
                         }
                         for v in vs {
-                            self.with_cuts(&v, &unknown);
+                            self.with_taus(&v, &unknown);
                         }
                     }
                     None => self.loose(Section::Lower),

@@ -434,3 +434,36 @@ fn collect<G: Group>(g: G, found: &mut Vec<G>) {
         found.push(g);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decomposition::samples::Numbers;
+
+    /// Three cones with the axes of the Agile Eye have eight solutions: four at which all axes of a leg coincide,
+    /// and four others. Each of the first four shares its angles with another one, whichever cone is first.
+    #[test]
+    fn cones_with_orthogonal_axes_have_eight_solutions() {
+        let mut numbers = Numbers::new(5);
+        for _ in 0..2_000 {
+            // At multiples of a right angle, solutions coincide.
+            let motor = |quarter: i32, at: f64| {
+                (f64::from(quarter) + 0.5 + 0.48 * at) * std::f64::consts::FRAC_PI_2
+            };
+            let [a, b, c] = [0, 1, 3].map(|quarter| motor(quarter, numbers.next()).sin_cos());
+            let fixed = [
+                Vector3::new(0.0, -a.0, a.1),
+                Vector3::new(b.1, 0.0, -b.0),
+                Vector3::new(-c.0, c.1, 0.0),
+            ];
+            let carried = [-Vector3::y(), -Vector3::z(), -Vector3::x()];
+            let cone =
+                |i: usize| Condition::Cone { fixed: fixed[i], carried: carried[i], cosine: 0.0 };
+            let conditions = [0, 1, 2].map(cone);
+            let Solutions::At(found) = spherical(&conditions) else { panic!("dependent") };
+            // A candidate that does not satisfy the conditions is rejected where assemblies are accepted.
+            let met = |r: &&Matrix3<f64>| conditions.iter().all(|c| r.error(c).0.abs() < 1e-12);
+            assert_eq!(found.iter().filter(met).count(), 8, "{fixed:?}");
+        }
+    }
+}
