@@ -357,7 +357,7 @@ fn hints(frame: &Subspace, names: &[&str], shared: Option<MotionType>) -> FrameH
     let has = |name| names.contains(&name);
     FrameHints {
         x: axis(0).filter(|_| has("x") || has("mu") || has("zeta")),
-        w: axis(1).filter(|_| has("w")),
+        w: axis(1).filter(|_| plane && has("w")),
         axis: axis(2).filter(|_| !plane && shared.is_none() && !names.is_empty()),
         normal: axis(2).filter(|_| plane && shared != Some(MotionType::Rotation) && names != ["w"]),
         origin: Some(frame.measured_from).filter(|_| ["x", "w", "z"].iter().any(|name| has(name))),
