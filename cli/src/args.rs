@@ -53,7 +53,8 @@ Examples:
                                                        a motion, as a recording that plays
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
-  opm inspect cloud.mcap                               what a recording holds";
+  opm inspect cloud.mcap                               what a recording holds
+  opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
 #[derive(Debug, clap::Args)]
@@ -90,6 +91,8 @@ pub enum Command {
     Plot(PlotArgs),
     Inspect(InspectArgs),
     Examples(ExamplesArgs),
+    Schema(SchemaArgs),
+    Format(FormatArgs),
     Completions(CompletionsArgs),
 }
 
@@ -121,6 +124,37 @@ pub struct ExamplesArgs {
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
 }
+
+/// Print a JSON schema of mechanism or motion files, for editors
+///
+/// Editors that know the schema complete keys, explain them, and mark what opm would refuse. It is draft 7,
+/// which Taplo and the extension Even Better TOML of VS Code understand. With `#:schema ./opm.schema.json` as
+/// the first line of a file they use it; `opm help format` has more. The output is the schema itself;
+/// --format has no effect.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm schema > opm.schema.json
+  opm schema motion > opm-motion.schema.json")]
+pub struct SchemaArgs {
+    /// The kind of file
+    #[arg(value_name = "KIND", value_enum, default_value_t = FileKind::Mechanism)]
+    pub kind: FileKind,
+}
+
+/// A kind of file that opm reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FileKind {
+    /// Mechanism files
+    Mechanism,
+    /// Motion files
+    Motion,
+}
+
+/// Explain the format of mechanism and motion files
+#[derive(Debug, clap::Args)]
+#[command(override_help = crate::format::TEXT)]
+pub struct FormatArgs {}
 
 /// Print a completion script for a shell
 ///

@@ -12,7 +12,7 @@ use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::leg::Leg;
-use opm_core::task::{Subspace, Task, TaskCoordinate};
+use opm_core::task::{CoordinateKind, Subspace, Task, TaskCoordinate};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{Display, Write};
@@ -251,6 +251,9 @@ impl Report<'_> {
             }
             line(&format_args!("\n{table}"));
             line(&frame_table(task, way.is_one_subspace(), units));
+            if task.coordinates.iter().any(|c| c.kind() == CoordinateKind::Zeta) {
+                line(&"Euler angles: R = Rz(zeta) Ry(xi) Rz(psi)\n");
+            }
         }
         line(&self.actuation());
         if let Some(manipulator) = self.manipulator {

@@ -9,6 +9,7 @@ mod decompose;
 mod examples;
 mod failure;
 mod fk;
+mod format;
 mod ik;
 mod inspect;
 mod lines;
@@ -21,6 +22,7 @@ mod output;
 mod plot;
 mod pose;
 mod progress;
+mod schema;
 mod text;
 mod trajectory;
 mod transform;
@@ -65,6 +67,8 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Examples(command) => examples::run(command, output),
+        Command::Schema(command) => schema::run(command),
+        Command::Format(_) => format::run(output),
         Command::Completions(command) => completions::run(command),
     }
 }

@@ -238,9 +238,13 @@ impl<'a> Answer<'a> {
                 causes[1].join(" "),
             ]);
         };
-        row("upper section", &self.measured.upper, self.causes(Section::Upper));
-        row("lower section", &self.measured.lower, self.causes(Section::Lower));
-        row("whole", &self.measured.whole, [vec![], vec![]]);
+        if self.query.manipulator.task().upper.kind == SubspaceKind::Identity {
+            row("one section", &self.measured.lower, self.causes(Section::Lower));
+        } else {
+            row("upper section", &self.measured.upper, self.causes(Section::Upper));
+            row("lower section", &self.measured.lower, self.causes(Section::Lower));
+            row("whole", &self.measured.whole, [vec![], vec![]]);
+        }
         let condition = match self.conditioning.condition {
             condition if condition.is_finite() => short(condition),
             _ => "infinite".to_owned(),

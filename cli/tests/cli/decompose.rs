@@ -11,6 +11,15 @@ fn decompose(file: &str) -> Value {
     opm(&["decompose", file, "--format", "json", "--quiet"]).json()
 }
 
+/// Where there are Euler angles, their convention is printed.
+#[test]
+fn the_convention_of_euler_angles() {
+    for (file, printed) in [(PLANO, true), ("double-spherical-5dof", true), (HELICAL, false)] {
+        let convention = "R = Rz(zeta) Ry(xi) Rz(psi)";
+        assert_eq!(opm(&["decompose", file]).text().contains(convention), printed, "{file}");
+    }
+}
+
 #[test]
 fn the_plano_spherical_manipulator() {
     let found = decompose(PLANO);

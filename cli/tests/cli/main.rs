@@ -4,6 +4,7 @@ mod bad_input;
 mod batch;
 mod decompose;
 mod fk;
+mod format;
 mod ik;
 mod inspect;
 mod kind;

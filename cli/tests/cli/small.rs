@@ -78,6 +78,7 @@ fn help_and_version_go_to_standard_output() {
         "plot",
         "inspect",
         "examples",
+        "schema",
         "completions",
     ] {
         let help = opm(&[command, "--help"]);
@@ -107,6 +108,7 @@ fn the_examples_in_the_help_parse() {
         "workspace",
         "plot",
         "examples",
+        "schema",
     ];
     for command in commands {
         if command == "plot" {

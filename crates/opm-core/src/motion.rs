@@ -7,6 +7,8 @@
 pub mod examples;
 #[cfg(feature = "files")]
 pub mod file;
+#[cfg(feature = "schema")]
+mod schema;
 mod spline;
 pub mod table;
 

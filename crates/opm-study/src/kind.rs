@@ -115,6 +115,19 @@ impl WorkspaceKind {
         }
     }
 
+    /// Whether the kind tells apart the two sections of a mechanism: a mechanism of one subspace has none of it.
+    pub fn needs_two_sections(self) -> bool {
+        match self {
+            Self::Grid | Self::Lower => false,
+            Self::ConstantOrientation
+            | Self::Orientation
+            | Self::Reachable
+            | Self::Dexterous
+            | Self::Imaginary
+            | Self::Upper => true,
+        }
+    }
+
     /// Whether its points are poses of the platform.
     pub fn is_of_poses(self) -> bool {
         matches!(self, Self::Grid | Self::ConstantOrientation | Self::Orientation)

@@ -257,6 +257,11 @@ fn check_kind(
     modes: Modes,
     limit: Option<ConditionLimit>,
 ) -> Result<(), RequestError> {
+    let coordinates = manipulator.task_coordinates();
+    if kind.needs_two_sections() && manipulator.task().lower_count == coordinates.len() {
+        let coordinates = coordinates.iter().map(|c| c.name.to_owned()).collect();
+        return Err(RequestError::OneSection { kind, coordinates });
+    }
     if kind.sections() != Sections::Whole && limit.is_some() {
         return Err(RequestError::SectionCondition { kind });
     }

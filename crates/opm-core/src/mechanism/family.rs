@@ -20,6 +20,38 @@ pub use translational_helical::TranslationalHelical;
 pub(in crate::mechanism) use parameter::{Group, Parameter, ParameterRef, TableKey};
 
 use super::Mechanism;
+#[cfg(feature = "files")]
+use super::file::Table;
+#[cfg(feature = "files")]
+use crate::chain::Branch;
+
+/// Reads the parameters of a mechanism with this name and these signs of its working mode, and assembles
+/// it.
+#[cfg(feature = "files")]
+type ReadFamily = fn(&Table<'_>, &str, &[Branch]) -> Option<(Family, Mechanism)>;
+
+/// The form of the files of one family, by which they are read and their schema is made.
+#[cfg(feature = "files")]
+#[derive(Clone, Copy)]
+pub(in crate::mechanism) struct FamilyForm {
+    /// Reads the parameters and assembles the mechanism.
+    pub read: ReadFamily,
+    /// The keys of the file.
+    pub keys: &'static [&'static str],
+    /// The number of signs of each leg in the working mode.
+    pub choices: &'static [usize],
+    /// A family without values, with as many legs as the family has.
+    #[cfg_attr(not(feature = "schema"), expect(dead_code, reason = "only the schema uses it"))]
+    pub blank: fn() -> Family,
+}
+
+/// The forms of all families, with their names in files.
+#[cfg(feature = "files")]
+pub(in crate::mechanism) const FORMS: [(&str, FamilyForm); 3] = [
+    ("plano-spherical", plano_spherical::FORM),
+    ("translational-helical", translational_helical::FORM),
+    ("planar-planar", planar_planar::FORM),
+];
 
 /// The parameters of a mechanism of one family.
 #[derive(Clone, Debug, PartialEq)]

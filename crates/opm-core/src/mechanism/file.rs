@@ -1,6 +1,8 @@
 //! Mechanism files: TOML text is read into a [`Mechanism`], or every problem is reported with its
 //! location.
 //!
+//! `docs/format.md`, which `opm help format` prints, explains the format to users.
+//!
 //! A file names its own units; every value after reading is SI. There are two forms:
 //!
 //! * **Family**: `family = "..."` and the parameters of one of the [families](super::family).
@@ -58,6 +60,8 @@ mod problem;
 mod read;
 #[cfg(feature = "files")]
 mod reader;
+#[cfg(feature = "schema")]
+pub(crate) mod schema;
 mod units;
 mod writer;
 
@@ -69,10 +73,12 @@ pub use writer::{Digits, write};
 
 #[cfg(feature = "files")]
 pub use read::read;
+#[cfg(feature = "schema")]
+pub use schema::schema;
 #[cfg(feature = "files")]
 pub(super) use {
     parameters::{read_home, read_leg, table_of, tables_of},
-    read::{assembled, branches, leg_name},
+    read::{assembled, leg_name},
 };
 #[cfg(feature = "files")]
 pub(crate) use {

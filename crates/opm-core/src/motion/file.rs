@@ -26,10 +26,18 @@
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
+#[cfg(feature = "schema")]
+pub use super::schema::schema;
 use super::{Harmonics, Path, PlatformMotion, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
 use crate::numeric::Quantity;
+
+/// The keys of a motion file.
+pub(super) const KEYS: &[&str] =
+    &["format", "name", "units", "duration", "rate", "mode", "coordinates"];
+/// The keys of a sinusoid.
+pub(super) const SINUSOID_KEYS: &[&str] = &["amplitude", "frequency", "phase", "offset"];
 
 /// Reads the text of a motion file, in the task coordinates and working modes of `manipulator`.
 ///
@@ -42,7 +50,7 @@ pub fn read(text: &str, manipulator: &Manipulator) -> Result<PlatformMotion, Fil
 
 fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<PlatformMotion> {
     let name = head(root, "motion")?;
-    root.allow(&["format", "name", "units", "duration", "rate", "mode", "coordinates"]);
+    root.allow(KEYS);
     let positive = |key: &str, expected: &str| {
         let value = root.require(key, expected)?;
         let number = value.number()?;
@@ -103,7 +111,7 @@ fn read_harmonics(value: &Value<'_>, quantity: Quantity) -> Harmonics {
             sum.offset += value.quantity(quantity).unwrap_or_default();
             return;
         }
-        let Some(table) = value.table(&["amplitude", "frequency", "phase", "offset"]) else {
+        let Some(table) = value.table(SINUSOID_KEYS) else {
             return;
         };
         let amplitude = table

@@ -111,6 +111,13 @@ pub enum RequestError {
         /// The kind.
         kind: WorkspaceKind,
     },
+    /// The kind tells places from orientations, or is of the upper section, but the mechanism has one section.
+    OneSection {
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The names of the task coordinates.
+        coordinates: Vec<String>,
+    },
     /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
@@ -193,7 +200,7 @@ impl RequestError {
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
-            Self::NoImaginaryJoints { .. } => RequestOption::Kind,
+            Self::NoImaginaryJoints { .. } | Self::OneSection { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
             Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
@@ -239,6 +246,11 @@ impl RequestError {
             Self::NoImaginaryJoints { kind } => {
                 format!("with {}: this mechanism has no imaginary joints", with(kind))
             }
+            Self::OneSection { kind, coordinates } => format!(
+                "{kind}: all legs of this mechanism move in one subspace, whose coordinates {} are not \
+                 divided into places and orientations; use grid, with one value for each coordinate to hold",
+                coordinates.join(" ")
+            ),
             Self::NotOfPoses { kind } => format!(
                 "with {}: only poses have a condition number; ask for it of grid, \
                  constant-orientation or orientation",

@@ -354,7 +354,8 @@ impl PoseRecording<'_> {
 pub fn slices_together(grid: &Grid) -> u64 {
     let upper = &grid.axes()[grid.lower()..];
     let mut together = 1;
-    for axis in &upper[..upper.len() - 1] {
+    // With one section there is one slice.
+    for axis in &upper[..upper.len().saturating_sub(1)] {
         if grid.slices() / together > PLAYABLE {
             together *= axis.count;
         }

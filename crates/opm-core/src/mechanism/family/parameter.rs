@@ -135,7 +135,7 @@ impl Parameter<'_> {
 }
 
 impl Family {
-    fn groups(&mut self) -> Vec<Group<'_>> {
+    pub(in crate::mechanism) fn groups(&mut self) -> Vec<Group<'_>> {
         match self {
             Self::PlanoSpherical(family) => family.groups(),
             Self::TranslationalHelical(family) => family.groups(),

@@ -32,7 +32,7 @@ mod file;
 mod parameters;
 
 #[cfg(feature = "files")]
-pub(in crate::mechanism) use file::read;
+pub(in crate::mechanism) use file::FORM;
 
 use super::assembly::{AssemblyError, Problems, all_legs, carried, out_of_reach};
 use super::slider::{SliderChain, onto, pivot};

@@ -21,7 +21,7 @@ mod file;
 mod parameters;
 
 #[cfg(feature = "files")]
-pub(in crate::mechanism) use file::read;
+pub(in crate::mechanism) use file::FORM;
 
 use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried};
 use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain};

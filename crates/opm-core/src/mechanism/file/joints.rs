@@ -9,9 +9,11 @@ use crate::mechanism::{FrameHints, Mechanism, TaskHints, TaskKey};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
-const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
-const LEG_KEYS: &[&str] = &["name", "joints"];
-const TYPES: [(&str, Type); 6] = [
+pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
+pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
+pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper"];
+pub(super) const FRAME_KEYS: &[&str] = &["x", "axis", "w", "normal", "origin"];
+pub(super) const TYPES: [(&str, Type); 6] = [
     ("revolute", Type::Revolute),
     ("prismatic", Type::Prismatic),
     ("helical", Type::Helical),
@@ -22,7 +24,7 @@ const TYPES: [(&str, Type); 6] = [
 
 /// Names that tables and recordings use for other columns than joints: the task coordinates of all
 /// pairs of subspaces, and status columns. Imaginary joints are `tau.` and the leg's name.
-const RESERVED: [&str; 15] = [
+pub(super) const RESERVED: [&str; 15] = [
     "x",
     "y",
     "z",
@@ -46,7 +48,7 @@ const PARALLEL: f64 = 1e-6;
 
 /// The `type` of a joint.
 #[derive(Clone, Copy, PartialEq)]
-enum Type {
+pub(super) enum Type {
     Revolute,
     Prismatic,
     Helical,
@@ -57,15 +59,41 @@ enum Type {
 
 impl Type {
     /// The keys that a joint of this type may have.
-    fn keys(self) -> Vec<&'static str> {
+    pub(super) fn keys(self) -> Vec<&'static str> {
         let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
-        keys.extend_from_slice(match self {
-            Self::Revolute | Self::Prismatic | Self::Cylindrical => &["axis"],
-            Self::Helical => &["axis", "pitch"],
+        keys.extend(self.directions().iter().chain(self.lengths()));
+        keys
+    }
+
+    /// The keys that a joint of this type must have, beyond its name and its type.
+    #[cfg(feature = "schema")]
+    pub(super) fn needs(self) -> Vec<&'static str> {
+        let mut keys = [self.directions(), self.lengths()].concat();
+        if self != Self::Prismatic {
+            keys.push("point");
+        }
+        keys
+    }
+
+    /// The keys of its axes.
+    fn directions(self) -> &'static [&'static str] {
+        match self {
+            Self::Revolute | Self::Prismatic | Self::Helical | Self::Cylindrical => &["axis"],
             Self::Universal => &["axis", "axis2"],
             Self::Spherical => &[],
-        });
-        keys
+        }
+    }
+
+    /// The keys of its dimensions.
+    fn lengths(self) -> &'static [&'static str] {
+        match self {
+            Self::Helical => &["pitch"],
+            Self::Revolute
+            | Self::Prismatic
+            | Self::Cylindrical
+            | Self::Universal
+            | Self::Spherical => &[],
+        }
     }
 }
 
@@ -82,7 +110,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     let mut locations = Locations::default();
     let task = root
         .get("task")
-        .and_then(|value| value.table(&["axis", "lower", "upper"]))
+        .and_then(|value| value.table(TASK_KEYS))
         .map_or_else(TaskHints::default, |task| read_task(&task, &mut locations));
 
     let tables = root.tables("leg", LEG_KEYS);
@@ -131,8 +159,7 @@ fn read_frame(task: &Table<'_>, section: Section, locations: &mut Locations<usiz
         Section::Lower => task.get("lower"),
         Section::Upper => task.get("upper"),
     };
-    let Some(frame) = value.and_then(|value| value.table(&["x", "axis", "w", "normal", "origin"]))
-    else {
+    let Some(frame) = value.and_then(|value| value.table(FRAME_KEYS)) else {
         return FrameHints::default();
     };
     let origin = task_value(&frame, TaskKey::Origin(section), locations);

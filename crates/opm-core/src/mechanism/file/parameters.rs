@@ -62,13 +62,14 @@ pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Pa
 }
 
 /// The keys that the table of a leg may have.
-fn keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
+pub(super) fn keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
     let own =
         parameters.iter().filter(|parameter| !matches!(parameter.target, ParameterRef::Limits(..)));
     ["name"].into_iter().chain(own.map(|parameter| parameter.key)).chain(["limits"]).collect()
 }
 
-fn limit_keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
+/// The keys that the `limits` of a leg may have.
+pub(super) fn limit_keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
     let limits =
         parameters.iter().filter(|parameter| matches!(parameter.target, ParameterRef::Limits(..)));
     limits.map(|parameter| parameter.key).collect()

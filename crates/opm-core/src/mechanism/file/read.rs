@@ -6,13 +6,11 @@ use super::units::{AngleUnit, FileUnits, LengthUnit};
 use super::{MechanismFile, joints};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::{
-    AssemblyError, AssemblyReason, Family, planar_planar, plano_spherical, translational_helical,
-};
+use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
 use toml::de::DeTable;
 
 /// The format number that this version reads.
-const FORMAT: i64 = 1;
+pub(crate) const FORMAT: i64 = 1;
 
 /// Reads the text of a mechanism file.
 ///
@@ -76,13 +74,9 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
         let places = Locations::default();
         return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
-    type Read = fn(&Table<'_>, &str) -> Option<(Family, Mechanism)>;
-    let read = family.word::<Read>(&[
-        ("plano-spherical", plano_spherical::read),
-        ("translational-helical", translational_helical::read),
-        ("planar-planar", planar_planar::read),
-    ])?;
-    let (family, mechanism) = read(root, name)?;
+    let form = family.word(&FORMS)?;
+    root.allow(form.keys);
+    let (family, mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
     Some((MechanismFile { mechanism, units, mode, family, places }, Locations::default()))
 }
@@ -111,7 +105,7 @@ pub(in crate::mechanism) fn leg_name(leg: &Table<'_>, index: usize) -> String {
 
 /// Reads the branches of `mode`: one group of signs for each leg with choices, concatenated. Every
 /// branch is plus if the mode is not given or invalid.
-pub(in crate::mechanism) fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
+fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
     let plus = || vec![Branch::Plus; choices.iter().sum()];
     let Some((value, text)) = root.get("mode").and_then(|value| Some((value, value.string()?)))
     else {

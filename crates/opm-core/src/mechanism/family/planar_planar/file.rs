@@ -3,9 +3,9 @@
 use super::{PlanarPlanar, SLIDER_LEGS, SliderLeg};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
-use crate::mechanism::family::Family;
+use crate::mechanism::family::{Family, FamilyForm};
 use crate::mechanism::file::{
-    Table, assembled, branches, leg_name, read_home, read_leg, table_of, tables_of,
+    Table, assembled, leg_name, read_home, read_leg, table_of, tables_of,
 };
 
 const KEYS: &[&str] =
@@ -13,13 +13,24 @@ const KEYS: &[&str] =
 /// The number of signs of each leg in the working mode.
 const CHOICES: &[usize] = &[2, 2, 2, 2];
 
+/// The form of the family's files.
+pub(in crate::mechanism) const FORM: FamilyForm = FamilyForm {
+    read,
+    keys: KEYS,
+    choices: CHOICES,
+    blank: || {
+        Family::PlanarPlanar(PlanarPlanar {
+            slider_legs: vec![SliderLeg::default(); SLIDER_LEGS],
+            ..PlanarPlanar::default()
+        })
+    },
+};
+
 /// Reads the parameters and assembles the mechanism. A value that cannot be read is reported and
 /// becomes NaN, so that the others are checked too.
-pub(in crate::mechanism) fn read(root: &Table<'_>, name: &str) -> Option<(Family, Mechanism)> {
-    root.allow(KEYS);
+fn read(root: &Table<'_>, name: &str, mode: &[Branch]) -> Option<(Family, Mechanism)> {
     let mut family = PlanarPlanar { name: name.to_owned(), ..PlanarPlanar::default() };
     read_home(root, family.home.parameters());
-    let mode = branches(root, CHOICES);
     let signs = |i: usize| match mode.get(2 * i..2 * i + 2) {
         Some(&[first, second]) => (first, second),
         _ => (Branch::Plus, Branch::Plus),

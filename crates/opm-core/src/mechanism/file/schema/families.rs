@@ -1,0 +1,180 @@
+//! The part of the schema that describes the parameters of families.
+
+use super::Properties;
+use super::values::{
+    array, described, exactly, form, joined_tables, limits, name, number, object, point, text,
+};
+use crate::mechanism::family::{
+    FORMS, Family, FamilyForm, Group, Parameter, ParameterRef, TableKey,
+};
+use crate::mechanism::file::parameters::{keys, limit_keys};
+use serde_json::{Value, json};
+
+/// The keys of each family, with its name.
+pub fn forms() -> Vec<(&'static str, Value)> {
+    FORMS.iter().map(|(word, form)| (*word, form_of(form))).collect()
+}
+
+/// What the keys of families mean, apart from legs that are called `leg`.
+pub fn properties() -> Properties {
+    let mut properties = Properties::new();
+    let words = FORMS.map(|(word, _)| word);
+    let description = "The family, if the mechanism is given by the parameters of one. Without it, the \
+                       file lists joints.";
+    properties.insert("family".to_owned(), json!({ "description": description, "enum": words }));
+    let mode = "The working mode of home: one sign for each choice, in a group for each leg, such as \
+                \"++ ++ ++ +\". If it is not given, every sign is +.";
+    properties.insert("mode".to_owned(), text(mode));
+    let families = all_tables();
+    let each: Vec<_> = families.iter().map(|(word, tables)| (*word, tables)).collect();
+    properties.extend(joined_tables(&each));
+    properties.remove("leg");
+    properties
+}
+
+/// What the keys of the legs in the array `key` mean.
+pub fn legs_called(key: &str) -> Properties {
+    let families = all_tables();
+    let mut each = Vec::new();
+    for (word, tables) in &families {
+        let legs = tables.get(key).and_then(|legs| legs["items"]["properties"].as_object());
+        each.extend(legs.map(|legs| (*word, legs)));
+    }
+    joined_tables(&each)
+}
+
+/// The tables of each family, with its name.
+fn all_tables() -> Vec<(&'static str, Properties)> {
+    FORMS.iter().map(|(word, form)| (*word, tables(&mut (form.blank)()))).collect()
+}
+
+/// What the tables of a family mean: `home`, and those of its legs.
+fn tables(family: &mut Family) -> Properties {
+    let mut tables = Properties::new();
+    for group in family.groups() {
+        let (key, table) = match group.table {
+            TableKey::Home => ("home", described(HOME, object(meanings(&group)))),
+            TableKey::Leg(key) => {
+                (key, described("The parameters of this leg.", object(leg(&group))))
+            }
+            TableKey::Legs(key) => {
+                (key, array("The parameters of these legs.", object(leg(&group))))
+            }
+        };
+        tables.insert(key.to_owned(), table);
+    }
+    tables
+}
+
+const HOME: &str =
+    "The pose at which the mechanism is assembled. A coordinate that is not given is 0.";
+
+/// What the keys of a leg mean.
+fn leg(group: &Group<'_>) -> Properties {
+    let mut properties = Properties::new();
+    let description = "The leg's name. If it is not given: leg1, leg2, ...";
+    properties.insert("name".to_owned(), name(description));
+    properties.extend(meanings(group));
+    let ranges = group.parameters.iter().filter_map(|parameter| match parameter.target {
+        ParameterRef::Limits(quantity, _) => {
+            let what = format!("The lowest and the highest value of the joint {}.", parameter.key);
+            Some((parameter.key.to_owned(), limits(&what, quantity)))
+        }
+        _ => None,
+    });
+    let description =
+        "Limits of the leg's joints, [lowest, highest]. A joint without limits is free.";
+    properties.insert("limits".to_owned(), described(description, object(ranges.collect())));
+    properties
+}
+
+/// What the parameters of a group mean, apart from limits.
+fn meanings(group: &Group<'_>) -> Properties {
+    let meaning = |Parameter { key, expected, target }: &Parameter<'_>| {
+        let value = match target {
+            ParameterRef::Number(quantity, _) => number(expected, *quantity),
+            ParameterRef::Optional(quantity, _) => {
+                number(&format!("{expected}; only for legs that have one"), *quantity)
+            }
+            ParameterRef::Point(_) => point(expected, 2),
+            ParameterRef::Limits(..) => return None,
+        };
+        Some(((*key).to_owned(), value))
+    };
+    group.parameters.iter().filter_map(meaning).collect()
+}
+
+/// The keys of one family.
+fn form_of(family: &FamilyForm) -> Value {
+    let mut narrower = vec![("mode", json!({ "pattern": mode_pattern(family.choices) }))];
+    let mut blank = (family.blank)();
+    let groups = blank.groups();
+    for group in &groups {
+        let parameters = &group.parameters;
+        let keys = keys(parameters);
+        let required: Vec<_> =
+            parameters.iter().filter(|p| is_required(p)).map(|p| p.key).collect();
+        let ranges = form(&limit_keys(parameters), &[], &[]);
+        let leg = || form(&keys, &required, &[("limits", ranges.clone())]);
+        match group.table {
+            TableKey::Home => {
+                let coordinates: Vec<_> = parameters.iter().map(|p| p.key).collect();
+                narrower.push(("home", form(&coordinates, &[], &[])));
+            }
+            TableKey::Leg(key) => narrower.push((key, leg())),
+            TableKey::Legs(key) => {
+                let alike = groups.iter().filter(|other| other.table == group.table).count();
+                narrower.push((key, exactly(alike, json!({ "items": leg() }))));
+            }
+        }
+    }
+    let mut legs: Vec<_> = groups
+        .iter()
+        .filter_map(|group| match group.table {
+            TableKey::Home => None,
+            TableKey::Leg(key) | TableKey::Legs(key) => Some(key),
+        })
+        .collect();
+    legs.dedup();
+    form(family.keys, &legs, &narrower)
+}
+
+/// Whether a leg must have the parameter.
+fn is_required(parameter: &Parameter<'_>) -> bool {
+    match parameter.target {
+        ParameterRef::Number(..) | ParameterRef::Point(_) => true,
+        ParameterRef::Optional(..) | ParameterRef::Limits(..) => false,
+    }
+}
+
+/// The pattern of working modes: as many signs as a leg has choices, in a group for each leg.
+fn mode_pattern(choices: &[usize]) -> String {
+    let groups: Vec<_> = choices.iter().map(|count| format!("[+-]{{{count}}}")).collect();
+    format!(r"^\s*{}\s*$", groups.join(r"\s+"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_form_is_that_of_its_family() {
+        for (word, form) in FORMS {
+            let mut blank = (form.blank)();
+            assert_eq!(blank.word(), word);
+            for group in blank.groups() {
+                let key = match group.table {
+                    TableKey::Home => "home",
+                    TableKey::Leg(key) | TableKey::Legs(key) => key,
+                };
+                assert!(form.keys.contains(&key), "{word}: {key}");
+            }
+        }
+    }
+
+    #[test]
+    fn modes_have_a_group_for_each_leg() {
+        assert_eq!(mode_pattern(&[2, 1]), r"^\s*[+-]{2}\s+[+-]{1}\s*$");
+        assert_eq!(mode_pattern(&[]), r"^\s*\s*$");
+    }
+}

@@ -1,0 +1,133 @@
+//! The part of the schema that describes lists of joints.
+
+use super::Properties;
+use super::values::{
+    array, cases, closed, described, direction, exactly, form, name, number, object, point,
+};
+use crate::mechanism::file::joints::{
+    FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
+};
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::numeric::Quantity;
+use nalgebra::{Point3, Vector3};
+use serde_json::{Value, json};
+
+/// The keys of a file that lists joints.
+pub fn joint_list() -> Value {
+    let legs = json!({ "minItems": 2, "items": form(LEG_KEYS, &["joints"], &[]) });
+    form(KEYS, &["platform", "leg"], &[("leg", legs)])
+}
+
+/// What the keys of such a file mean, apart from `leg`.
+pub fn properties() -> Properties {
+    let platform = "The platform at home.";
+    let reference = point("the platform's reference point, whose place the pose gives", 3);
+    let reference = [("point".to_owned(), reference)].into_iter().collect();
+    let task = "How the pose is measured, where the geometry leaves a choice. `opm decompose` prints the \
+                frames that result.";
+    let task_keys = TASK_KEYS.iter().map(|&key| (key.to_owned(), task_key(key))).collect();
+    [
+        ("platform".to_owned(), closed(platform, reference, &["point"])),
+        ("task".to_owned(), closed(task, task_keys, &[])),
+    ]
+    .into_iter()
+    .collect()
+}
+
+/// What the keys of a leg mean.
+pub fn leg_properties() -> Properties {
+    let mut joints = array("The leg's joints, from base to platform.", joint());
+    joints["minItems"] = json!(1);
+    let description = "The leg's name. If it is not given: leg1, leg2, ...";
+    [("name".to_owned(), name(description)), ("joints".to_owned(), joints)].into_iter().collect()
+}
+
+fn task_key(key: &str) -> Value {
+    let frame = |what: &str| {
+        let keys = FRAME_KEYS.iter().map(|&key| (key.to_owned(), frame_key(key))).collect();
+        closed(what, keys, &[])
+    };
+    match key {
+        "axis" => direction("the side to which the intersection motion is positive"),
+        "lower" => frame("The frame of the lower section, next to the base."),
+        "upper" => frame("The frame of the upper section, next to the platform."),
+        _ => Value::Bool(true),
+    }
+}
+
+fn frame_key(key: &str) -> Value {
+    match key {
+        "x" => direction(
+            "the direction of coordinate x, in the plane; for a sphere, the first axis of its frame, \
+             perpendicular to the intersection motion",
+        ),
+        "axis" => direction(
+            "where the sections have no motion in common: the third axis of the frame of a sphere, or a \
+             direction on the positive side of the axis of a cylinder",
+        ),
+        "w" => direction("the positive direction of coordinate w"),
+        "normal" => direction("the normal of the plane, about which its angle is positive"),
+        "origin" => point("the point that lengths are measured from", 3),
+        _ => Value::Bool(true),
+    }
+}
+
+fn joint() -> Value {
+    let types = TYPES.map(|(word, _)| word);
+    let description = "What the joint allows: revolute a rotation, prismatic a translation, helical a screw \
+                       motion, cylindrical a rotation and a translation along one axis, universal rotations \
+                       about two axes, spherical every rotation.";
+    let mut named = name("The joint's name, unique in the mechanism.");
+    named["not"] = json!({ "enum": RESERVED });
+    let properties = [
+        ("name", named),
+        ("type", json!({ "description": description, "enum": types })),
+        ("axis", direction("the direction of the axis at home")),
+        ("axis2", direction("the direction, at home, of the axis next to the platform")),
+        ("point", point("a point on the axis at home; of a prismatic joint, where it is drawn", 3)),
+        ("pitch", number(PITCH, Quantity::Length)),
+        (
+            "actuated",
+            json!({ "description": "Whether a motor drives the joint.", "type": "boolean" }),
+        ),
+        ("home", json!({ "description": AT_HOME })),
+        ("limits", json!({ "description": LIMITS })),
+    ];
+    let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+    let mut joint = described("A joint, at home.", object(properties));
+    joint["required"] = json!(["name", "type"]);
+    let forms = TYPES.iter().map(|&(word, kind)| (word, joint_form(kind))).collect();
+    if let (Value::Object(joint), Value::Object(forms)) = (&mut joint, cases("type", forms)) {
+        joint.extend(forms);
+    }
+    joint
+}
+
+const PITCH: &str = "the advance along the axis per radian; negative if it is left-handed";
+const AT_HOME: &str = "The value at home, 0 if it is not given; a reported value is this one plus the \
+                       displacement. A number, or for a joint of several coordinates an array with one for \
+                       each. In units.angle or units.length.";
+const LIMITS: &str = "The lowest and the highest value, [lowest, highest], both included. For a joint of \
+                      several coordinates an array with one pair for each. In units.angle or units.length.";
+
+/// The keys of a joint of one type.
+fn joint_form(kind: Type) -> Value {
+    // Only the number of its coordinates counts.
+    let like = match kind {
+        Type::Revolute => JointKind::Revolute,
+        Type::Prismatic => JointKind::Prismatic,
+        Type::Helical => JointKind::Helical { pitch: 1.0 },
+        Type::Cylindrical => JointKind::Cylindrical,
+        Type::Universal => JointKind::Universal { second: Vector3::x_axis() },
+        Type::Spherical => JointKind::Spherical,
+    };
+    let joint = Joint::new("", like, Vector3::z_axis(), Point3::origin());
+    let number = json!({ "type": "number" });
+    let pair = exactly(2, json!({ "type": "array", "items": number }));
+    let several = |item: &Value, count| exactly(count, json!({ "type": "array", "items": item }));
+    let (home, limits) = match joint.freedoms() {
+        1 => (number.clone(), pair),
+        count => (several(&number, count), several(&pair, count)),
+    };
+    form(&kind.keys(), &kind.needs(), &[("home", home), ("limits", limits)])
+}
