@@ -7,6 +7,7 @@ use crate::output::named;
 use crate::pose::Number;
 use crate::text::{self, Table, short};
 use opm_core::Quantity;
+use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, JointMotion, Measures, Singularities, VelocityError,
