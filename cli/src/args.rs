@@ -95,21 +95,38 @@ pub enum Command {
     Completions(CompletionsArgs),
 }
 
+/// The mechanism of a command.
+#[derive(Debug, clap::Args)]
+pub struct MechanismArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Accept joints that miss their subspaces by at most this length, for example 0.5mm, and move them
+    /// exactly into these; angles count as lengths at the mechanism's size
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub tolerance: Option<Number>,
+}
+
 /// Find the partial subspaces and the imaginary joints of a mechanism
 ///
 /// Splits every leg into a lower part, which moves in one subspace, and an upper part, which moves in
 /// another; the two subspaces share one motion. A leg whose upper part cannot make that motion gets
 /// an imaginary joint. Of several decompositions the preferred one comes first. The task coordinates are
 /// measured in the frames that are printed; [task] in the file can set them.
+///
+/// A mechanism that does not decompose gets an answer too (exit status 0): the subspace of each leg, what
+/// the platform can do at home, and why it is outside the class. If it nearly decomposes, the answer names
+/// the joints that are off, and by how much. Missing or redundant actuators are a warning.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm decompose plano-spherical-5dof
-  opm decompose my-mechanism.toml --format json")]
+  opm decompose my-mechanism.toml --format json
+  opm decompose rounded.toml --tolerance 0.5mm")]
 pub struct DecomposeArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
 }
 
 /// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
@@ -136,9 +153,9 @@ Examples:
   generate-poses | opm ik plano-spherical-5dof --poses - | head")]
 #[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses", "transform"]))]
 pub struct IkArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// One pose, for example x=10mm,y=0,xi=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub pose: Option<Pose>,
@@ -184,9 +201,9 @@ Examples:
   opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
   opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
 pub struct VelocityArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
@@ -219,9 +236,9 @@ Examples:
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
   opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
 pub struct FkArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The value of every actuated joint, for example S1=10mm,phi14=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub joints: Pose,
@@ -252,9 +269,9 @@ Examples:
   opm linkage bennett-double-spherical-6r --input a1 --sweep > turn.csv
   opm linkage bennett-double-spherical-6r --sweep --count 1001 -o turn.mcap")]
 pub struct LinkageArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The joint that moves the linkage, and its value if it is not at home
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub input: Option<InputValue>,
@@ -304,9 +321,9 @@ Examples:
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The motion: a TOML or CSV file, or the name of a shipped one
     #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
     pub motion: PathBuf,
@@ -376,9 +393,9 @@ Examples:
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// What the workspace consists of
     #[arg(long, value_name = "KIND", value_parser = kind(), default_value = "grid")]
     pub kind: WorkspaceKind,
@@ -503,6 +520,9 @@ pub struct MeasureArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+    /// Snap joints that miss their subspaces by at most this, as --tolerance of the other commands does
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub joint_tolerance: Option<Number>,
     /// Range of one coordinate, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
     pub over: Vec<OverAxis>,

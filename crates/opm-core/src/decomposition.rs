@@ -118,7 +118,9 @@ pub enum DecomposeError {
         near: Option<Box<NearMiss>>,
     },
     /// No joint is actuated.
-    #[error("no joint is actuated, expected actuators for a mobility of N = {mobility}")]
+    #[error(
+        "no joint is actuated, expected `actuated = true` in at least one; the mobility is N = {mobility}"
+    )]
     NoActuator {
         /// Mobility of the mechanism, `N`.
         mobility: usize,
@@ -202,7 +204,7 @@ fn list<T: ToString>(items: &[T]) -> String {
 pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     let report = mobility(mechanism)?;
     found_or_near(mechanism, regular_home(&report))?;
-    actuation(&report)?;
+    check_actuators(&report)?;
     found_or_near(mechanism, ranked(mechanism, &report))
 }
 
@@ -237,7 +239,10 @@ fn regular_home(report: &Mobility) -> Result<(), DecomposeError> {
 }
 
 /// Checks that the actuators control every motion of the platform.
-fn actuation(report: &Mobility) -> Result<(), DecomposeError> {
+///
+/// # Errors
+/// [`DecomposeError::NoActuator`] or [`DecomposeError::Loose`].
+pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
     let mobility = report.mobility;
     if report.actuators == 0 {
         return Err(DecomposeError::NoActuator { mobility });

@@ -76,7 +76,11 @@ const NAMES: [(&str, Motion, &str); 16] = [
     ("3-RPS", Motion::Any, "3-RPS tripod"),
     ("3-PRS", Motion::Any, "3-PRS tripod"),
     ("3-RUU", Motion::Translations, "Delta robot, with universal joints for its parallelograms"),
-    ("3-PUU", Motion::Translations, "linear Delta robot, with universal joints for its parallelograms"),
+    (
+        "3-PUU",
+        Motion::Translations,
+        "linear Delta robot, with universal joints for its parallelograms",
+    ),
     ("3-UPU", Motion::Translations, "translational 3-UPU"),
     ("3-UPU", Motion::Spherical, "spherical 3-UPU wrist"),
     ("4-RUU", Motion::Schoenflies, "4-RUU Schoenflies-motion generator"),
@@ -86,7 +90,11 @@ const NAMES: [(&str, Motion, &str); 16] = [
 
 /// The common name of an architecture, given in the notation of the field, whose platform moves in a
 /// group at home; `None` if it has none, or if the group is not the one of that name.
-pub(super) fn common_name(notation: &str, platform: Option<&SubspaceClass>) -> Option<&'static str> {
-    let named = |(legs, motion, _): &&(&str, Motion, &str)| *legs == notation && motion.is(platform);
+pub(super) fn common_name(
+    notation: &str,
+    platform: Option<&SubspaceClass>,
+) -> Option<&'static str> {
+    let named =
+        |(legs, motion, _): &&(&str, Motion, &str)| *legs == notation && motion.is(platform);
     NAMES.iter().find(named).map(|(_, _, name)| *name)
 }

@@ -45,7 +45,8 @@ impl Element {
     pub fn of(joint: &Joint, index: usize) -> Option<Self> {
         let (axis, point) = (joint.axis, joint.point);
         match (joint.kind, index) {
-            (JointKind::Revolute, _) | (JointKind::Universal { .. } | JointKind::Cylindrical, 0) => {
+            (JointKind::Revolute, _)
+            | (JointKind::Universal { .. } | JointKind::Cylindrical, 0) => {
                 Some(Self::Line { axis, point })
             }
             (JointKind::Universal { second }, _) => Some(Self::Line { axis: second, point }),

@@ -10,6 +10,7 @@
 //! section is fitted to all of its joints. A split counts only if the corrected mechanism has an
 //! ordinary decomposition.
 
+mod guides;
 mod miss;
 mod relation;
 mod search;
@@ -19,7 +20,7 @@ pub use miss::JointMiss;
 pub(super) use miss::misses_of;
 pub(super) use search::{MOST_DIMENSIONS, elements};
 
-use super::{Decomposition, DecomposeError, passive};
+use super::{DecomposeError, Decomposition, passive};
 use crate::decomposition::mobility::{MobilityError, frame, mobility};
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;

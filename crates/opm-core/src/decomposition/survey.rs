@@ -7,7 +7,7 @@ use super::mobility::{Mobility, MobilityError, frame, mobility};
 use super::near::{elements, near_smaller};
 use super::search::candidates;
 use super::{
-    Decomposition, DecomposeError, Freedom, JointMiss, NearMiss, found_or_near, list, passive,
+    DecomposeError, Decomposition, Freedom, JointMiss, NearMiss, found_or_near, list, passive,
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
@@ -185,7 +185,8 @@ impl fmt::Display for Outside {
                 let divided = match kinds.first().filter(|_| same) {
                     Some(kind) => format!("each leg has {kind}"),
                     None => {
-                        let of = |((leg, _), kind): (&(String, _), &String)| format!("{leg} has {kind}");
+                        let of =
+                            |((leg, _), kind): (&(String, _), &String)| format!("{leg} has {kind}");
                         legs.iter().zip(&kinds).map(of).collect::<Vec<_>>().join(", ")
                     }
                 };
@@ -316,3 +317,6 @@ fn no_partial_subspaces(mechanism: &Mechanism, odd: Option<Box<JointMiss>>) -> O
     let names = mechanism.legs.iter().map(|leg| leg.name.clone());
     Outside::NothingShared { legs: names.zip(divided.into_iter().flatten()).collect(), odd }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! How far a joint is from the subspace of its section, in words.
 
-use crate::decomposition::element::{Element, Offset};
 use crate::decomposition::Freedom;
+use crate::decomposition::element::{Element, Offset};
 use crate::group::subspace::SubspaceClass;
 use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::{Leg, Section};
@@ -45,8 +45,10 @@ impl JointMiss {
             Some((element, element.offset(&subspace).unwrap_or(none)))
         });
         let offsets: Vec<_> = offsets.collect();
-        let largest = |of: fn(&Offset) -> f64| offsets.iter().map(|(_, o)| of(o)).fold(0.0, f64::max);
-        let worst = offsets.iter().max_by(|(_, a), (_, b)| a.relative(1.0).total_cmp(&b.relative(1.0)));
+        let largest =
+            |of: fn(&Offset) -> f64| offsets.iter().map(|(_, o)| of(o)).fold(0.0, f64::max);
+        let worst =
+            offsets.iter().max_by(|(_, a), (_, b)| a.relative(1.0).total_cmp(&b.relative(1.0)));
         Self {
             leg: leg.to_owned(),
             joint: joint.name.clone(),
@@ -68,7 +70,8 @@ impl JointMiss {
         use SubspaceClass as Class;
         let angle = || format!("{} deg", number(self.angle.to_degrees()));
         let distance = || format!("{} mm", number(self.distance * 1e3));
-        let other = || format!("it does not move in the {} subspace of the others", self.subspace.name());
+        let other =
+            || format!("it does not move in the {} subspace of the others", self.subspace.name());
         if !self.angle.is_finite() {
             return other();
         }
@@ -79,7 +82,10 @@ impl JointMiss {
             (_, Class::Spherical { .. }) => {
                 format!("its axis passes the centre of the others at {}", distance())
             }
-            (Some(Element::Slide { .. }), Class::Cylindrical { .. } | Class::Translation { .. }) => {
+            (
+                Some(Element::Slide { .. }),
+                Class::Cylindrical { .. } | Class::Translation { .. },
+            ) => {
                 format!("its direction is {} off the axis of the others", angle())
             }
             (Some(Element::Slide { .. }), _) => {
@@ -96,7 +102,9 @@ impl JointMiss {
                 match (self.angle > UNTOLD_ANGLE, self.distance > UNTOLD_DISTANCE) {
                     (true, true) => format!("{} and passes it at {}", tilted(), distance()),
                     (true, false) => tilted(),
-                    (false, _) => format!("its axis passes the axis of the others at {}", distance()),
+                    (false, _) => {
+                        format!("its axis passes the axis of the others at {}", distance())
+                    }
                 }
             }
             (

@@ -2,8 +2,9 @@
 //! plane or is its normal, two cylinders with parallel axes, a cylinder whose axis passes through the
 //! centre of a sphere.
 
+use super::guides::Guides;
 use crate::group::subspace::SubspaceClass;
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 /// Both fitted groups can be off by the tolerance.
 const BOTH: f64 = 2.0;
@@ -16,29 +17,44 @@ pub(super) fn related(
     length: f64,
     tolerance: f64,
 ) -> [SubspaceClass; 2] {
-    use SubspaceClass as Class;
     let [lower, upper] = groups;
-    let (angle, distance) = (BOTH * tolerance, BOTH * tolerance * length);
-    let lower_moves = counts[0] < counts[1];
-    match (lower, upper) {
-        (Class::Planar { normal: a }, Class::Cylindrical { axis: b, .. })
-        | (Class::Cylindrical { axis: a, .. }, Class::Planar { normal: b })
-        | (Class::TranslationalPlane { normal: a }, Class::Cylindrical { axis: b, .. })
-        | (Class::Cylindrical { axis: a, .. }, Class::TranslationalPlane { normal: b })
-        | (Class::Cylindrical { axis: a, .. }, Class::Cylindrical { axis: b, .. }) => {
-            let [a, b] = if lower_moves { [aligned(a, b, angle), b] } else { [a, aligned(b, a, angle)] };
-            [with_direction(lower, a), with_direction(upper, b)]
+    let near = BOTH * tolerance;
+    let through = |group: SubspaceClass, other: SubspaceClass| match group {
+        SubspaceClass::Cylindrical { axis, point } => {
+            let centre = Guides::of(&other).centre;
+            let passes = |c: &Point3<f64>| (c - point).cross(&axis).norm() <= near * length;
+            let point = centre.filter(passes).unwrap_or(point);
+            SubspaceClass::Cylindrical { axis, point }
         }
-        (Class::Cylindrical { axis, point }, Class::Spherical { centre }) => {
-            let near = (centre - point).cross(&axis).norm() <= distance;
-            [Class::Cylindrical { axis, point: if near { centre } else { point } }, upper]
+        SubspaceClass::Identity
+        | SubspaceClass::Rotation { .. }
+        | SubspaceClass::Translation { .. }
+        | SubspaceClass::Helical { .. }
+        | SubspaceClass::TranslationalPlane { .. }
+        | SubspaceClass::TranslationalSpace
+        | SubspaceClass::Planar { .. }
+        | SubspaceClass::Spherical { .. }
+        | SubspaceClass::PlanarHelical { .. }
+        | SubspaceClass::Schoenflies { .. }
+        | SubspaceClass::Full => group,
+    };
+    let is_cylinder = |group: &SubspaceClass| matches!(group, SubspaceClass::Cylindrical { .. });
+    match (direction(&lower), direction(&upper)) {
+        (Some(a), Some(b)) if groups.iter().any(is_cylinder) => {
+            if counts[0] < counts[1] {
+                [with_direction(lower, aligned(a, b, near)), upper]
+            } else {
+                [lower, with_direction(upper, aligned(b, a, near))]
+            }
         }
-        (Class::Spherical { centre }, Class::Cylindrical { axis, point }) => {
-            let near = (centre - point).cross(&axis).norm() <= distance;
-            [lower, Class::Cylindrical { axis, point: if near { centre } else { point } }]
-        }
-        _ => groups,
+        _ => [through(lower, upper), through(upper, lower)],
     }
+}
+
+/// The axis of a cylinder, or the normal of a plane.
+fn direction(group: &SubspaceClass) -> Option<Unit<Vector3<f64>>> {
+    let guides = Guides::of(group);
+    guides.line.and(guides.slide).or(guides.normal)
 }
 
 /// A direction, made parallel or perpendicular to another one if it nearly is.

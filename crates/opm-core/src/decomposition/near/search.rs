@@ -1,9 +1,9 @@
 //! The splits of a mechanism within a tolerance.
 
 use super::relation::related;
+use crate::decomposition::Freedom;
 use crate::decomposition::element::{Element, generated, robust, worst};
 use crate::decomposition::search::candidates;
-use crate::decomposition::Freedom;
 use crate::group::subspace::{Frame, MotionSubspace, SubspaceClass};
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;

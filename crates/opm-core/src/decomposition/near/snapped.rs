@@ -1,6 +1,7 @@
 //! The correction of a mechanism: every joint is moved as little as it takes to be exactly in the group
 //! of its section.
 
+use super::guides::Guides;
 use super::miss::misses_of;
 use super::search::{NearSplit, Parts};
 use super::{EXACT, JointMiss, Snapped};
@@ -98,9 +99,7 @@ fn moved(joint: &Joint, constraints: &[(usize, SubspaceClass)], length: f64) -> 
     }
     let places: Vec<(usize, Place)> = constraints
         .iter()
-        .filter_map(|(index, group)| {
-            Some((*index, place(&Element::of(&moved, *index)?, group)?))
-        })
+        .filter_map(|(index, group)| Some((*index, place(&Element::of(&moved, *index)?, group)?)))
         .collect();
     moved.point = placed(joint.point, &places);
     // Two axes through two centres need not meet in a point; they are then aimed at it.
@@ -133,33 +132,16 @@ fn axis_of(joint: &mut Joint, index: usize) -> &mut Unit<Vector3<f64>> {
 /// The direction of an element that is in a group; `None` if the group leaves it free. Either those
 /// that the group fixes, or those that it only puts into a plane.
 fn direction(element: &Element, group: &SubspaceClass, fixed: bool) -> Option<Unit<Vector3<f64>>> {
-    use SubspaceClass as Class;
-    let along = |axis: Unit<Vector3<f64>>, to: Unit<Vector3<f64>>| {
-        fixed.then_some(if axis.dot(&to) < 0.0 { -to } else { to })
+    let guides = Guides::of(group);
+    let (axis, along, normal) = match *element {
+        Element::Line { axis, .. } | Element::Helix { axis, .. } => (axis, guides.axis, None),
+        Element::Slide { axis } => (axis, guides.slide, guides.normal),
+        Element::Ball { .. } => return None,
     };
-    match (*element, *group) {
-        (
-            Element::Line { axis, .. } | Element::Helix { axis, .. },
-            Class::Planar { normal: to }
-            | Class::PlanarHelical { axis: to, .. }
-            | Class::Schoenflies { axis: to }
-            | Class::Rotation { axis: to, .. }
-            | Class::Helical { axis: to, .. }
-            | Class::Cylindrical { axis: to, .. },
-        )
-        | (
-            Element::Slide { axis },
-            Class::Translation { axis: to } | Class::Cylindrical { axis: to, .. },
-        ) => along(axis, to),
-        (
-            Element::Slide { axis },
-            Class::Planar { normal }
-            | Class::TranslationalPlane { normal }
-            | Class::PlanarHelical { axis: normal, .. },
-        ) => (!fixed).then(|| {
-            Unit::new_normalize(axis.into_inner() - normal.into_inner() * normal.dot(&axis))
-        }),
-        _ => None,
+    if fixed {
+        along.map(|to| if axis.dot(&to) < 0.0 { -to } else { to })
+    } else {
+        normal.map(|n| Unit::new_normalize(axis.into_inner() - n.into_inner() * n.dot(&axis)))
     }
 }
 
@@ -173,22 +155,17 @@ struct Place {
 
 /// Where the point of an element in a group has to be; `None` if anywhere.
 fn place(element: &Element, group: &SubspaceClass) -> Option<Place> {
-    use SubspaceClass as Class;
-    let across = |axis: Unit<Vector3<f64>>| Matrix3::identity() - axis.into_inner() * axis.transpose();
-    match (*element, *group) {
-        (Element::Ball { .. }, Class::Spherical { centre }) => {
-            Some(Place { point: centre, projector: Matrix3::identity(), centre: true })
-        }
-        (Element::Line { axis, .. }, Class::Spherical { centre }) => {
-            Some(Place { point: centre, projector: across(axis), centre: true })
-        }
-        (
-            Element::Line { .. } | Element::Helix { .. },
-            Class::Rotation { axis, point }
-            | Class::Helical { axis, point, .. }
-            | Class::Cylindrical { axis, point },
-        ) => Some(Place { point, projector: across(axis), centre: false }),
-        _ => None,
+    let across =
+        |axis: Unit<Vector3<f64>>| Matrix3::identity() - axis.into_inner() * axis.transpose();
+    let Guides { line, centre, .. } = Guides::of(group);
+    let at_centre = |projector| centre.map(|point| Place { point, projector, centre: true });
+    match *element {
+        Element::Slide { .. } => None,
+        Element::Ball { .. } => at_centre(Matrix3::identity()),
+        Element::Line { axis, .. } | Element::Helix { axis, .. } => match line {
+            Some((axis, point)) => Some(Place { point, projector: across(axis), centre: false }),
+            None => at_centre(across(axis)),
+        },
     }
 }
 
@@ -214,22 +191,7 @@ fn directed(
     other: SubspaceClass,
     tolerance: f64,
 ) -> FrameHints {
-    let normal = |class| match class {
-        SubspaceClass::Planar { normal } | SubspaceClass::TranslationalPlane { normal } => {
-            Some(normal)
-        }
-        SubspaceClass::Identity
-        | SubspaceClass::Rotation { .. }
-        | SubspaceClass::Translation { .. }
-        | SubspaceClass::Helical { .. }
-        | SubspaceClass::Cylindrical { .. }
-        | SubspaceClass::TranslationalSpace
-        | SubspaceClass::Spherical { .. }
-        | SubspaceClass::PlanarHelical { .. }
-        | SubspaceClass::Schoenflies { .. }
-        | SubspaceClass::Full => None,
-    };
-    let (own, other) = (normal(own), normal(other));
+    let [own, other] = [own, other].map(|group| Guides::of(&group).normal);
     // Directions that hints name: the normals, the line where two planes meet, and across that line.
     let line = own.zip(other).and_then(|(a, b)| Unit::try_new(a.cross(&b), FREE));
     let across = own.zip(line).map(|(a, b)| Unit::new_normalize(a.cross(&b)));
