@@ -152,7 +152,7 @@ pub enum DecomposeError {
         match (near, odd) {
             (Some(near), _) => nearly_text(Some(near)),
             (None, Some(odd)) => format!(
-                "; without joint {} of leg {} there would be such a split: {}",
+                "; only joint {} of leg {} does not fit such a split: {}",
                 odd.joint,
                 odd.leg,
                 odd.reason()
@@ -185,7 +185,10 @@ fn one_group(group: &SubspaceClass) -> String {
 
 /// What a mechanism misses, as a part of a message.
 fn nearly_text(near: Option<&NearMiss>) -> String {
-    near.map_or_else(String::new, |near| format!("; it would nearly decompose: {near}"))
+    near.map_or_else(String::new, |near| {
+        let millimetres = near.tolerance * 1e3;
+        format!("; it would decompose within a tolerance of {millimetres:.2} mm: {near}")
+    })
 }
 
 fn list<T: ToString>(items: &[T]) -> String {

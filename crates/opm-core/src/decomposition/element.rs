@@ -5,7 +5,7 @@
 //! [subspaces](crate::group::subspace) decide exact mechanisms; this module measures those that are
 //! only nearly exact.
 
-use crate::group::subspace::SubspaceClass;
+use crate::group::subspace::{SubspaceClass, upward};
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
@@ -216,7 +216,8 @@ pub(super) fn worst(elements: &[Element], group: &SubspaceClass, length: f64) ->
     elements.iter().map(offset).fold(0.0, f64::max)
 }
 
-/// Rounds of [`robust`]; the smallest offset that is told from zero falls by this factor in each.
+/// Rounds of [`robust`]; the offset below which all elements weigh the same falls by this factor in
+/// each.
 const ROUNDS: i32 = 40;
 const SHARPER: f64 = 0.5;
 /// The offset below which all elements weigh the same at first, in characteristic lengths.
@@ -330,14 +331,14 @@ enum Order {
     Largest,
 }
 
-/// The eigenvector of a symmetric matrix with its smallest or its largest eigenvalue.
+/// The eigenvector of a symmetric matrix with its smallest or its largest eigenvalue, pointing up.
 fn eigenvector(matrix: &Matrix3<f64>, order: Order) -> Unit<Vector3<f64>> {
     let eigen = matrix.symmetric_eigen();
     let number = match order {
         Order::Smallest => eigen.eigenvalues.imin(),
         Order::Largest => eigen.eigenvalues.imax(),
     };
-    Unit::new_normalize(eigen.eigenvectors.column(number).into_owned())
+    upward(Unit::new_normalize(eigen.eigenvectors.column(number).into_owned()))
 }
 
 /// The point nearest to all lines and balls; `None` if the lines are parallel.

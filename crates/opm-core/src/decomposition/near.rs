@@ -174,7 +174,10 @@ fn correction(mechanism: &Mechanism, most: f64, dimensions: usize) -> Option<Cor
             let Some(snapped) = snapped::snapped(mechanism, &split, frame.length, tolerance) else {
                 continue;
             };
-            if plain(&snapped.mechanism).is_ok_and(|found| is_exact(&found)) {
+            let fits = |found: Vec<Decomposition>| {
+                is_exact(&found) && found.first().is_some_and(|d| self::dimensions(d) <= dimensions)
+            };
+            if plain(&snapped.mechanism).is_ok_and(fits) {
                 return Some(Correction { split, snapped });
             }
             refused.push(key);

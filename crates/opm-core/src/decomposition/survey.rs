@@ -197,7 +197,7 @@ impl fmt::Display for Outside {
                 match odd {
                     Some(odd) => write!(
                         f,
-                        "; without joint {} of leg {} they would: {}",
+                        "; only joint {} of leg {} does not fit: {}",
                         odd.joint,
                         odd.leg,
                         odd.reason()
