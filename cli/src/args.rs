@@ -122,7 +122,7 @@ pub struct MechanismArgs {
 Examples:
   opm decompose plano-spherical-5dof
   opm decompose my-mechanism.toml --format json
-  opm decompose rounded.toml --tolerance 0.5mm")]
+  opm decompose my-mechanism.toml --tolerance 0.5mm")]
 pub struct DecomposeArgs {
     /// The mechanism.
     #[command(flatten)]

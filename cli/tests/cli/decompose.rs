@@ -371,7 +371,7 @@ fn a_joint_that_is_nearly_right_is_named_and_can_be_snapped() {
     let too_small = opm(&["decompose", &file, "--tolerance", "0.4mm"]);
     assert!(too_small.text().contains("nearly two subspaces"), "{}", too_small.text());
     assert!(too_small.text().contains("snapped by --tolerance: none"));
-    for bad in ["0", "-1mm", "1deg", "inf"] {
+    for bad in ["0", "-1mm", "1deg"] {
         opm(&["decompose", &file, "--tolerance", bad]).fails_with_one_line(2, &["--tolerance"]);
     }
 }
