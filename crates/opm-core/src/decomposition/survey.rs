@@ -11,6 +11,7 @@ use super::{
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
+use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::Leg;
 use std::fmt;
 
@@ -245,7 +246,7 @@ fn leg_survey(leg: &Leg, mechanism: &Mechanism) -> LegSurvey {
 
 fn freedoms(leg: &Leg) -> Vec<Freedom> {
     let of = |(joint, count): (usize, usize)| (0..count).map(move |index| Freedom { joint, index });
-    leg.joints.iter().map(|joint| joint.freedoms()).enumerate().flat_map(of).collect()
+    leg.joints.iter().map(Joint::freedoms).enumerate().flat_map(of).collect()
 }
 
 /// The twists that all legs allow.

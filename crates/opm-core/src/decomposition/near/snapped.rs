@@ -28,12 +28,13 @@ pub(super) fn snapped(
     let mut misses: Vec<JointMiss> = vec![];
     let legs = mechanism.legs.iter().zip(&split.legs).zip(&mut snapped.legs);
     for ((leg, parts), corrected) in legs {
-        for (joint, constraints, miss) in constraints(leg, parts, split, length, tolerance) {
+        for Constrained { joint, groups, miss } in constraints(leg, parts, split, length, tolerance)
+        {
             if miss.relative(length) > tolerance {
                 return None;
             }
             if miss.relative(length) > EXACT {
-                corrected.joints[joint] = moved(&leg.joints[joint], &constraints, length);
+                corrected.joints[joint] = moved(&leg.joints[joint], &groups, length);
                 misses.push(miss);
             }
         }
@@ -42,6 +43,14 @@ pub(super) fn snapped(
     snapped.task.upper = directed(&mechanism.task.upper, split.upper, split.lower, tolerance);
     misses.sort_by(|a, b| b.relative(length).total_cmp(&a.relative(length)));
     Some(Snapped { mechanism: snapped, joints: misses })
+}
+
+/// A joint, the groups in which its freedoms (by their indices) have to move, and how far it is from
+/// them.
+struct Constrained {
+    joint: usize,
+    groups: Vec<(usize, SubspaceClass)>,
+    miss: JointMiss,
 }
 
 /// The groups in which each joint's freedoms have to move, and how far the joint is from them.
@@ -54,7 +63,7 @@ fn constraints(
     split: &NearSplit,
     length: f64,
     tolerance: f64,
-) -> Vec<(usize, Vec<(usize, SubspaceClass)>, JointMiss)> {
+) -> Vec<Constrained> {
     let near = |freedom: &Freedom, group: &SubspaceClass| {
         let element = Element::of(&leg.joints[freedom.joint], freedom.index);
         let offset = element.and_then(|element| element.offset(group));
@@ -76,12 +85,12 @@ fn constraints(
     misses.extend(misses_of(leg, &upper, Section::Upper, split.upper));
     let of_joint = |joint: usize| {
         let own = freedoms.iter().filter(|(freedom, _)| freedom.joint == joint);
-        let constraints = own.map(|(freedom, group)| (freedom.index, *group)).collect();
+        let groups = own.map(|(freedom, group)| (freedom.index, *group)).collect();
         let worst = misses
             .iter()
             .filter(|(number, _)| *number == joint)
             .max_by(|(_, a), (_, b)| a.relative(length).total_cmp(&b.relative(length)));
-        Some((joint, constraints, worst?.1.clone()))
+        Some(Constrained { joint, groups, miss: worst?.1.clone() })
     };
     (0..leg.joints.len()).filter_map(of_joint).collect()
 }
