@@ -7,7 +7,7 @@ use crate::group::subspace::SubspaceClass;
 use nalgebra::{Point3, Unit, Vector3};
 
 /// Both fitted groups can be off by the tolerance.
-const BOTH: f64 = 2.0;
+pub(super) const BOTH: f64 = 2.0;
 
 /// The groups of both sections, placed exactly as they nearly are. The group with fewer elements is the
 /// one that is moved; `counts` has the numbers of elements.

@@ -1,6 +1,6 @@
 //! The splits of a mechanism within a tolerance.
 
-use super::relation::related;
+use super::relation::{BOTH, related};
 use crate::decomposition::Freedom;
 use crate::decomposition::element::{Element, generated, robust, worst};
 use crate::decomposition::search::candidates;
@@ -124,7 +124,8 @@ impl Search<'_> {
             return false;
         }
         let both = [&self.lower[..], &self.upper[..]].concat();
-        a + b <= dimension(&both) + 1
+        let together = generated(&both, self.frame.length, BOTH * self.tolerance);
+        a + b <= together.dimension() + 1
     }
 
     /// Fits the groups of a complete split.
