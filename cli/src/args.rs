@@ -12,6 +12,7 @@ pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, PlotArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
+use crate::pose::Number;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -96,21 +97,38 @@ pub enum Command {
     Completions(CompletionsArgs),
 }
 
+/// The mechanism of a command.
+#[derive(Debug, clap::Args)]
+pub struct MechanismArgs {
+    /// Mechanism file, or the name of a shipped example
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Accept joints that miss their subspaces by at most this length, for example 0.5mm, and move them
+    /// exactly into these; angles count as lengths at the mechanism's size
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub tolerance: Option<Number>,
+}
+
 /// Find the partial subspaces and the imaginary joints of a mechanism
 ///
 /// Splits every leg into a lower part, which moves in one subspace, and an upper part, which moves in
 /// another; the two subspaces share one motion. A leg whose upper part cannot make that motion gets
 /// an imaginary joint. Of several decompositions the preferred one comes first. The task coordinates are
 /// measured in the frames that are printed; [task] in the file can set them.
+///
+/// A mechanism that does not decompose gets an answer too (exit status 0): the subspace of each leg, what
+/// the platform can do at home, and why it is outside the class. If it nearly decomposes, the answer names
+/// the joints that are off, and by how much. Missing or redundant actuators are a warning.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm decompose plano-spherical-5dof
-  opm decompose my-mechanism.toml --format json")]
+  opm decompose my-mechanism.toml --format json
+  opm decompose my-mechanism.toml --tolerance 0.5mm")]
 pub struct DecomposeArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
 }
 
 /// List the mechanisms and motions that come with opm, or print one

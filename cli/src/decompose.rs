@@ -1,13 +1,18 @@
 //! `opm decompose`: partial subspaces and imaginary joints.
 
+mod answer;
+
 use crate::args::{DecomposeArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::text::{self, Table, chain, short};
+use crate::text::{self, Table, chain, plural, short};
+use answer::Answer;
 use nalgebra::{Point3, Vector3};
 use opm_core::Quantity;
-use opm_core::decomposition::mobility::{Mobility, mobility};
-use opm_core::decomposition::{Decomposition, Freedom, MAX_DECOMPOSITIONS, decompose};
+use opm_core::decomposition::mobility::{HomeSingularity, Mobility};
+use opm_core::decomposition::{
+    Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, survey,
+};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::file::FileUnits;
@@ -25,35 +30,54 @@ const ROUNDING: f64 = 1e-7;
 const LISTED: usize = 6;
 
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::read(&args.mechanism)?;
     let mechanism = &loaded.file.mechanism;
-    let mobility = mobility(mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
-    let decompositions = decompose(mechanism).map_err(|error| {
-        let place = loaded.place_of(&CompileError::Decompose(error.clone()));
-        Failure::at(place, error)
-    })?;
+    let found = survey(mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
+    let Applies::Decomposed(decompositions) = &found.applies else {
+        let answer = Answer { loaded: &loaded, survey: &found };
+        // The mobility of a mechanism that is nearly right is not that of the right one.
+        let warnings = match found.applies {
+            Applies::Nearly => Vec::new(),
+            Applies::Decomposed(_) | Applies::Outside(_) => actuator_warnings(&found.mobility),
+        };
+        output.print(&answer.json(&warnings), answer.text())?;
+        warn(output, &loaded, &warnings);
+        return Ok(());
+    };
     let ways: Vec<Way<'_>> =
         decompositions.iter().map(|decomposition| Way::new(&loaded, decomposition)).collect();
-    let compiled = Manipulator::new(mechanism.clone());
-    if let Err(CompileError::Task(error)) = &compiled
+    let manipulator = ways.iter().find_map(|way| way.compiled.as_ref().ok());
+    let refused = match (manipulator, &ways[0].compiled) {
+        (None, Err(error)) => Some(error),
+        (Some(_), _) | (None, Ok(_)) => None,
+    };
+    if let Some(CompileError::Task(error)) = refused
         && error.key().is_some()
     {
         let place = loaded.place_of(&CompileError::Task(error.clone()));
         return Err(Failure::at(place, error.clone()));
     }
-    let report = Report { loaded: &loaded, mobility, ways, manipulator: compiled.as_ref().ok() };
-    output.print(&report.json(), report.text())?;
-
-    let label = &loaded.label;
-    let deviation = report.ways[0].decomposition.deviation;
+    let mut warnings = actuator_warnings(&found.mobility);
+    let deviation = ways[0].decomposition.deviation;
     if deviation > ROUNDING {
-        output.warn(format_args!(
-            "{label}: the joints are off their subspaces by {} (the sine of an angle, lengths over \
-             the mechanism's size); are its numbers rounded?",
+        warnings.push(format!(
+            "the joints are off their subspaces by {} (the sine of an angle, lengths over the \
+             mechanism's size); are its numbers rounded? --tolerance LENGTH corrects them",
             short(deviation)
         ));
     }
-    if let Err(error) = &compiled {
+    if let Some(near) = &found.near {
+        warnings.push(format!(
+            "it nearly decomposes into smaller sections, {} and {}: {near}{}",
+            near.lower.name(),
+            near.upper.name(),
+            loaded.tolerance_hint(near)
+        ));
+    }
+    let report = Report { loaded: &loaded, mobility: &found.mobility, ways: &ways, manipulator };
+    output.print(&report.json(&warnings), report.text())?;
+    warn(output, &loaded, &warnings);
+    if let Some(error) = refused {
         let (hint, place) = (loaded.linkage_hint(), loaded.place_of(error));
         let error = chain(error);
         output.note(format_args!("{place}: no closed-form inverse kinematics: {error}{hint}"));
@@ -61,12 +85,39 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     Ok(())
 }
 
+fn warn(output: &Output, loaded: &Loaded, warnings: &[String]) {
+    for warning in warnings {
+        output.warn(format_args!("{}: {warning}", loaded.label));
+    }
+}
+
+/// What is wrong with the actuators: none yet, too few, too many, or in the wrong places.
+fn actuator_warnings(report: &Mobility) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Err(error) = check_actuators(report) {
+        warnings.push(error.to_string());
+    }
+    let parallel = report.singular.iter().filter(|s| matches!(s, HomeSingularity::Parallel { .. }));
+    warnings
+        .extend(parallel.map(|singularity| format!("the home pose is singular: {singularity}")));
+    if !report.redundant.is_empty() {
+        warnings.push(format!(
+            "the actuators are redundant: {} actuated freedoms for {} that they control; any one of \
+             {} could be passive",
+            report.actuators,
+            report.controlled,
+            report.redundant.join(", ")
+        ));
+    }
+    warnings
+}
+
 /// One decomposition, with its task coordinates.
 struct Way<'a> {
     decomposition: &'a Decomposition,
     legs: Vec<Parts<'a>>,
-    /// `None` if there are no closed forms.
-    task: Option<Task>,
+    /// An error if there are no closed forms.
+    compiled: Result<Manipulator, CompileError>,
 }
 
 /// The parts of a leg.
@@ -80,8 +131,8 @@ struct Parts<'a> {
 
 struct Report<'a> {
     loaded: &'a Loaded,
-    mobility: Mobility,
-    ways: Vec<Way<'a>>,
+    mobility: &'a Mobility,
+    ways: &'a [Way<'a>],
     /// `None` if there are no closed forms.
     manipulator: Option<&'a Manipulator>,
 }
@@ -97,10 +148,13 @@ impl<'a> Way<'a> {
                 imaginary: split.imaginary.then(|| leg.imaginary_name()),
             })
             .collect();
-        // Without closed forms there are no coordinates; a note says so.
         let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
-        let task = compiled.ok().map(|manipulator| manipulator.task().clone());
-        Self { decomposition, legs, task }
+        Self { decomposition, legs, compiled }
+    }
+
+    /// The frames and coordinates. Without closed forms there are none; a note says so.
+    fn task(&self) -> Option<&Task> {
+        self.compiled.as_ref().ok().map(Manipulator::task)
     }
 
     /// Whether all legs move in one subgroup: then there is no upper section.
@@ -109,14 +163,14 @@ impl<'a> Way<'a> {
     }
 
     fn coordinates(&self) -> &[TaskCoordinate] {
-        self.task.as_ref().map_or(&[], |task| &task.coordinates)
+        self.task().map_or(&[], |task| &task.coordinates)
     }
 
     fn json(&self) -> Value {
         let d = self.decomposition;
         let coordinate = |c: &TaskCoordinate| json!({ "name": c.name, "home": c.home, "unit": c.quantity.unit() });
         let upper = (!self.is_one_subspace()).then_some(d.upper);
-        let frames = self.task.as_ref().map(|task| {
+        let frames = self.task().map(|task| {
             let upper = upper.map(|_| frame_json(&task.upper));
             json!({ "lower": frame_json(&task.lower), "upper": upper })
         });
@@ -181,7 +235,7 @@ impl<'a> Way<'a> {
 }
 
 impl Report<'_> {
-    fn json(&self) -> Value {
+    fn json(&self, warnings: &[String]) -> Value {
         let first = &self.ways[0];
         let mut json = json!({
             "name": self.loaded.file.mechanism.name,
@@ -193,6 +247,16 @@ impl Report<'_> {
             if self.ways.len() > 1 {
                 let others = self.ways[1..].iter().map(Way::json).collect();
                 json.insert("alternatives".to_owned(), Value::Array(others));
+            }
+            let applies = if first.decomposition.upper == SubspaceClass::Identity {
+                "one subspace"
+            } else {
+                "two subspaces"
+            };
+            json.insert("applies".to_owned(), applies.into());
+            json.insert("warnings".to_owned(), warnings.into());
+            if let Some(snapped) = &self.loaded.snapped {
+                json.insert("snapped".to_owned(), misses(snapped));
             }
         }
         json
@@ -243,7 +307,7 @@ impl Report<'_> {
             line(&format_args!("Of the imaginary joints, {} are redundant.", d.redundancy));
         }
 
-        if let Some(task) = &way.task {
+        if let Some(task) = way.task() {
             let mut table = Table::new(["task coordinate", ">home", "unit"]);
             for c in &task.coordinates {
                 let home = text::number(c.home, c.quantity, units);
@@ -255,7 +319,7 @@ impl Report<'_> {
                 line(&"Euler angles: R = Rz(zeta) Ry(xi) Rz(psi)\n");
             }
         }
-        line(&self.actuation());
+        line(&actuation(self.loaded, self.mobility));
         if let Some(manipulator) = self.manipulator {
             line(&self.inverse_kinematics(manipulator));
         }
@@ -269,6 +333,7 @@ impl Report<'_> {
                 line(&"  ... (--format json lists them all)");
             }
         }
+        line_of_snapped(&mut text, self.loaded);
         text
     }
 
@@ -288,29 +353,58 @@ impl Report<'_> {
         }
         text
     }
+}
 
-    /// The effect of the actuated joints.
-    fn actuation(&self) -> String {
-        let report = &self.mobility;
-        let joints = self.loaded.file.mechanism.joints().filter(|joint| joint.actuated);
-        let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
-        let mut text = format!("actuated: {}; ", names.join(", "));
-        if report.redundant.is_empty() {
-            let _ = write!(text, "{} for mobility N = {}", report.actuators, report.mobility);
-        } else {
-            let _ = write!(
-                text,
-                "{} for mobility N = {}, any one of {} could be left out",
-                report.actuators,
-                report.mobility,
-                report.redundant.join(", ")
-            );
-        }
-        if report.idle > 0 {
-            let _ = write!(text, "; {} of N do not move the platform", report.idle);
-        }
-        text
+/// The effect of the actuated joints.
+fn actuation(loaded: &Loaded, report: &Mobility) -> String {
+    let joints = loaded.file.mechanism.joints().filter(|joint| joint.actuated);
+    let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
+    let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let mut text = format!("actuated: {names}; ");
+    if report.redundant.is_empty() {
+        let _ = write!(text, "{} for mobility N = {}", report.actuators, report.mobility);
+    } else {
+        let _ = write!(
+            text,
+            "{} for mobility N = {}, any one of {} could be left out",
+            report.actuators,
+            report.mobility,
+            report.redundant.join(", ")
+        );
     }
+    if report.idle > 0 {
+        let _ = write!(text, "; {} of N do not move the platform", report.idle);
+    }
+    text
+}
+
+/// The joints that --tolerance moved, if it was given.
+fn line_of_snapped(text: &mut String, loaded: &Loaded) {
+    let Some(snapped) = &loaded.snapped else { return };
+    if snapped.is_empty() {
+        let _ = writeln!(text, "\nsnapped by --tolerance: none");
+        return;
+    }
+    let _ = writeln!(text, "\nsnapped by --tolerance: {}", plural(snapped.len() as u64, "joint"));
+    for miss in snapped {
+        let _ = writeln!(text, "  {miss}");
+    }
+}
+
+/// Joints and by how much they miss their subspaces.
+fn misses(joints: &[JointMiss]) -> Value {
+    let one = |miss: &JointMiss| {
+        json!({
+            "leg": miss.leg,
+            "joint": miss.joint,
+            "section": miss.section.to_string(),
+            "subspace": miss.subspace.name(),
+            "angle": miss.angle,
+            "distance": miss.distance,
+            "message": miss.reason(),
+        })
+    };
+    joints.iter().map(one).collect()
 }
 
 /// Names of the joints of a part. If a joint is divided between parts, its coordinates are named.
@@ -328,13 +422,17 @@ fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
     names
 }
 
+/// The components of a vector. Adding zero turns -0 into 0.
+fn triple_json(v: &Vector3<f64>) -> [f64; 3] {
+    [v.x, v.y, v.z].map(|c| c + 0.0)
+}
+
 /// The frame of a section, SI.
 fn frame_json(frame: &Subspace) -> Value {
-    let triple = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|c| c + 0.0);
-    let axis = |number: usize| triple(&frame.axes.column(number).into_owned());
+    let axis = |number: usize| triple_json(&frame.axes.column(number).into_owned());
     json!({
-        "origin": triple(&frame.measured_from.coords),
-        "reference": triple(&frame.origin.coords),
+        "origin": triple_json(&frame.measured_from.coords),
+        "reference": triple_json(&frame.origin.coords),
         "axes": [axis(0), axis(1), axis(2)],
     })
 }
@@ -369,11 +467,10 @@ fn intersection(class: &SubspaceClass) -> Value {
         SubspaceClass::Identity => return Value::Null,
         other => return json!({ "kind": other.name(), "axis": null, "point": null, "pitch": null }),
     };
-    let triple = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|c| c + 0.0);
     json!({
         "kind": class.name(),
-        "axis": triple(axis),
-        "point": point.map(|p| triple(&p.coords)),
+        "axis": triple_json(axis),
+        "point": point.map(|p| triple_json(&p.coords)),
         "pitch": pitch,
     })
 }

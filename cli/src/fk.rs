@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 use std::fmt::Write;
 
 pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let actuated = joints(&args.joints, &manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;

@@ -20,7 +20,7 @@ use std::fmt::Write;
 const MOST_CHOICES: u32 = 16;
 
 pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let modes = modes(args, &manipulator)?;
     let located = match (&args.pose, &args.transform) {

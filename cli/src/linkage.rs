@@ -13,7 +13,7 @@ use opm_core::linkage::{Input, Linkage};
 use report::Run;
 
 pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let linkage =
         Linkage::new(&loaded.file.mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let (input, value) = resolve(args.input.as_ref(), &linkage)?;

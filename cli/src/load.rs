@@ -1,12 +1,15 @@
 //! Mechanism files, by path or by the name of a shipped example.
 
+use crate::args::{MechanismArgs, Output};
 use crate::failure::Failure;
+use crate::pose::Number;
 use crate::text::chain;
-use opm_core::decomposition::DecomposeError;
+use opm_core::Quantity;
+use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, nearly, snap};
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
-use opm_core::mechanism::file::{self, MechanismFile};
+use opm_core::mechanism::file::{self, Digits, MechanismFile};
 use opm_core::task::{OddJoint, TaskError};
 use opm_study::recording::Attachment;
 use std::fs::File;
@@ -16,6 +19,9 @@ use std::path::{Path, PathBuf};
 /// Largest size of a mechanism file. A larger one is something else, for instance an endless device.
 const LONGEST: u64 = 16 << 20;
 
+/// The tolerance that messages offer, over the one that just accepts a mechanism.
+const MARGIN: f64 = 1.01;
+
 /// A mechanism file that was read.
 pub struct Loaded {
     /// Its name in messages: the path or the name as given.
@@ -24,14 +30,32 @@ pub struct Loaded {
     pub file_name: String,
     /// Its path; `None` for a shipped example.
     pub path: Option<PathBuf>,
-    /// Its text.
+    /// Its text; if joints were snapped, that of the snapped mechanism.
     pub text: String,
     /// The mechanism and its units.
     pub file: MechanismFile,
+    /// The joints that were snapped; `None` without a tolerance.
+    pub snapped: Option<Vec<JointMiss>>,
+}
+
+/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped.
+pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
+    let loaded = read(given)?;
+    loaded.note_snapped(output);
+    Ok(loaded)
+}
+
+/// Reads a mechanism, and snaps it if it has a tolerance.
+pub fn read(given: &MechanismArgs) -> Result<Loaded, Failure> {
+    let mut loaded = read_as_it_is(&given.file)?;
+    if let Some(tolerance) = given.tolerance {
+        loaded.snap(tolerance, "--tolerance")?;
+    }
+    Ok(loaded)
 }
 
 /// Reads a mechanism. An existing path has priority over an example of the same name.
-pub fn open(given: &Path) -> Result<Loaded, Failure> {
+pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
     let label = given.display().to_string();
     let (text, path, file_name) = match text(given, LONGEST, "mechanism file")? {
         Some(text) => {
@@ -52,7 +76,7 @@ pub fn open(given: &Path) -> Result<Loaded, Failure> {
     };
     let file =
         file::read(&text).map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
-    Ok(Loaded { label, file_name, path, text, file })
+    Ok(Loaded { label, file_name, path, text, file, snapped: None })
 }
 
 /// Reads a mechanism file that is attached to a recording. `label` is its name in the recorded command.
@@ -60,7 +84,7 @@ pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Fail
     let file =
         file::read(text).map_err(|errors| Failure::because(errors.in_file(label), errors))?;
     let (label, file_name) = (label.to_owned(), file_name.to_owned());
-    Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file })
+    Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file, snapped: None })
 }
 
 /// The text of a file with at most this number of bytes; `None` if there is no such file.
@@ -87,6 +111,70 @@ pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Fa
 }
 
 impl Loaded {
+    /// Moves joints that miss their subspaces by at most a tolerance exactly into these.
+    pub fn snap(&mut self, tolerance: Number, flag: &str) -> Result<(), Failure> {
+        let length = tolerance.value_of("the tolerance", Quantity::Length);
+        let length = length.map_err(|error| Failure::flag(flag, error))?;
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Failure::flag(flag, format!("{length} m, expected a positive length")));
+        }
+        if self.file.family.is_some() {
+            // The joints of a family are exact by construction.
+            self.snapped = Some(Vec::new());
+            return Ok(());
+        }
+        let Snapped { mechanism, joints } =
+            snap(&self.file.mechanism, length).map_err(|error| Failure::at(&self.label, error))?;
+        if !joints.is_empty() {
+            // A recording holds the mechanism that was computed with.
+            self.text = file::write(&mechanism, self.file.units, Digits::All);
+            self.file.mechanism = mechanism;
+        }
+        self.snapped = Some(joints);
+        Ok(())
+    }
+
+    /// Notes which joints were snapped, and by how much.
+    pub fn note_snapped(&self, output: &Output) {
+        for miss in self.snapped.iter().flatten() {
+            output.note(format_args!("{}: snapped {miss}", self.label));
+        }
+    }
+
+    /// What to do about a mechanism that nearly decomposes.
+    pub fn tolerance_hint(&self, near: &NearMiss) -> String {
+        let unit = self.file.units.length;
+        let length = rounded_up(MARGIN * near.tolerance / unit.factor());
+        format!(
+            "; more digits or a correction of the file help, or --tolerance {length}{} accepts and \
+             snaps it",
+            unit.symbol()
+        )
+    }
+
+    /// What a mechanism that cannot be compiled misses, if it nearly decomposes.
+    fn near_hint(&self, error: &CompileError) -> String {
+        match error {
+            CompileError::Decompose(
+                DecomposeError::NoFreedom { near, .. }
+                | DecomposeError::SingularHome { near, .. }
+                | DecomposeError::NoPartialSubspaces { near, .. },
+            ) => near.as_ref().map_or_else(String::new, |near| self.tolerance_hint(near)),
+            CompileError::Decompose(_) | CompileError::Choices(_) => String::new(),
+            _ => match nearly(&self.file.mechanism) {
+                Ok(Some(near)) => {
+                    format!(
+                        "; it nearly decomposes into {} and {}: {near}{}",
+                        near.lower.name(),
+                        near.upper.name(),
+                        self.tolerance_hint(&near)
+                    )
+                }
+                Ok(None) | Err(_) => String::new(),
+            },
+        }
+    }
+
     /// The file, as an attachment of a recording.
     pub fn attachment(&self) -> Attachment<'_> {
         Attachment { name: &self.file_name, text: &self.text }
@@ -96,7 +184,8 @@ impl Loaded {
     pub fn compile(&self) -> Result<Manipulator, Failure> {
         Manipulator::new(self.file.mechanism.clone()).map_err(|error| {
             let hint = self.linkage_hint();
-            let text = format!("{}: {}{hint}", self.place_of(&error), chain(&error));
+            let near = self.near_hint(&error);
+            let text = format!("{}: {}{near}{hint}", self.place_of(&error), chain(&error));
             Failure::because(text, error)
         })
     }
@@ -105,15 +194,25 @@ impl Loaded {
     /// known.
     pub fn place_of(&self, error: &CompileError) -> String {
         let (file, places) = (&self.file, &self.file.places);
+        let of_leg = |leg: &str| {
+            let number = file.mechanism.legs.iter().position(|known| known.name == leg);
+            number.and_then(|number| places.legs.get(number)).copied()
+        };
         let place = match error {
+            CompileError::Decompose(
+                DecomposeError::NoFreedom { near: Some(near), .. }
+                | DecomposeError::SingularHome { near: Some(near), .. }
+                | DecomposeError::NoPartialSubspaces { near: Some(near), .. },
+            ) => near.joints.first().and_then(|miss| of_leg(&miss.leg)),
+            CompileError::Decompose(DecomposeError::NoPartialSubspaces {
+                odd: Some(odd), ..
+            }) => of_leg(&odd.leg),
+            CompileError::Decompose(DecomposeError::NoActuator { .. }) => {
+                places.legs.first().copied()
+            }
             CompileError::Leg { leg, .. }
-            | CompileError::Decompose(DecomposeError::NoPartialSubspaces {
-                odd: Some([leg, _]),
-                ..
-            })
             | CompileError::Task(TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }) => {
-                let number = file.mechanism.legs.iter().position(|known| known.name == *leg);
-                number.and_then(|number| places.legs.get(number)).copied()
+                of_leg(leg)
             }
             CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
             _ => None,
@@ -144,6 +243,14 @@ impl Loaded {
         }
         Ok(())
     }
+}
+
+/// A positive number, rounded up to two significant digits, for a flag.
+fn rounded_up(value: f64) -> String {
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    let digits = (value / unit * (1.0 + 1e-9)).ceil() as i64;
+    let decimals = (-unit.log10().round()).max(0.0) as usize;
+    format!("{:.decimals$}", digits as f64 * unit)
 }
 
 /// The working mode that `--mode` names.

@@ -26,7 +26,11 @@ const LARGE: f64 = 1e7;
 const MOST_DIGITS: i32 = 15;
 
 pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let mut loaded = load::read_as_it_is(&args.file)?;
+    if let Some(tolerance) = args.joint_tolerance {
+        loaded.snap(tolerance, "--joint-tolerance")?;
+        loaded.note_snapped(output);
+    }
     let manipulator = loaded.compile()?;
     let modes = modes(&args.mode, &manipulator)?;
     let progress = interruptible()?;

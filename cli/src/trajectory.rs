@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use summary::Report;
 
 pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let motion = motion::open(&args.motion, &manipulator)?;
     let mut request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);

@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let mode = load::mode(&manipulator, &args.mode)?;
     let pose = args.pose.resolve(manipulator.task_coordinates())?;

@@ -26,7 +26,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.file)?;
+    let loaded = load::open(&args.mechanism, output)?;
     let manipulator = Arc::new(loaded.compile()?);
     let request = request(args, &manipulator)?.check(Arc::clone(&manipulator))?;
     request.refuse_unused_length()?;

@@ -23,6 +23,7 @@ mod pickle;
 mod place;
 mod rows;
 mod screws;
+mod snap;
 mod solids;
 mod solutions;
 mod sweep;

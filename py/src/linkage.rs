@@ -4,10 +4,10 @@ use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::pickle::frozen;
 use crate::rows::Tables;
+use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
-use opm_core::mechanism::file;
 use pyo3::prelude::*;
 use std::f64::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -40,6 +40,10 @@ impl Linkage {
     /// ----------
     /// path : path
     ///     TOML. Shipped linkages are read by :func:`examples.bennett`.
+    /// tolerance : float, optional
+    ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+    ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+    ///     much it was off; `text` is then the corrected mechanism.
     ///
     /// Returns
     /// -------
@@ -53,12 +57,14 @@ impl Linkage {
     /// OpmError
     ///     Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
     #[staticmethod]
+    #[pyo3(signature = (path, *, tolerance = None))]
     fn load(
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        tolerance: Option<f64>,
     ) -> PyResult<Self> {
         let (text, label) = arguments::mechanism(py, &path, "opm.examples.text")?;
-        Self::parse(text, Some(label))
+        Self::parse(py, text, Some(label), tolerance)
     }
 
     /// Read the text of a mechanism file.
@@ -69,6 +75,10 @@ impl Linkage {
     ///     TOML.
     /// label : str, optional
     ///     The name that messages use for the text.
+    /// tolerance : float, optional
+    ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+    ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+    ///     much it was off; `text` is then the corrected mechanism.
     ///
     /// Returns
     /// -------
@@ -80,10 +90,15 @@ impl Linkage {
     /// OpmError
     ///     Lists every problem of the text with its line and column, or says why it is not a loop of two spherical four-bars.
     #[staticmethod]
-    #[pyo3(signature = (text, label = None))]
-    fn parse(text: String, label: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (text, label = None, *, tolerance = None))]
+    fn parse(
+        py: Python<'_>,
+        text: String,
+        label: Option<String>,
+        tolerance: Option<f64>,
+    ) -> PyResult<Self> {
         let label = label.unwrap_or_else(|| "mechanism".to_owned());
-        let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
+        let (read, text) = snap::read(py, text, &label, tolerance)?;
         let inner = core::Linkage::new(&read.mechanism).map_err(|error| failed(&error))?;
         Ok(Self { inner, text, label })
     }

@@ -6,12 +6,13 @@ use crate::error::{failed, wrong};
 use crate::html;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
+use crate::snap;
 use crate::solutions::{Names, Solutions};
 use opm_core::Quantity;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
-use opm_core::mechanism::file::{self, MechanismFile};
+use opm_core::mechanism::file::MechanismFile;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -96,6 +97,10 @@ impl Manipulator {
     /// ----------
     /// path : path
     ///     TOML. Shipped mechanisms are read by :func:`examples.load`.
+    /// tolerance : float, optional
+    ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+    ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+    ///     much it was off; `text` is then the corrected mechanism.
     ///
     /// Returns
     /// -------
@@ -109,12 +114,14 @@ impl Manipulator {
     /// OpmError
     ///     Lists every problem of the file with its line and column, or says why it has no closed-form inverse kinematics.
     #[staticmethod]
+    #[pyo3(signature = (path, *, tolerance = None))]
     fn load(
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        tolerance: Option<f64>,
     ) -> PyResult<Self> {
         let (text, label) = arguments::mechanism(py, &path, "opm.examples.load")?;
-        Self::parse(text, Some(label))
+        Self::parse(py, text, Some(label), tolerance)
     }
 
     /// Read the text of a mechanism file.
@@ -125,6 +132,10 @@ impl Manipulator {
     ///     TOML.
     /// label : str, optional
     ///     The name that messages use for the text.
+    /// tolerance : float, optional
+    ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+    ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+    ///     much it was off; `text` is then the corrected mechanism.
     ///
     /// Returns
     /// -------
@@ -136,10 +147,15 @@ impl Manipulator {
     /// OpmError
     ///     Lists every problem of the text with its line and column, or says why it has no closed-form inverse kinematics.
     #[staticmethod]
-    #[pyo3(signature = (text, label = None))]
-    fn parse(text: String, label: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (text, label = None, *, tolerance = None))]
+    fn parse(
+        py: Python<'_>,
+        text: String,
+        label: Option<String>,
+        tolerance: Option<f64>,
+    ) -> PyResult<Self> {
         let label = label.unwrap_or_else(|| "mechanism".to_owned());
-        let read = file::read(&text).map_err(|errors| wrong(errors.in_file(&label)))?;
+        let (read, text) = snap::read(py, text, &label, tolerance)?;
         Self::compile(read, text, label)
     }
 

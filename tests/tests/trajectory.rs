@@ -152,6 +152,20 @@ fn what_is_violated_is_reported_and_nothing_else() {
                     let within = of.clone().find(|v| (v.start..=v.end).contains(time));
                     let reported =
                         violated.iter().find(|(g, _)| g == gauge).map(|(_, amount)| *amount);
+                    if within.is_some() != reported.is_some() {
+                        let mut s = manipulator.solution();
+                        for k in -40..=40 {
+                            let t = time + f64::from(k) / 4.0 / FINE;
+                            let mut instant =
+                                motion::Instant::new(manipulator.task_coordinates().len());
+                            motion.at(t, &mut instant);
+                            let r = manipulator
+                                .inverse(&instant.pose, manipulator.home_mode(), &mut s)
+                                .unwrap()
+                                .is_some();
+                            eprintln!("DBG {t} {r} {:?}", s.unreachable());
+                        }
+                    }
                     assert_eq!(
                         within.is_some(),
                         reported.is_some(),

@@ -1,5 +1,6 @@
 //! Arguments of the command that measures a workspace.
 
+use crate::pose::Number;
 use crate::pose::OverAxis;
 use clap::{ValueEnum, ValueHint};
 use opm_workspace::measure::check_tolerance;
@@ -45,6 +46,9 @@ pub struct MeasureArgs {
     /// Mechanism file, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+    /// Snap joints that miss their subspaces by at most this, as --tolerance of the other commands does
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub joint_tolerance: Option<Number>,
     /// Range of one coordinate, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
     pub over: Vec<OverAxis>,

@@ -1,5 +1,6 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
+use super::MechanismArgs;
 use crate::linkage::input::InputValue;
 use clap::ValueHint;
 use std::path::PathBuf;
@@ -26,9 +27,9 @@ Examples:
   opm linkage bennett-double-spherical-6r --input a1 --sweep > round.csv
   opm linkage bennett-double-spherical-6r --sweep --count 1001 -o round.mcap")]
 pub struct LinkageArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The joint that moves the linkage, and its value if it is not at home
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub input: Option<InputValue>,
@@ -78,9 +79,9 @@ Examples:
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The motion: a TOML or CSV file, or the name of a shipped one
     #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
     pub motion: PathBuf,

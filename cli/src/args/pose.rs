@@ -1,5 +1,6 @@
 //! Arguments of the commands for one pose or many: inverse and forward kinematics, velocities.
 
+use super::MechanismArgs;
 use crate::pose::{Number, Pose};
 use crate::transform::Transform;
 use clap::ValueHint;
@@ -29,9 +30,9 @@ Examples:
   generate-poses | opm ik plano-spherical-5dof --poses - | head")]
 #[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses", "transform"]))]
 pub struct IkArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// One pose, for example x=10mm,y=0,xi=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub pose: Option<Pose>,
@@ -77,9 +78,9 @@ Examples:
   opm velocity plano-spherical-5dof --rates psi=15deg --mode \"-+ ++ ++ +\"
   opm velocity translational-helical-3dof --rates phi=1 --length 100mm --format json")]
 pub struct VelocityArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
@@ -112,9 +113,9 @@ Examples:
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
   opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
 pub struct FkArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// The value of every actuated joint, for example S1=10mm,phi14=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub joints: Pose,

@@ -1,5 +1,6 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
+use super::MechanismArgs;
 use crate::pose::{GridAxis, Number};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -59,9 +60,9 @@ Examples:
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {
-    /// Mechanism file, or the name of a shipped example
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
     /// What the workspace consists of
     #[arg(long, value_name = "KIND", value_parser = kind(), default_value = "grid")]
     pub kind: WorkspaceKind,

@@ -184,13 +184,16 @@ fn legs_that_cannot_be_solved_are_named() {
             typed(&planar, "universal", ", axis2 = [0, 1, 0]"),
             &[
                 "no partial subspaces",
-                "without joint phi21 of leg leg1 there would be such a split",
+                "only joint phi21 of leg leg1 does not fit such a split: its axis passes the centre",
             ],
         ),
         (
             &slider,
             typed(&slider, "cylindrical", ", actuated = true"),
-            &["no partial subspaces", "without joint S1 of leg leg1 there would be such a split"],
+            &[
+                "no partial subspaces",
+                "only joint S1 of leg leg1 does not fit such a split: its axis is",
+            ],
         ),
         (&planar, planar.replace("phi21", "psi"), &["\"psi\" is the name of a task coordinate"]),
         (&planar, planar.replace("phi21", "tau.leg2"), &["that leg's imaginary joint"]),

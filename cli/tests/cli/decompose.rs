@@ -35,9 +35,12 @@ fn the_plano_spherical_manipulator() {
         "task_coordinates",
         "legs",
         "frames",
+        "applies",
+        "warnings",
     ];
     assert_eq!(keys(&found), expected, "its decomposition is unique: no alternatives");
     assert_eq!(found["name"], PLANO);
+    assert_eq!((&found["applies"], &found["warnings"]), (&json!("two subspaces"), &json!([])));
     let counts = ["lambda", "mobility", "imaginary_joints", "first_section_motions"];
     assert_eq!(counts.map(|key| found[key].as_u64().unwrap()), [5, 5, 3, 2]);
     assert_eq!(found["lower"], json!({ "subspace": "planar" }));
@@ -223,4 +226,179 @@ fn frames_that_do_not_fit_are_refused_where_they_stand() {
             opm(command).fails_with_one_line(1, &[&place, message]);
         }
     }
+}
+
+/// A Gough platform as a mechanism file.
+fn gough() -> String {
+    let mut text = "format = 1\nname = \"gough\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+                    [platform]\npoint = [0, 0, 600]\n"
+        .to_owned();
+    for i in 0..6 {
+        let number = f64::from(i);
+        let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+        let pair = f64::from(i / 2) * 120.0;
+        let around = |angle: f64, radius: f64| {
+            let angle = angle.to_radians();
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let foot = around(pair + 15.0 * side, 500.0);
+        let top = around(pair + 45.0 * side + 3.0 * number, 250.0);
+        let strut = [top[0] - foot[0], top[1] - foot[1], 600.0];
+        text += &format!(
+            "[[leg]]\njoints = [\n\
+             {{ name = \"u{i}\", type = \"universal\", axis = [{}, {}, 0], axis2 = [{}, {}, 1], point = [{}, {}, 0] }},\n\
+             {{ name = \"p{i}\", type = \"prismatic\", axis = [{}, {}, 600], actuated = true }},\n\
+             {{ name = \"s{i}\", type = \"spherical\", point = [{}, {}, 600] }},\n]\n",
+            -strut[1],
+            strut[0],
+            -600.0 * strut[0] / (strut[0].powi(2) + strut[1].powi(2)),
+            -600.0 * strut[1] / (strut[0].powi(2) + strut[1].powi(2)),
+            foot[0],
+            foot[1],
+            strut[0],
+            strut[1],
+            top[0],
+            top[1],
+        );
+    }
+    text
+}
+
+/// A mechanism outside the class gets an answer on standard output; other commands fail.
+#[test]
+fn a_gough_platform_is_outside_the_class() {
+    let folder = Folder::new();
+    let file = folder.write("gough.toml", gough());
+    let run = opm(&["decompose", &file]);
+    let text = run.text();
+    for part in [
+        "6-UPS (Gough-Stewart platform)",
+        "lambda = 6, mobility N = 6",
+        "leg6  UPS",
+        "6 freedoms (3T3R): full",
+        "outside the class, because wherever one of its UPS legs is divided",
+    ] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+    assert_eq!(run.stderr, "");
+    let found = decompose(&file);
+    let expected = [
+        "name",
+        "lambda",
+        "mobility",
+        "architecture",
+        "common_name",
+        "platform",
+        "legs",
+        "applies",
+        "because",
+        "warnings",
+    ];
+    assert_eq!(keys(&found), expected);
+    assert_eq!((&found["applies"], &found["lambda"]), (&json!("outside"), &json!(6)));
+    let leg = &found["legs"][0];
+    assert_eq!(
+        (&leg["chain"], &leg["subspace"], &leg["dimension"]),
+        (&json!("UPS"), &json!("full"), &json!(6))
+    );
+    for command in [&["ik", &file, "--pose", ""][..], &["workspace", &file]] {
+        opm(command).fails_with_one_line(1, &["no partial subspaces", "all six dimensions"]);
+    }
+}
+
+/// Without motors, or with too few or too many, the sections come first and a warning after them.
+#[test]
+fn actuators_are_a_warning() {
+    let folder = Folder::new();
+    let shipped = opm(&["examples", "plano-spherical-5dof-joints"]).text().to_owned();
+    let none = shipped.replace(", actuated = true", "");
+    let few = shipped.replacen(", actuated = true", "", 1);
+    let many = shipped.replacen("type = \"spherical\"", "type = \"spherical\", actuated = true", 1);
+    for (name, text, told) in [
+        (
+            "none.toml",
+            none,
+            "no joint is actuated, expected `actuated = true` in at least one; the mobility is N = 5",
+        ),
+        ("few.toml", few, "control 4 of the 5 freedoms"),
+        ("many.toml", many, "the actuators are redundant: 8 actuated freedoms for 5"),
+    ] {
+        let file = folder.write(name, text);
+        let run = opm(&["decompose", &file]);
+        assert!(run.text().contains("lower section   planar"), "{}", run.stdout);
+        assert!(run.stderr.contains("warning: ") && run.stderr.contains(told), "{}", run.stderr);
+        let found = decompose(&file);
+        let warnings = found["warnings"].as_array().unwrap();
+        assert!(warnings.iter().any(|w| w.as_str().unwrap().contains(told)), "{found}");
+        assert_eq!(found["lower"]["subspace"], "planar");
+    }
+    opm(&["ik", &folder.arg("none.toml"), "--pose", ""])
+        .fails_with_one_line(1, &["no joint is actuated"]);
+    opm(&["ik", &folder.arg("few.toml"), "--pose", ""])
+        .fails_with_one_line(1, &["control 4 of the 5"]);
+}
+
+/// One axis passes the centre at half a millimetre.
+#[test]
+fn a_joint_that_is_nearly_right_is_named_and_can_be_snapped() {
+    let folder = Folder::new();
+    let shipped = opm(&["examples", "plano-spherical-5dof-joints"]).text().to_owned();
+    let line = shipped.lines().find(|line| line.contains("\"theta32\"")).unwrap();
+    let moved = line.replace("point = [0, 0, 0]", "point = [0.4330127, 0.25, 0]");
+    assert_ne!(line, moved);
+    let file = folder.write("off.toml", shipped.replace(line, &moved));
+    let miss = "joint theta32 of leg leg2: its axis passes the centre of the others at 0.50 mm";
+    let hint = "--tolerance 0.51mm accepts and snaps it";
+
+    let run = opm(&["decompose", &file]);
+    for part in ["nearly two subspaces", "planar, normal (0, 0, 1)", miss, hint] {
+        assert!(run.text().contains(part), "no {part:?} in\n{}", run.text());
+    }
+    let found = decompose(&file);
+    assert_eq!(found["applies"], "nearly");
+    let joint = &found["nearly"]["joints"][0];
+    assert_eq!((&joint["leg"], &joint["joint"]), (&json!("leg2"), &json!("theta32")));
+    assert!((number(&joint["distance"]) - 0.5e-3).abs() < 1e-8, "{joint}");
+    opm(&["ik", &file, "--pose", ""]).fails_with_one_line(1, &["off.toml:", miss, hint]);
+
+    let snapped = opm(&["decompose", &file, "--tolerance", "0.51mm"]);
+    for part in ["upper section   spherical", "snapped by --tolerance: 1 joint", miss] {
+        assert!(snapped.text().contains(part), "no {part:?} in\n{}", snapped.text());
+    }
+    let found = opm(&["decompose", &file, "--tolerance", "0.51mm", "--format", "json"]).json();
+    assert_eq!(found["snapped"][0]["joint"], "theta32");
+    assert_eq!(found["warnings"], json!([]));
+    let run = opm(&["ik", &file, "--tolerance", "1mm", "--pose", "x=10mm", "--format", "json"]);
+    assert_eq!(run.json()["reachable"], true);
+    assert!(run.stderr.contains("snapped joint theta32"), "{}", run.stderr);
+    let plain = opm(&["ik", "plano-spherical-5dof-joints", "--pose", "x=10mm", "--format", "json"]);
+    let joint = |run: &crate::run::Run| number(&run.json()["solutions"][0]["joints"]["S2"]);
+    assert!((joint(&run) - joint(&plain)).abs() < 1e-12);
+    let args = ["measure", &file, "--joint-tolerance", "1mm", "--section", "upper", "--quiet"];
+    opm(&[&args[..], &["--tolerance", "0.3"]].concat()).text();
+
+    let too_small = opm(&["decompose", &file, "--tolerance", "0.4mm"]);
+    assert!(too_small.text().contains("nearly two subspaces"), "{}", too_small.text());
+    assert!(too_small.text().contains("snapped by --tolerance: none"));
+    for bad in ["0", "-1mm", "1deg"] {
+        opm(&["decompose", &file, "--tolerance", bad]).fails_with_one_line(2, &["--tolerance"]);
+    }
+}
+
+/// A recording holds the mechanism that was computed with: it needs no tolerance any more.
+#[test]
+fn a_recording_holds_the_snapped_mechanism() {
+    let folder = Folder::new();
+    let shipped = opm(&["examples", "plano-spherical-5dof-joints"]).text().to_owned();
+    let file = folder.write(
+        "off.toml",
+        shipped.replace("point = [0, 0, 0], home = 117", "point = [0.1, 0, 0], home = 117"),
+    );
+    let part = folder.arg("part.mcap");
+    let grid = ["--grid", "x=-10mm:10mm:3", "--tolerance", "1mm", "--quiet"];
+    let shard = ["workspace", &file, "--shard", "1/1", "-o", &part];
+    opm(&[&shard[..], &grid].concat()).text();
+    let merged = opm(&["merge", &part, "--format", "json"]).json();
+    let whole = opm(&[&["workspace", &file, "--format", "json"][..], &grid].concat()).json();
+    assert_eq!(merged["reachable"], whole["reachable"]);
 }

@@ -14,22 +14,29 @@
 //! A split found from the screws at home is valid for all poses: whatever the joint values, a leg's
 //! lower part displaces by elements of `A` and its upper part by elements of `B`.
 
+mod architecture;
+mod element;
 mod imaginary;
 pub mod mobility;
+mod near;
+mod odd;
 mod search;
+mod survey;
 
 #[cfg(test)]
 pub(crate) mod samples;
 
-use crate::decomposition::mobility::{HomeSingularity, MobilityError, frame, mobility};
-use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, TOLERANCE, fit};
+pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
+pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
+
+use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
+use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::{Joint, JointKind};
-use crate::mechanism::leg::{Leg, Section};
+use crate::mechanism::joint::Joint;
+use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
 use search::SplitCandidate;
 use std::cmp::Reverse;
-use std::fmt;
 use thiserror::Error;
 
 /// One freedom of a leg: a joint, and one of its screws.
@@ -95,20 +102,32 @@ pub enum DecomposeError {
     Mobility(#[from] MobilityError),
     /// The mechanism is a structure: its mobility is zero.
     #[error(
-        "the mechanism cannot move: its mobility N is 0 (its joint screws have rank lambda = {lambda})"
+        "the mechanism cannot move: its mobility N is 0 (its joint screws have rank lambda = \
+         {lambda}){}",
+        nearly_text(near.as_deref())
     )]
     NoFreedom {
         /// Dimension of the span of all joint screws.
         lambda: usize,
+        /// What it misses, if it is nearly a mechanism that moves.
+        near: Option<Box<NearMiss>>,
     },
     /// The home pose is singular, so that it does not represent other poses.
-    #[error("the home pose is singular ({}); expected a regular home pose", list(singularities))]
+    #[error(
+        "the home pose is singular ({}); expected a regular home pose{}",
+        list(singularities),
+        nearly_text(near.as_deref())
+    )]
     SingularHome {
         /// Every respect in which home is singular.
         singularities: Vec<HomeSingularity>,
+        /// What the mechanism misses, if it is nearly one that decomposes.
+        near: Option<Box<NearMiss>>,
     },
     /// No joint is actuated.
-    #[error("no joint is actuated, expected actuators for a mobility of N = {mobility}")]
+    #[error(
+        "no joint is actuated, expected `actuated = true` in at least one; the mobility is N = {mobility}"
+    )]
     NoActuator {
         /// Mobility of the mechanism, `N`.
         mobility: usize,
@@ -137,55 +156,30 @@ pub enum DecomposeError {
          split between two subgroups of less than {lambda} dimensions that share a one-parameter \
          motion{}",
         subspace.as_deref().map(|group| format!(": {}", one_group(group))).unwrap_or_default(),
-        odd.as_ref().zip(miss.as_ref()).map(|([leg, joint], miss)| format!(
-            "; without joint {joint} of leg {leg} there would be such a split: {miss}"
-        )).unwrap_or_default()
+        match (near, odd) {
+            (Some(near), _) => nearly_text(Some(near)),
+            (None, Some(odd)) => format!(
+                "; only joint {} of leg {} does not fit such a split: {}",
+                odd.joint,
+                odd.leg,
+                odd.reason()
+            ),
+            (None, None) => String::new(),
+        }
     )]
     NoPartialSubspaces {
         /// Dimension of the span of all joint screws.
         lambda: usize,
         /// Mobility of the mechanism, `N`.
         mobility: usize,
-        /// The leg and the joint without which there would be such a split, if there is exactly
-        /// one.
-        odd: Option<[String; 2]>,
-        /// How far that joint is from the section that it would belong to.
-        miss: Option<Box<JointMiss>>,
+        /// What the mechanism misses, if it is nearly one that decomposes.
+        near: Option<Box<NearMiss>>,
+        /// Otherwise, the joint without which there would be such a split, if there is exactly one.
+        odd: Option<Box<JointMiss>>,
         /// The group in which all legs move together; `None` if the span of all joint screws is not
         /// a subgroup.
         subspace: Option<Box<SubspaceClass>>,
     },
-}
-
-/// How far a joint is from a section of the mechanism without it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointMiss {
-    /// The nearer one of the two sections.
-    pub section: Section,
-    /// The group in which that section moves without the joint.
-    pub subspace: SubspaceClass,
-    /// The largest distance of a screw of the joint from the group: the sine of an angle, with
-    /// lengths divided by the mechanism's size. Up to [`TOLERANCE`], a joint is in the group.
-    pub deviation: f64,
-    /// For a revolute joint and a spherical group: the distance of the axis from the centre, metres.
-    pub distance: Option<f64>,
-}
-
-impl fmt::Display for JointMiss {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { section, subspace, deviation, distance } = self;
-        match distance {
-            Some(distance) => write!(
-                f,
-                "its axis misses the centre of the {section} section ({subspace}) by {distance:.3e} m"
-            ),
-            None => write!(
-                f,
-                "it deviates from the {section} section ({subspace}) by {deviation:.3e}, expected \
-                 at most {TOLERANCE:e}"
-            ),
-        }
-    }
 }
 
 /// What a mechanism is whose legs all move in one group.
@@ -194,6 +188,14 @@ fn one_group(group: &SubspaceClass) -> String {
         SubspaceClass::Full => "the joints of all legs together move in all six dimensions".into(),
         group => format!("all legs move in one subgroup, {group}"),
     }
+}
+
+/// What a mechanism misses, as a part of a message.
+fn nearly_text(near: Option<&NearMiss>) -> String {
+    near.map_or_else(String::new, |near| {
+        let millimetres = near.tolerance * 1e3;
+        format!("; it would decompose within a tolerance of {millimetres:.2} mm: {near}")
+    })
 }
 
 fn list<T: ToString>(items: &[T]) -> String {
@@ -211,21 +213,61 @@ fn list<T: ToString>(items: &[T]) -> String {
 /// actuators that do not control the platform, or has no partial subspaces.
 pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     let report = mobility(mechanism)?;
-    let (lambda, mobility) = (report.lambda, report.mobility);
-    if mobility == 0 {
-        return Err(DecomposeError::NoFreedom { lambda });
+    found_or_near(mechanism, regular_home(&report))?;
+    check_actuators(&report)?;
+    found_or_near(mechanism, ranked(mechanism, &report))
+}
+
+/// All valid decompositions of a mechanism, as [`decompose`], whatever its actuators: none yet, too few,
+/// or so placed that home is a parallel singularity.
+///
+/// # Errors
+/// [`DecomposeError`] if the mechanism is incomplete, cannot move, is singular at home in another
+/// respect, or has no partial subspaces.
+pub fn search_all(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
+    found_or_near(mechanism, passive(mechanism, &mobility(mechanism)?))
+}
+
+/// As [`search_all`]. Errors do not say yet whether the mechanism nearly decomposes.
+fn passive(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
+    let mut report = report.clone();
+    report.singular.retain(|s| !matches!(s, HomeSingularity::Parallel { .. }));
+    regular_home(&report)?;
+    ranked(mechanism, &report)
+}
+
+/// Checks that the mechanism moves and that home is regular.
+fn regular_home(report: &Mobility) -> Result<(), DecomposeError> {
+    if report.mobility == 0 {
+        return Err(DecomposeError::NoFreedom { lambda: report.lambda, near: None });
     }
     if !report.singular.is_empty() {
-        return Err(DecomposeError::SingularHome { singularities: report.singular });
+        let singularities = report.singular.clone();
+        return Err(DecomposeError::SingularHome { singularities, near: None });
     }
+    Ok(())
+}
+
+/// Checks that the actuators control every motion of the platform.
+///
+/// # Errors
+/// [`DecomposeError::NoActuator`] or [`DecomposeError::Loose`].
+pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
+    let mobility = report.mobility;
     if report.actuators == 0 {
         return Err(DecomposeError::NoActuator { mobility });
     }
     if !report.loose.is_empty() {
         let (actuators, controlled) = (report.actuators, report.controlled);
-        let free = report.loose;
+        let free = report.loose.clone();
         return Err(DecomposeError::Loose { mobility, actuators, controlled, free });
     }
+    Ok(())
+}
+
+/// The decompositions of a mechanism that moves, the preferred one first.
+fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
+    let (lambda, mobility) = (report.lambda, report.mobility);
     let mut found = search(mechanism, lambda, mobility, 1).0;
     if found.is_empty() {
         found.extend(one_subspace(mechanism, lambda, mobility));
@@ -234,54 +276,45 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
         found = search(mechanism, lambda, mobility, 0).0;
     }
     if found.is_empty() {
-        let (odd, miss) = odd_joint(mechanism, mobility).unzip();
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
-        let miss = miss.map(Box::new);
-        return Err(DecomposeError::NoPartialSubspaces { lambda, mobility, odd, miss, subspace });
+        return Err(DecomposeError::NoPartialSubspaces {
+            lambda,
+            mobility,
+            near: None,
+            odd: None,
+            subspace,
+        });
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));
     Ok(found)
 }
 
-/// The only joint that must be left out for the mechanism to have partial subspaces; `None` if
-/// there is no such joint, or more than one.
-fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<([String; 2], JointMiss)> {
-    let frame = frame(mechanism);
-    let mut odd = None;
-    for (number, leg) in mechanism.legs.iter().enumerate().filter(|(_, leg)| leg.joints.len() > 1) {
-        for joint in 0..leg.joints.len() {
-            let mut others = mechanism.clone();
-            let left_out = others.legs[number].joints.remove(joint);
-            let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
-            let lambda = MotionSubspace::span(frame, &screws).dimension();
-            let found = search(&others, lambda, mobility, 1).0;
-            let misses = found.iter().flat_map(|split| joint_misses(&left_out, split, frame));
-            if let Some(miss) = misses.min_by(|a, b| a.deviation.total_cmp(&b.deviation)) {
-                if odd.is_some() {
-                    return None;
-                }
-                odd = Some(([leg.name.clone(), left_out.name], miss));
+/// Adds to an error what the mechanism misses, if it nearly decomposes.
+fn found_or_near<T>(
+    mechanism: &Mechanism,
+    found: Result<T, DecomposeError>,
+) -> Result<T, DecomposeError> {
+    let mut error = match found {
+        Ok(found) => return Ok(found),
+        Err(error) => error,
+    };
+    let near_miss = |mechanism| near::near_miss(mechanism, near::MOST_DIMENSIONS);
+    match &mut error {
+        DecomposeError::NoFreedom { near, .. } | DecomposeError::SingularHome { near, .. } => {
+            *near = near_miss(mechanism).map(Box::new);
+        }
+        DecomposeError::NoPartialSubspaces { near, odd, mobility, .. } => {
+            *near = near_miss(mechanism).map(Box::new);
+            if near.is_none() {
+                *odd = odd::odd_joint(mechanism, *mobility).map(Box::new);
             }
         }
+        DecomposeError::Mobility(_)
+        | DecomposeError::NoActuator { .. }
+        | DecomposeError::Loose { .. } => {}
     }
-    odd
-}
-
-/// How far a joint is from either section of a decomposition.
-fn joint_misses(joint: &Joint, split: &Decomposition, frame: Frame) -> [JointMiss; 2] {
-    [(Section::Lower, split.lower), (Section::Upper, split.upper)].map(|(section, subspace)| {
-        let group = MotionSubspace::span(frame, &subspace.screws());
-        let screws = joint.screws();
-        let deviation = screws.iter().map(|screw| group.distance(screw)).fold(0.0, f64::max);
-        let distance = match (subspace, joint.kind) {
-            (SubspaceClass::Spherical { centre }, JointKind::Revolute) => {
-                Some((centre - joint.point).cross(&joint.axis).norm())
-            }
-            _ => None,
-        };
-        JointMiss { section, subspace, deviation, distance }
-    })
+    Err(error)
 }
 
 /// The largest number of decompositions that are listed. A joint along the intersection motion can

@@ -6,7 +6,7 @@
 //!
 //! | subgroup | file | displacement | twist |
 //! |---|---|---|---|
-//! | trivial | `identity.rs` | the unit type | zero |
+//! | trivial | `identity.rs` | nothing | zero |
 //! | planar, `SE(2)` | `planar.rs` | `z ↦ r z + t`, complex numbers | `(ω, vx, vy)` |
 //! | spherical, `SO(3)` | `spherical.rs` | a rotation matrix | `ω` |
 //! | cylindrical | `cylindrical.rs` | an angle and an advance | `(ω, v, 0)` |
@@ -38,6 +38,7 @@ mod translational_plane;
 pub use cylindrical::{CylindricalDisplacement, CylindricalMotion};
 pub use displacement::Displacement;
 pub use frame::Subspace;
+pub use identity::IdentityDisplacement;
 pub use intersection::{IntersectionMotion, MotionType};
 pub use joint_displacement::JointDisplacement;
 pub use kind::SubspaceKind;

@@ -425,7 +425,7 @@ impl Task {
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {
-            Displacement::Identity(()) => Path::Identity,
+            Displacement::Identity(_) => Path::Identity,
             Displacement::Planar(start) => Path::Planar(PlanarPath::Translation { start, rate }),
             // `mu` rotates about the first direction, `zeta` about the third.
             Displacement::Spherical(start) => match self.shared() {

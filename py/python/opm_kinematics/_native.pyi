@@ -149,13 +149,17 @@ class Linkage:
     """
 
     @staticmethod
-    def load(path: str | PathLike[str]) -> Linkage:
+    def load(path: str | PathLike[str], *, tolerance: float | None = None) -> Linkage:
         """Read a mechanism file.
 
         Parameters
         ----------
         path : path
             TOML. Shipped linkages are read by :func:`examples.bennett`.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
 
         Returns
         -------
@@ -170,7 +174,7 @@ class Linkage:
             Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
         """
     @staticmethod
-    def parse(text: str, label: str | None = None) -> Linkage:
+    def parse(text: str, label: str | None = None, *, tolerance: float | None = None) -> Linkage:
         """Read the text of a mechanism file.
 
         Parameters
@@ -179,6 +183,10 @@ class Linkage:
             TOML.
         label : str, optional
             The name that messages use for the text.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
 
         Returns
         -------
@@ -276,13 +284,17 @@ class Manipulator:
     """
 
     @staticmethod
-    def load(path: str | PathLike[str]) -> Manipulator:
+    def load(path: str | PathLike[str], *, tolerance: float | None = None) -> Manipulator:
         """Read a mechanism file.
 
         Parameters
         ----------
         path : path
             TOML. Shipped mechanisms are read by :func:`examples.load`.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
 
         Returns
         -------
@@ -337,7 +349,7 @@ class Manipulator:
             Says what is wrong with which joint of which leg, or why the mechanism has no closed-form inverse kinematics.
         """
     @staticmethod
-    def parse(text: str, label: str | None = None) -> Manipulator:
+    def parse(text: str, label: str | None = None, *, tolerance: float | None = None) -> Manipulator:
         """Read the text of a mechanism file.
 
         Parameters
@@ -346,6 +358,10 @@ class Manipulator:
             TOML.
         label : str, optional
             The name that messages use for the text.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
 
         Returns
         -------

@@ -143,8 +143,8 @@ fn a_gough_platform_has_no_partial_subspaces() {
     let expected = DecomposeError::NoPartialSubspaces {
         lambda: 6,
         mobility: 6,
+        near: None,
         odd: None,
-        miss: None,
         subspace,
     };
     assert_eq!(error, expected);
@@ -164,13 +164,17 @@ fn a_joint_that_misses_the_centre_is_named() {
     let across = joint.axis.cross(&Vector3::x()).normalize();
     joint.point += across * 4.3e-3;
     let error = decompose(&mechanism).unwrap_err();
-    let DecomposeError::NoPartialSubspaces { odd: Some(odd), miss: Some(miss), .. } = &error else {
-        panic!("{error}")
+    let near = match &error {
+        DecomposeError::NoPartialSubspaces { near: Some(near), .. }
+        | DecomposeError::SingularHome { near: Some(near), .. } => near,
+        _ => panic!("{error}"),
     };
-    assert_eq!(odd, &["leg2".to_owned(), "leg2.5".to_owned()]);
-    assert_eq!(miss.subspace.name(), "spherical");
-    assert!((miss.distance.unwrap() - 4.3e-3).abs() < 1e-12, "{miss}");
-    assert!(error.to_string().contains("by 4.300e-3 m"), "{error}");
+    assert_eq!((near.lower.name(), near.upper.name()), ("planar", "spherical"));
+    let [miss] = &near.joints[..] else { panic!("{near}") };
+    assert_eq!([&*miss.leg, &*miss.joint], ["leg2", "leg2.5"]);
+    assert!((miss.distance - 4.3e-3).abs() < 1e-9, "{miss}");
+    let told = "joint leg2.5 of leg leg2: its axis passes the centre of the others at 4.30 mm";
+    assert!(error.to_string().ends_with(told), "{error}");
 }
 
 /// A joint along the intersection motion may belong to either section.
@@ -233,7 +237,7 @@ fn structures_and_missing_actuators_are_reported() {
     let mut numbers = Numbers::new(7);
     let two = [unit(0.1, 0.2, 1.0), unit(1.0, -0.4, 0.5)].map(CommonGeometry::Planar);
     let rigid = two_sections(two, &[[2, 1]; 4], 1, &mut numbers);
-    assert_eq!(decompose(&rigid), Err(DecomposeError::NoFreedom { lambda: 5 }));
+    assert_eq!(decompose(&rigid), Err(DecomposeError::NoFreedom { lambda: 5, near: None }));
 
     let mut idle = PlanoSpherical::default().mechanism();
     idle.legs.iter_mut().flat_map(|leg| &mut leg.joints).for_each(|joint| joint.actuated = false);

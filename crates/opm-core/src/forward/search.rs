@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
     fn actuated_lower_section(&self, leg: usize) -> Displacement {
         let q = [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
         match &self.manipulator.legs[leg].lower.chain {
-            Chain::Rigid => Displacement::Identity(()),
+            Chain::Rigid => SubspaceKind::Identity.identity(),
             Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
             Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&q)),
             Chain::Ball(ball) => Displacement::Spherical(ball.forward(&q)),
@@ -365,7 +365,7 @@ impl<'a> Search<'a> {
     fn solve(&self, kind: SubspaceKind, conditions: &[Condition]) -> Option<Vec<Displacement>> {
         let size = self.manipulator.closure.size;
         match kind {
-            SubspaceKind::Identity => Some(vec![Displacement::Identity(())]),
+            SubspaceKind::Identity => Some(vec![SubspaceKind::Identity.identity()]),
             SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
                 crossing(kind, conditions, size).map(|g| vec![g])
             }

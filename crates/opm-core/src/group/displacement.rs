@@ -3,8 +3,8 @@
 
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{
-    Cylindrical, CylindricalDisplacement, Identity, Planar, PlanarDisplacement, Spherical,
-    SubspaceKind, TranslationalPlane, mismatch,
+    Cylindrical, CylindricalDisplacement, Identity, IdentityDisplacement, Planar,
+    PlanarDisplacement, Spherical, SubspaceKind, TranslationalPlane, mismatch,
 };
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
@@ -12,7 +12,7 @@ use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Displacement {
     /// No displacement.
-    Identity(()),
+    Identity(IdentityDisplacement),
     /// A planar displacement.
     Planar(PlanarDisplacement),
     /// A rotation about a centre.
@@ -183,7 +183,7 @@ impl Displacement {
     /// If displacements of this kind do not commute.
     pub(crate) fn sum(&self) -> [f64; 2] {
         match self {
-            Self::Identity(()) | Self::Cylindrical(_) | Self::Translational(_) => {
+            Self::Identity(_) | Self::Cylindrical(_) | Self::Translational(_) => {
                 let twist = self.logarithm();
                 [twist.x, twist.y]
             }
@@ -221,7 +221,7 @@ impl Displacement {
     }
 
     /// The identity. Panics if the displacement is of another kind.
-    fn identity(&self) -> &() {
+    fn identity(&self) -> &IdentityDisplacement {
         match self {
             Self::Identity(g) => g,
             Self::Planar(_)
@@ -236,7 +236,7 @@ impl Displacement {
     pub(crate) fn planar(&self) -> &PlanarDisplacement {
         match self {
             Self::Planar(g) => g,
-            Self::Identity(())
+            Self::Identity(_)
             | Self::Spherical(_)
             | Self::Cylindrical(_)
             | Self::Translational(_) => mismatch(Planar::KIND, self.kind()),
@@ -248,10 +248,9 @@ impl Displacement {
     pub(crate) fn spherical(&self) -> &Matrix3<f64> {
         match self {
             Self::Spherical(r) => r,
-            Self::Identity(())
-            | Self::Planar(_)
-            | Self::Cylindrical(_)
-            | Self::Translational(_) => mismatch(Spherical::KIND, self.kind()),
+            Self::Identity(_) | Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
+                mismatch(Spherical::KIND, self.kind())
+            }
         }
     }
 
@@ -260,7 +259,7 @@ impl Displacement {
     pub(crate) fn cylindrical(&self) -> &CylindricalDisplacement {
         match self {
             Self::Cylindrical(g) => g,
-            Self::Identity(()) | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
+            Self::Identity(_) | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
                 mismatch(Cylindrical::KIND, self.kind())
             }
         }
@@ -271,17 +270,17 @@ impl Displacement {
     pub(crate) fn translational(&self) -> &Complex<f64> {
         match self {
             Self::Translational(t) => t,
-            Self::Identity(()) | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(_) => {
+            Self::Identity(_) | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(_) => {
                 mismatch(TranslationalPlane::KIND, self.kind())
             }
         }
     }
 }
 
-impl From<()> for Displacement {
+impl From<IdentityDisplacement> for Displacement {
     #[inline(always)]
-    fn from((): ()) -> Self {
-        Self::Identity(())
+    fn from(g: IdentityDisplacement) -> Self {
+        Self::Identity(g)
     }
 }
 

@@ -10,33 +10,43 @@ use std::convert::Infallible;
 /// The trivial subgroup.
 pub(crate) struct Identity;
 
+/// The only displacement of the trivial subgroup: none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdentityDisplacement;
+
 impl Subgroup for Identity {
-    type Displacement = ();
+    type Displacement = IdentityDisplacement;
     /// It contains no motion.
     type Intersection = Infallible;
 
     const KIND: SubspaceKind = SubspaceKind::Identity;
     const DIMENSION: usize = 0;
     const COMMUTES: bool = true;
-    const IDENTITY: () = ();
+    const IDENTITY: IdentityDisplacement = IdentityDisplacement;
 
-    fn product((): &(), (): &()) {}
+    fn product(_: &IdentityDisplacement, _: &IdentityDisplacement) -> IdentityDisplacement {
+        IdentityDisplacement
+    }
 
-    fn inverse((): &()) {}
+    fn inverse(_: &IdentityDisplacement) -> IdentityDisplacement {
+        IdentityDisplacement
+    }
 
-    fn exponential(_: &LocalTwist) {}
+    fn exponential(_: &LocalTwist) -> IdentityDisplacement {
+        IdentityDisplacement
+    }
 
-    fn logarithm((): &()) -> LocalTwist {
+    fn logarithm(_: &IdentityDisplacement) -> LocalTwist {
         LocalTwist::zeros()
     }
 
     #[inline]
-    fn adjoint((): &(), twist: &LocalTwist) -> LocalTwist {
+    fn adjoint(_: &IdentityDisplacement, twist: &LocalTwist) -> LocalTwist {
         *twist
     }
 
     #[inline]
-    fn adjoint_of_inverse((): &(), twist: &LocalTwist) -> LocalTwist {
+    fn adjoint_of_inverse(_: &IdentityDisplacement, twist: &LocalTwist) -> LocalTwist {
         *twist
     }
 
@@ -46,11 +56,11 @@ impl Subgroup for Identity {
     }
 
     #[inline]
-    fn act((): &(), point: &Vector3<f64>) -> Vector3<f64> {
+    fn act(_: &IdentityDisplacement, point: &Vector3<f64>) -> Vector3<f64> {
         *point
     }
 
-    fn rotation_and_translation((): &()) -> (Rotation3<f64>, Vector3<f64>) {
+    fn rotation_and_translation(_: &IdentityDisplacement) -> (Rotation3<f64>, Vector3<f64>) {
         (Rotation3::identity(), Vector3::zeros())
     }
 
@@ -62,7 +72,7 @@ impl Subgroup for Identity {
         false
     }
 
-    fn size((): &()) -> f64 {
+    fn size(_: &IdentityDisplacement) -> f64 {
         0.0
     }
 
@@ -78,15 +88,23 @@ impl Subgroup for Identity {
         match *motion {}
     }
 
-    fn after(motion: &Infallible, (): &(), _: JointDisplacement) {
+    fn after(
+        motion: &Infallible,
+        _: &IdentityDisplacement,
+        _: JointDisplacement,
+    ) -> IdentityDisplacement {
         match *motion {}
     }
 
-    fn before(motion: &Infallible, (): &(), _: JointDisplacement) {
+    fn before(
+        motion: &Infallible,
+        _: &IdentityDisplacement,
+        _: JointDisplacement,
+    ) -> IdentityDisplacement {
         match *motion {}
     }
 
-    fn path(motion: &Infallible, (): &()) -> Path {
+    fn path(motion: &Infallible, _: &IdentityDisplacement) -> Path {
         match *motion {}
     }
 }

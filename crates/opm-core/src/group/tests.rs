@@ -138,7 +138,7 @@ fn frame(kind: SubspaceKind) -> impl Strategy<Value = Subspace> {
 /// The largest difference of the components of two displacements.
 fn apart(a: &Displacement, b: &Displacement) -> f64 {
     match a {
-        Displacement::Identity(()) => 0.0,
+        Displacement::Identity(_) => 0.0,
         Displacement::Planar(a) => {
             let b = b.planar();
             (a.rotation - b.rotation).norm().max((a.translation - b.translation).norm())
@@ -294,7 +294,7 @@ proptest! {
             return Ok(());
         };
         let at: Displacement = match path {
-            Path::Identity => Displacement::Identity(()),
+            Path::Identity => Displacement::Identity(IdentityDisplacement),
             Path::Planar(PlanarPath::Translation { start, rate }) => {
                 PlanarDisplacement { translation: start.translation + rate * t, ..start }.into()
             }

@@ -226,7 +226,7 @@ impl Manipulator {
         match target {
             Displacement::Planar(g) => shape.at(g.rotation, -g.translation, scale),
             Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),
-            Displacement::Identity(())
+            Displacement::Identity(_)
             | Displacement::Spherical(_)
             | Displacement::Cylindrical(_) => None,
         }

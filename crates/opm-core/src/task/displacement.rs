@@ -1,7 +1,8 @@
 //! The displacement of a section from its coordinates.
 
 use crate::group::{
-    CylindricalDisplacement, Displacement, MotionType, PlanarDisplacement, SubspaceKind,
+    CylindricalDisplacement, Displacement, IdentityDisplacement, MotionType, PlanarDisplacement,
+    SubspaceKind,
 };
 use crate::numeric::angle::sin_cos;
 use nalgebra::{Complex, Matrix3};
@@ -25,7 +26,7 @@ pub(crate) fn lower_displacement(
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
     match (form.kind, form.shared) {
-        (SubspaceKind::Identity, _) => Displacement::Identity(()),
+        (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
         (SubspaceKind::Planar, Some(MotionType::Rotation)) => {
             planar(Complex::new(1.0, 0.0), q(0), q(1))
         }
@@ -57,7 +58,7 @@ pub(crate) fn upper_displacement(
 ) -> Displacement {
     let q = |i: usize| at[i] - home[i];
     match (form.kind, form.shared) {
-        (SubspaceKind::Identity, _) => Displacement::Identity(()),
+        (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
         (SubspaceKind::Spherical, _) => orientation(at, sin_cos),
         (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => {
             planar(unit_of(sin_cos(q(2))), q(0), q(1))

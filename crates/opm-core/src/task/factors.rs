@@ -33,7 +33,7 @@ impl Task {
                 planar(Complex::new(1.0, 0.0), moved.x, moved.y)
             }
             SubspaceKind::Cylindrical => cylindrical(0.0, lower.direction(&(g * point - point)).z),
-            SubspaceKind::Identity => Displacement::Identity(()),
+            SubspaceKind::Identity => SubspaceKind::Identity.identity(),
             SubspaceKind::Spherical => {
                 let (before, after) = match upper.kind {
                     // `b` keeps the centre of the upper sphere fixed.
@@ -75,7 +75,7 @@ impl Task {
             }
         };
         match lower.kind {
-            SubspaceKind::Identity => Displacement::Identity(()),
+            SubspaceKind::Identity => SubspaceKind::Identity.identity(),
             SubspaceKind::Planar | SubspaceKind::Spherical => {
                 planar(rotation, moved.x - by_upper.x, moved.y - by_upper.y)
             }
@@ -123,7 +123,7 @@ impl Subspace {
         let rotation = self.rotation(g);
         let moved = self.point(&(g * self.origin));
         match self.kind {
-            SubspaceKind::Identity => Displacement::Identity(()),
+            SubspaceKind::Identity => SubspaceKind::Identity.identity(),
             SubspaceKind::Planar => planar(about_third(&rotation), moved.x, moved.y),
             SubspaceKind::Spherical => Displacement::Spherical(rotation),
             SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), moved.z),
@@ -147,7 +147,7 @@ fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) ->
     let third = |frame: &Subspace| frame.axes.column(2).into_owned();
     let moved = g * upper.origin;
     match (lower.kind, upper.kind) {
-        (Identity, _) => Displacement::Identity(()),
+        (Identity, _) => SubspaceKind::Identity.identity(),
         // `b` makes no displacement, or no rotation.
         (_, Identity) | (Spherical, TranslationalPlane) => lower.local(g),
         // `b` keeps the centre of the upper sphere.

@@ -37,7 +37,7 @@ impl Task {
         let rotation = self.shared() == Some(MotionType::Rotation);
         let b = self.upper_intersection.before(b, handed);
         match v {
-            Displacement::Identity(()) => {}
+            Displacement::Identity(_) => {}
             Displacement::Planar(g) => {
                 pose.extend([home(0) + g.translation.re, home(1) + g.translation.im]);
                 if !rotation {
@@ -58,7 +58,7 @@ impl Task {
         let home = |i: usize| self.coordinates[self.lower_count + i].home;
         let translation = self.shared() == Some(MotionType::Translation);
         match b {
-            Displacement::Identity(()) => {}
+            Displacement::Identity(_) => {}
             Displacement::Planar(g) if translation => {
                 pose.extend([home(0) + g.translation.im, home(1) + g.rotation.arg()]);
             }
@@ -126,7 +126,7 @@ impl Task {
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
             Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle),
-            Displacement::Identity(()) | Displacement::Translational(_) => {
+            Displacement::Identity(_) | Displacement::Translational(_) => {
                 JointDisplacement::Value(0.0)
             }
         }

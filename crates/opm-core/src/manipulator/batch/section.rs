@@ -86,7 +86,7 @@ impl Displacement {
     #[inline(always)]
     fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
-            Self::Identity(()) => {}
+            Self::Identity(_) => {}
             Self::Planar(g) => g.store(to, lane),
             Self::Spherical(r) => r.store(to, lane),
             Self::Cylindrical(g) => g.store(to, lane),

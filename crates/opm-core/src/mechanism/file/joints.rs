@@ -123,13 +123,11 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         joint_names.reserve(&imaginary, "that leg's imaginary joint");
     }
     let mut legs = Vec::new();
-    let mut complete = !tables.is_empty();
     for (index, table) in tables.iter().enumerate() {
         let name = leg_name(table, index);
         leg_names.add(&name, root.reader, table.location_of("name"));
         locations.legs.push(table.at);
         let joints = read_joints(table, platform, &mut joint_names);
-        complete &= joints.is_some();
         legs.push(Leg::new(name, joints.unwrap_or_default()));
     }
     let at = root.location_of("leg");
@@ -137,9 +135,6 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         let (count, tables) = (legs.len(), if legs.len() == 1 { "table" } else { "tables" });
         let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
         root.reader.report(at, problem);
-    }
-    if complete && !legs.iter().flat_map(|leg| &leg.joints).any(|joint| joint.actuated) {
-        root.reader.report(at, "no joint is actuated, expected `actuated = true` in at least one");
     }
     (Mechanism { name: name.to_owned(), legs, platform, task }, locations)
 }

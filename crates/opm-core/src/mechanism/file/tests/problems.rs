@@ -218,7 +218,6 @@ fn joints() {
             r#""c1""#,
             "two joints are called \"c1.angle\"",
         ),
-        (", actuated = true", "", "[[leg]]\nname", "no joint is actuated"),
         ("point = [10, 20, 30]\n", "", "[platform]", "`point` is missing"),
         ("name = \"r1\"", "name = \"x\"", "name = \"x\"", "\"x\" is the name of a task coordinate"),
         ("name = \"r1\"", "name = \"mode\"", "name = \"mode\"", "or a column of tables, expected"),

@@ -1,0 +1,199 @@
+//! Mechanisms that nearly decompose: their coordinates are rounded to two or three digits, or an axis
+//! is one degree off.
+//!
+//! [`nearly`] says which joints miss the subspaces of the others, and by how much. [`snap`] accepts
+//! such a mechanism within a tolerance and corrects it: it puts every joint exactly into the subspace
+//! of its section, so that everything downstream sees an exact mechanism.
+//!
+//! Both search for a split of all legs with a tolerance that grows until a split is found. Many joints
+//! can be off at once, so leaving out one joint after the other would not find it. The group of each
+//! section is fitted to all of its joints. A split counts only if the corrected mechanism has an
+//! ordinary decomposition.
+
+mod guides;
+mod miss;
+mod relation;
+mod search;
+mod snapped;
+
+pub use miss::JointMiss;
+pub(super) use miss::misses_of;
+pub(super) use search::{MOST_DIMENSIONS, elements};
+
+use super::{DecomposeError, Decomposition, passive};
+use crate::decomposition::mobility::{MobilityError, frame, mobility};
+use crate::group::subspace::{SubspaceClass, TOLERANCE};
+use crate::mechanism::Mechanism;
+use search::{NearSplit, Parts};
+use std::fmt;
+
+/// The tolerances of the search, from that of exact mechanisms to the largest that [`nearly`] still
+/// calls near: radians, and shares of the characteristic length.
+const TOLERANCES: [f64; 7] = [TOLERANCE, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, FARTHEST];
+const FARTHEST: f64 = 5e-2;
+
+/// An offset up to this size, in radians and characteristic lengths, is rounding of exact numbers.
+/// Such joints stay as they are.
+const EXACT: f64 = 1e-12;
+
+/// The sections that a mechanism nearly has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearMiss {
+    /// The subspace of the lower section, fitted to its joints.
+    pub lower: SubspaceClass,
+    /// The subspace of the upper section, fitted to its joints.
+    pub upper: SubspaceClass,
+    /// The joints that miss the subspace of their section, the worst one first.
+    pub joints: Vec<JointMiss>,
+    /// The tolerance that [`snap`] needs to accept the mechanism, metres.
+    pub tolerance: f64,
+}
+
+/// The number of joints that a message names.
+const NAMED: usize = 3;
+
+impl fmt::Display for NearMiss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named: Vec<String> = self.joints.iter().take(NAMED).map(JointMiss::to_string).collect();
+        write!(f, "{}", named.join("; "))?;
+        match self.joints.len().saturating_sub(NAMED) {
+            0 => Ok(()),
+            1 => write!(f, "; and 1 more joint misses by less"),
+            more => write!(f, "; and {more} more joints miss by less"),
+        }
+    }
+}
+
+/// A mechanism whose joints were put exactly into the subspaces of their sections.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapped {
+    /// The corrected mechanism.
+    pub mechanism: Mechanism,
+    /// The joints that were moved, the one that was farthest off first; empty if none had to be.
+    pub joints: Vec<JointMiss>,
+}
+
+/// What a mechanism misses that nearly decomposes; `None` if it decomposes, or is not even near.
+///
+/// A slider that is slightly off the plane of its section makes that section a Schoenflies one. A
+/// mechanism with such a large section decomposes, but may nearly decompose into smaller ones. Then
+/// the result says what it misses of these.
+///
+/// # Errors
+/// [`MobilityError`] if the mechanism is incomplete or has numbers that are not finite.
+pub fn nearly(mechanism: &Mechanism) -> Result<Option<NearMiss>, MobilityError> {
+    mobility(mechanism)?;
+    Ok(match plain(mechanism) {
+        Ok(found) => near_smaller(mechanism, &found),
+        Err(_) => near_miss(mechanism, MOST_DIMENSIONS),
+    })
+}
+
+/// What a mechanism misses of smaller sections, if it has a section that is large or has a pitch.
+pub(super) fn near_smaller(mechanism: &Mechanism, found: &[Decomposition]) -> Option<NearMiss> {
+    let large = |group: &SubspaceClass| match group {
+        SubspaceClass::TranslationalSpace
+        | SubspaceClass::PlanarHelical { .. }
+        | SubspaceClass::Schoenflies { .. }
+        | SubspaceClass::Full => true,
+        SubspaceClass::Identity
+        | SubspaceClass::Rotation { .. }
+        | SubspaceClass::Translation { .. }
+        | SubspaceClass::Helical { .. }
+        | SubspaceClass::TranslationalPlane { .. }
+        | SubspaceClass::Cylindrical { .. }
+        | SubspaceClass::Planar { .. }
+        | SubspaceClass::Spherical { .. } => false,
+    };
+    let first = found.first().filter(|d| large(&d.lower) || large(&d.upper))?;
+    near_miss(mechanism, dimensions(first) - 1)
+}
+
+/// The dimensions of both sections together.
+fn dimensions(decomposition: &Decomposition) -> usize {
+    decomposition.lower.dimension() + decomposition.upper.dimension()
+}
+
+/// What a mechanism misses to decompose into sections that have at most `dimensions` together. It must
+/// be complete, and must not decompose so already.
+pub(super) fn near_miss(mechanism: &Mechanism, dimensions: usize) -> Option<NearMiss> {
+    let length = frame(mechanism).length;
+    let Correction { split, snapped } = correction(mechanism, FARTHEST, dimensions)?;
+    let off = |joint: &JointMiss| joint.relative(length) > TOLERANCE;
+    let tolerance = snapped.joints.first().map_or(0.0, |worst| worst.relative(length) * length);
+    let worst = snapped.joints.first().cloned();
+    let mut joints: Vec<_> = snapped.joints.into_iter().filter(off).collect();
+    if joints.is_empty() {
+        joints.extend(worst);
+    }
+    Some(NearMiss { lower: split.lower, upper: split.upper, joints, tolerance })
+}
+
+/// Puts every joint exactly into the subspace of its section, if none is farther from it than
+/// `tolerance`: a length in metres. Angles count as lengths at the mechanism's characteristic length.
+///
+/// A mechanism that does not decompose within the tolerance is returned as it is.
+///
+/// # Errors
+/// [`MobilityError`] if the mechanism is incomplete or has numbers that are not finite.
+pub fn snap(mechanism: &Mechanism, tolerance: f64) -> Result<Snapped, MobilityError> {
+    mobility(mechanism)?;
+    let unchanged = || Snapped { mechanism: mechanism.clone(), joints: vec![] };
+    let most = match plain(mechanism) {
+        Ok(found) if is_exact(&found) => found.first().map_or(0, dimensions).saturating_sub(1),
+        Ok(_) | Err(_) => MOST_DIMENSIONS,
+    };
+    let correction = correction(mechanism, tolerance / frame(mechanism).length, most);
+    Ok(correction.map_or_else(unchanged, |correction| correction.snapped))
+}
+
+/// A split within some tolerance, and the mechanism that it gives.
+struct Correction {
+    split: NearSplit,
+    snapped: Snapped,
+}
+
+/// The correction with the smallest tolerance up to `most` (in characteristic lengths), to sections that
+/// have at most `dimensions` together.
+fn correction(mechanism: &Mechanism, most: f64, dimensions: usize) -> Option<Correction> {
+    let frame = frame(mechanism);
+    let larger = std::iter::successors(Some(2.0 * FARTHEST), |t| (*t < 1.0).then_some(2.0 * t));
+    let mut tolerances: Vec<f64> = TOLERANCES.into_iter().chain(larger).collect();
+    tolerances.retain(|t| *t < most);
+    tolerances.push(most);
+    let mut refused: Vec<(Vec<Parts>, [&str; 2])> = vec![];
+    for tolerance in tolerances {
+        for split in search::splits(mechanism, &frame, tolerance) {
+            if split.lower.dimension() + split.upper.dimension() > dimensions {
+                continue;
+            }
+            let key = (split.legs.clone(), [split.lower.name(), split.upper.name()]);
+            if refused.contains(&key) {
+                continue;
+            }
+            let Some(snapped) = snapped::snapped(mechanism, &split, frame.length, tolerance) else {
+                continue;
+            };
+            let fits = |found: Vec<Decomposition>| {
+                is_exact(&found) && found.first().is_some_and(|d| self::dimensions(d) <= dimensions)
+            };
+            if plain(&snapped.mechanism).is_ok_and(fits) {
+                return Some(Correction { split, snapped });
+            }
+            refused.push(key);
+        }
+    }
+    None
+}
+
+/// The decompositions of a mechanism as it is.
+fn plain(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
+    passive(mechanism, &mobility(mechanism)?)
+}
+
+fn is_exact(found: &[Decomposition]) -> bool {
+    found.first().is_some_and(|d| d.deviation <= EXACT)
+}
+
+#[cfg(all(test, feature = "files"))]
+mod tests;

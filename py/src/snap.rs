@@ -1,0 +1,41 @@
+//! Reading mechanism files whose joints nearly fit their subspaces.
+
+use crate::error::{failed, wrong};
+use opm_core::decomposition::{Snapped, snap};
+use opm_core::mechanism::file::{self, Digits, MechanismFile};
+use pyo3::exceptions::PyUserWarning;
+use pyo3::prelude::*;
+use std::ffi::CString;
+
+/// Reads the text of a mechanism file, and snaps it within a tolerance (metres) if one is given. Also gives
+/// the text of the mechanism as it is afterwards.
+pub fn read(
+    py: Python<'_>,
+    text: String,
+    label: &str,
+    tolerance: Option<f64>,
+) -> PyResult<(MechanismFile, String)> {
+    let mut read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
+    let Some(tolerance) = tolerance else { return Ok((read, text)) };
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(wrong(format!(
+            "tolerance is {tolerance:?}, expected a positive length in metres"
+        )));
+    }
+    if read.family.is_some() {
+        // The joints of a family are exact by construction.
+        return Ok((read, text));
+    }
+    let Snapped { mechanism, joints } =
+        snap(&read.mechanism, tolerance).map_err(|error| failed(&error))?;
+    if joints.is_empty() {
+        return Ok((read, text));
+    }
+    for miss in joints {
+        let message = CString::new(format!("{label}: snapped {miss}"))?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+    }
+    let text = file::write(&mechanism, read.units, Digits::All);
+    read.mechanism = mechanism;
+    Ok((read, text))
+}
