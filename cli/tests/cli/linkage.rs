@@ -184,7 +184,7 @@ fn wrong_usage_names_the_flag() {
 #[test]
 fn what_is_no_linkage_is_told_so_and_a_linkage_its_command() {
     for (name, legs) in [(PLANO, "4 legs"), (HELICAL, "3 legs")] {
-        opm(&["linkage", name]).fails_with_one_line(1, &[name, legs, "two spherical four-bars"]);
+        opm(&["linkage", name]).fails_with_one_line(1, &[name, legs, "expected a linkage of two legs"]);
     }
     let hint = format!("use `opm linkage {BENNETT}`");
     opm(&["ik", BENNETT, "--pose", ""]).fails_with_one_line(1, &["closed-form", &hint]);

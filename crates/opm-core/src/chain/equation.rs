@@ -1,7 +1,13 @@
 //! Functions of one number, and the intervals in which they are too near to zero for their sign to be
 //! certain.
 
+use crate::group::JointDisplacement;
+use nalgebra::Complex;
 use std::f64::consts::TAU;
+
+/// A coefficient of `t` or of its cosine and sine below this counts as zero, as a fraction of the function's
+/// largest coefficient.
+const CONSTANT: f64 = 1e-12;
 
 /// A function of `t` that has its zeros in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +46,43 @@ impl Span {
 }
 
 impl Equation {
+    /// The zeros, at most two: numbers, or directions of unit length where the function has the period 2π.
+    /// A constant has none.
+    ///
+    /// # Panics
+    /// If the function has another period.
+    pub(crate) fn roots(&self) -> Vec<JointDisplacement> {
+        let value = JointDisplacement::Value;
+        match *self {
+            Self::Polynomial([c0, c1, 0.0]) => {
+                let slope = c1.abs() > CONSTANT * c0.abs().max(1.0);
+                if slope { vec![value(-c0 / c1)] } else { Vec::new() }
+            }
+            Self::Polynomial([c0, c1, c2]) => {
+                let middle = -0.5 * c1 / c2;
+                let square = middle * middle - c0 / c2;
+                let roots =
+                    (square >= 0.0).then(|| [middle - square.sqrt(), middle + square.sqrt()]);
+                roots.into_iter().flatten().map(value).collect()
+            }
+            Self::Harmonic([c0, c1, c2]) => {
+                let axis = Complex::new(c1, c2);
+                let square = axis.norm_sqr();
+                let length = square.sqrt();
+                let below = (length - c0) * (length + c0);
+                if below < 0.0 || length <= CONSTANT * c0.abs() || length == 0.0 {
+                    return Vec::new();
+                }
+                let root = below.sqrt();
+                let at = |root: f64| axis * Complex::new(-c0, root) / square;
+                [root, -root].map(|root| JointDisplacement::Direction(at(root))).to_vec()
+            }
+            Self::Periodic(..) => {
+                panic!("a function with a period of its own has no list of zeros")
+            }
+        }
+    }
+
     /// Calls `found` with the intervals of a span in which the absolute value of the function is at most
     /// `tolerance`, in any order. Between them the function keeps its sign.
     #[inline]
