@@ -33,7 +33,7 @@ pub enum Section {
 }
 
 /// Every combination, in one order of the sections; the other one is drawn at random.
-pub const COMBINATIONS: [(Shared, [Section; 2]); 13] = {
+pub const COMBINATIONS: [(Shared, [Section; 2]); 10] = {
     use Section::{Cylindrical, Planar, Spherical, Translational};
     use Shared::{Rotation, Translation};
     [
@@ -47,9 +47,6 @@ pub const COMBINATIONS: [(Shared, [Section; 2]); 13] = {
         (Translation, [Planar, Translational]),
         (Translation, [Cylindrical, Translational]),
         (Translation, [Translational, Translational]),
-        (Rotation, [Spherical, Planar]),
-        (Translation, [Cylindrical, Planar]),
-        (Rotation, [Cylindrical, Planar]),
     ]
 };
 

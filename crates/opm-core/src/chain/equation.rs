@@ -153,3 +153,61 @@ fn every(period: f64, from: f64, to: f64, span: &Span, found: &mut impl FnMut([f
         count += 1.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Rounding, where a double root loses half of the digits.
+    const ROUNDING: f64 = 1e-7;
+
+    fn at(equation: &Equation, t: f64) -> f64 {
+        match *equation {
+            Equation::Polynomial([c0, c1, c2]) => c0 + t * (c1 + t * c2),
+            Equation::Harmonic([c0, c1, c2]) => c0 + c1 * t.cos() + c2 * t.sin(),
+            Equation::Periodic([c0, c1], _) => c0 + c1 * t,
+        }
+    }
+
+    proptest! {
+        /// Roots are zeros, and between two of them, or without any, the function keeps its sign.
+        #[test]
+        fn roots_are_all_zeros(c0 in -2.0..2.0_f64, c1 in -2.0..2.0_f64, c2 in 0.01..2.0_f64) {
+            let equations = [
+                Equation::Polynomial([c0, c1, c2]),
+                Equation::Polynomial([c0, c1, 0.0]),
+                Equation::Harmonic([c0, c1, c2]),
+            ];
+            for equation in equations {
+                let mut roots: Vec<f64> = equation.roots().iter().map(|root| root.value()).collect();
+                roots.sort_by(f64::total_cmp);
+                for root in &roots {
+                    prop_assert!(at(&equation, *root).abs() < ROUNDING * (1.0 + root * root));
+                }
+                let mut sign = 0.0;
+                for i in 0..200 {
+                    let t = -std::f64::consts::PI + TAU * f64::from(i) / 200.0;
+                    let value = at(&equation, t);
+                    let crossed = roots.iter().any(|root| (root - t).abs() <= TAU / 200.0);
+                    prop_assert!(crossed || sign * value >= 0.0, "{equation:?} at {t}");
+                    sign = value.signum();
+                }
+            }
+        }
+    }
+
+    /// A joint that a dead point does not depend on gives a constant, up to rounding.
+    #[test]
+    fn a_constant_has_no_roots() {
+        for equation in [
+            Equation::Polynomial([0.3, 0.0, 0.0]),
+            Equation::Polynomial([0.3, 1e-17, 0.0]),
+            Equation::Harmonic([0.3, 1e-17, -1e-17]),
+            Equation::Harmonic([0.0, 0.0, 0.0]),
+        ] {
+            assert!(equation.roots().is_empty(), "{equation:?}");
+        }
+        assert_eq!(Equation::Polynomial([1.0, -2.0, 1.0]).roots().len(), 2);
+    }
+}

@@ -101,7 +101,6 @@ impl Input<'_> {
     }
 
     fn reported(&self, first: &[Branch]) -> InputRange {
-        let home = self.coordinate().home;
         let period = self.period();
         let intervals = match self.closing(first) {
             ClosingSet::Everywhere if period == Some(TAU) && self.is_angle() => {

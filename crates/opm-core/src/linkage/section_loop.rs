@@ -204,13 +204,13 @@ impl DrivenLoop {
         let freedoms = self.chain.freedoms();
         let mut moved = Matrix3::identity();
         let mut so_far = kind.identity();
-        for i in 0..freedoms {
-            moved.set_column(i, &so_far.adjoint(&self.screws[i]));
-            let step = displacements[i].value();
-            so_far = so_far.after(&kind.exponential(&(self.screws[i] * step)));
+        for (i, (screw, step)) in self.screws.iter().zip(displacements).enumerate().take(freedoms) {
+            moved.set_column(i, &so_far.adjoint(screw));
+            so_far = so_far.after(&kind.exponential(&(screw * step.value())));
         }
         let scale: f64 = (0..3).map(|i| moved.column(i).norm()).product();
-        if !(moved.determinant().abs() > SINGULAR * scale) {
+        let determinant = moved.determinant().abs();
+        if determinant.is_nan() || determinant <= SINGULAR * scale {
             return None;
         }
         // The loop's twist is zero: a₀ + Σ aᵢ qᵢ' = 0, with each aᵢ where it is now.
