@@ -75,7 +75,7 @@ fn there_are_as_many_branches_as_a_numeric_solver_finds() {
         if combination.1 == [Section::Cylindrical; 2] {
             continue;
         }
-        for _ in 0..6 {
+        for _ in 0..12 {
             let linkage = linkage(&mut rng, combination);
             let (number, input) = random_input(&mut rng, &linkage);
             let solver = Closure::new(linkage.mechanism(), number);
@@ -204,7 +204,7 @@ fn rates_are_the_derivatives() {
     let mut rng = Rng::with_seed(114);
     let mut compared = 0;
     for combination in COMBINATIONS {
-        for _ in 0..100 {
+        for _ in 0..150 {
             let linkage = linkage(&mut rng, combination);
             let (_, input) = random_input(&mut rng, &linkage);
             for position in input.solve(near(&mut rng, input.coordinate().home)) {
