@@ -476,7 +476,7 @@ fn intersection(class: &SubspaceClass) -> Value {
 }
 
 /// A subspace in words, in the file's units.
-fn describe(class: &SubspaceClass, units: FileUnits) -> String {
+pub fn describe(class: &SubspaceClass, units: FileUnits) -> String {
     let direction = |v: &Vector3<f64>| triple(v, 1.0);
     let place = |v: &Vector3<f64>| {
         let unit = units.length;

@@ -8,7 +8,6 @@ use crate::args::{LinkageArgs, Output};
 use crate::failure::Failure;
 use crate::linkage::input::InputValue;
 use crate::load;
-use opm_core::Quantity;
 use opm_core::linkage::{Input, Linkage};
 use report::Run;
 
@@ -48,6 +47,6 @@ fn resolve<'a>(
         Failure::flag("--input", problem)
     })?;
     let value = given.and_then(|input| input.value);
-    let value = value.map(|number| number.value_of(name, Quantity::Angle)).transpose();
+    let value = value.map(|number| number.value_of(name, input.coordinate().quantity)).transpose();
     Ok((input, value.map_err(|error| Failure::flag("--input", error))?))
 }

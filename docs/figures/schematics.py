@@ -21,6 +21,8 @@ LOWER, UPPER, IMAGINARY = "#31688e", "#c8a000", "#c2185b"
 DRAWN = (
     ("plano-spherical-5dof-joints", "plano-spherical", (40, -75), {"leg1": 60, "leg2": 60, "leg3": 60}),
     ("bennett-double-spherical-6r", "bennett", (24, -62), {"leg1": 70, "leg2": 70}),
+    ("bennett-plano-spherical-6r", "bennett-plano-spherical", (24, -62), {"leg1": 70, "leg2": 70}),
+    ("sarrus", "sarrus", (20, -50), {}),
     ("planar-planar-5dof-joints", "planar-planar", (26, -38), {}),
     ("double-spherical-5dof", "double-spherical", (18, -30), {"leg1": 110, "leg2": 110, "leg3": 110}),
     ("plano-cylindrical-4dof", "plano-cylindrical", (42, -72), {}),

@@ -14,7 +14,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// A single loop that decomposes into two spherical four-bars, which share an imaginary joint.
+/// A single loop that decomposes into the loops of two sections, which share an imaginary joint.
 ///
 /// Immutable; it can be pickled, and shared between threads.
 ///
@@ -39,7 +39,7 @@ impl Linkage {
     /// Parameters
     /// ----------
     /// path : path
-    ///     TOML. Shipped linkages are read by :func:`examples.bennett`.
+    ///     TOML. Shipped linkages are read by :func:`examples.linkage`.
     /// tolerance : float, optional
     ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
     ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
@@ -55,7 +55,7 @@ impl Linkage {
     /// OSError
     ///     The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
     /// OpmError
-    ///     Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
+    ///     Lists every problem of the file with its line and column, or says why it is not a single loop of two sections.
     #[staticmethod]
     #[pyo3(signature = (path, *, tolerance = None))]
     fn load(
@@ -88,7 +88,7 @@ impl Linkage {
     /// Raises
     /// ------
     /// OpmError
-    ///     Lists every problem of the text with its line and column, or says why it is not a loop of two spherical four-bars.
+    ///     Lists every problem of the text with its line and column, or says why it is not a single loop of two sections.
     #[staticmethod]
     #[pyo3(signature = (text, label = None, *, tolerance = None))]
     fn parse(
@@ -143,7 +143,7 @@ impl Linkage {
         &self.inner.imaginary().name
     }
 
-    /// (k,): every joint at home, radians.
+    /// (k,): every joint at home, radians and metres.
     #[getter]
     fn home(&self) -> Vec<f64> {
         self.inner.coordinates().iter().map(|c| c.home).collect()
@@ -159,7 +159,7 @@ impl Linkage {
     /// Returns
     /// -------
     /// str
-    ///     Two signs: the first for the four-bar with the input, the second for the other one.
+    ///     Two signs: the first for the loop with the input, the second for the other one. A loop without a choice has +.
     ///
     /// Raises
     /// ------
@@ -180,7 +180,8 @@ impl Linkage {
     /// Returns
     /// -------
     /// (r, 2) array
-    ///     Lowest and highest value of every interval, radians. A full revolution is given as the interval around home.
+    ///     Lowest and highest value of every interval, radians or metres; infinite where a slider has no end. A full revolution
+    ///     is given as the interval around home.
     ///
     /// Raises
     /// ------
@@ -192,7 +193,7 @@ impl Linkage {
         let home = input.coordinate().home;
         let parts = match input.range() {
             InputRange::FullTurn => vec![[home - PI, home + PI]],
-            InputRange::Intervals(intervals) => intervals,
+            InputRange::Intervals { intervals, .. } => intervals,
         };
         let ends = PyArray1::from_slice(py, parts.as_flattened());
         frozen(ends.reshape([parts.len(), 2])?)
@@ -203,7 +204,7 @@ impl Linkage {
     /// Parameters
     /// ----------
     /// values : (n,) array_like
-    ///     Values of the joint that moves the linkage, radians.
+    ///     Values of the joint that moves the linkage, radians or metres.
     /// input : str, optional
     ///     Name of that joint; the actuated one if not given.
     /// threads : int, optional

@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import opm_kinematics as opm
 import pytest
+from shipped import LINKAGES
 
 NAME = "bennett-double-spherical-6r"
 LINKAGE = opm.examples.bennett()
@@ -31,16 +32,18 @@ def platform(joints, angles):
     return pose
 
 
-def test_every_position_closes_the_loop():
+@pytest.mark.parametrize("shipped", LINKAGES)
+def test_every_position_closes_the_loop(shipped):
     tomllib = pytest.importorskip("tomllib", reason="Python 3.11 reads TOML")
-    legs = [leg["joints"] for leg in tomllib.loads(LINKAGE.text)["leg"]]
+    linkage = opm.examples.linkage(shipped)
+    legs = [leg["joints"] for leg in tomllib.loads(linkage.text)["leg"]]
     names = [joint["name"] for leg in legs for joint in leg]
-    assert names == LINKAGE.joints and len(names) == 6
+    assert names == linkage.joints and len(names) == 6
     for name in names:
-        found = LINKAGE.positions(np.linspace(-3, 3, 61), input=name)
+        found = linkage.positions(np.linspace(-3, 3, 61), input=name)
         assert found.joints.shape == (61, 4, 6) and found.imaginary.shape == (61, 4, 1)
         assert found.reachable.any() and np.array_equal(found.reachable, ~np.isnan(found.joints).any(axis=2))
-        for angles in found.joints[found.reachable] - np.array(LINKAGE.home):
+        for angles in found.joints[found.reachable] - np.array(linkage.home):
             one, two = (platform(leg, part) for leg, part in zip(legs, np.split(angles, [len(legs[0])]), strict=True))
             assert np.abs(one - two).max() < 1e-9 * max(1, np.abs(one).max())
 
@@ -70,6 +73,17 @@ def test_the_loop_closes_in_the_range_and_nowhere_else():
         assert np.count_nonzero(sure) > 990
         reachable = LINKAGE.positions(values, input=name, threads=1).reachable.any(axis=1)
         assert np.array_equal(reachable[sure], inside[sure])
+
+
+def test_sarrus_platform_is_lifted():
+    """The height of a slider-crank: plates of 100 mm whose hinges are 60 and 40 mm from the vertical."""
+    sarrus = opm.examples.linkage("sarrus")
+    angle = np.linspace(0.7, 5.5, 101)
+    heights = sarrus.positions(angle).imaginary[..., 0] + 0.158016824663872
+    up, out = 0.1 * np.sin(angle), 0.02 + 0.1 * np.cos(angle)
+    for branch, sign in zip(range(4), np.sign(heights[50] - up[50]), strict=True):
+        assert np.allclose(heights[:, branch], up + sign * np.sqrt(0.1**2 - out**2), atol=1e-12)
+    assert sarrus.range()[0] == pytest.approx([np.arccos(0.8), 2 * np.pi - np.arccos(0.8)], abs=1e-9)
 
 
 def test_home_is_a_position():

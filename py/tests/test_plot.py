@@ -14,6 +14,7 @@ import numpy as np
 import opm_kinematics as opm
 import pytest
 from opm_kinematics import plot
+from shipped import LINKAGES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -44,7 +45,7 @@ def test_solids_are_where_the_geometry_puts_them(manipulator):
         manipulator.solids([1.0, 0, 0, 0, 0])
 
 
-@pytest.mark.parametrize("name", [n for n in opm.examples.names() if "bennett" not in n])
+@pytest.mark.parametrize("name", [n for n in opm.examples.names() if n not in LINKAGES])
 def test_every_mechanism_can_be_drawn(name):
     manipulator = opm.examples.load(name)
     panel = plot.mechanism(manipulator)

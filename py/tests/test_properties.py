@@ -4,8 +4,9 @@ import numpy as np
 import opm_kinematics as opm
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from shipped import LINKAGES
 
-NAMES = [n for n in opm.examples.names() if "bennett" not in n]
+NAMES = [n for n in opm.examples.names() if n not in LINKAGES]
 MANIPULATORS = {name: opm.examples.load(name) for name in NAMES}
 # Without a closed form, or with a screw that counts turns (found to a whole turn).
 FORWARD = [n for n in NAMES if n not in ("translational-planar-4dof", "schoenflies-4dof")]

@@ -7,6 +7,7 @@ import opm_kinematics as opm
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shipped import LINKAGES
 
 # The 3-DoF manipulator of Selvi's section 3.2: two PPR legs and a PPH, one common direction of the R and H axes.
 ALPHA, BETA = np.radians([210.0, 330.0, 90.0]), np.radians([45.0, 285.0, 165.0])
@@ -67,7 +68,7 @@ def test_the_helical_manipulator_from_its_geometry():
     np.testing.assert_allclose(np.abs(moved[0]), np.abs(moved[1]), atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [n for n in opm.examples.names() if "bennett" not in n])
+@pytest.mark.parametrize("name", [n for n in opm.examples.names() if n not in LINKAGES])
 def test_closure_of_every_leg_by_its_own_exponentials(name):
     """The legs' products of exponentials, written here, agree on where the platform is."""
     m = opm.examples.load(name)

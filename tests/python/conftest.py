@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).parents[2]
+# Shipped mechanisms that are moved by one joint, not by a pose of the platform.
+LINKAGES = ["bennett-double-spherical-6r", "bennett-plano-spherical-6r", "sarrus"]
 # Builds the whole workspace, so that the artefacts of `cargo test --workspace` are reused.
 BUILD = "cargo build --quiet --workspace --bins --examples --message-format=json-render-diagnostics"
 

@@ -13,18 +13,26 @@ MECHANISM = "bennett-double-spherical-6r"
 START, ROUND = 1_000_000_000, 10_000_000_000  # nanoseconds
 
 
-def run(opm, *arguments):
-    command = [opm, "linkage", MECHANISM, *arguments]
+def run(opm, *arguments, mechanism=MECHANISM):
+    command = [opm, "linkage", mechanism, *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=True)
 
 
-# A crank, and a joint with a limited range.
-@pytest.mark.parametrize("joint, turns", [("a1", True), ("b1", False)])
-def test_a_recording_holds_the_rows_of_the_csv(opm, tmp_path, joint, turns):
+# A crank, joints with a limited range, and an imaginary joint that is a slider.
+@pytest.mark.parametrize(
+    "mechanism, joint, turns",
+    [
+        (MECHANISM, "a1", True),
+        (MECHANISM, "b1", False),
+        ("bennett-plano-spherical-6r", "a1", True),
+        ("sarrus", "a1", False),
+    ],
+)
+def test_a_recording_holds_the_rows_of_the_csv(opm, tmp_path, mechanism, joint, turns):
     sweep = ["--input", joint, "--sweep", "--count", "101"]
     path = tmp_path / "round.mcap"
-    run(opm, *sweep, "-o", path)
-    rows = list(csv.DictReader(run(opm, *sweep).stdout.splitlines()))
+    run(opm, *sweep, "-o", path, mechanism=mechanism)
+    rows = list(csv.DictReader(run(opm, *sweep, mechanism=mechanism).stdout.splitlines()))
     check_recording.doctor(path)
 
     joints, imaginary = [], []

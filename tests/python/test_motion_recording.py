@@ -7,6 +7,7 @@ import subprocess
 import check_recording
 import numpy as np
 import pytest
+from conftest import LINKAGES
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
@@ -101,7 +102,7 @@ def record(opm, tmp_path_factory):
     def run(mechanism, *arguments):
         folder = tmp_path_factory.mktemp("trajectory")
         path = folder / "play.mcap"
-        if mechanism.startswith("bennett"):
+        if mechanism in LINKAGES:
             command = [opm, "linkage", mechanism, "--sweep", "--count", "101"]
         else:
             motion = arguments[0] if arguments else motion_of(mechanism, folder)

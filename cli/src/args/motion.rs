@@ -10,20 +10,22 @@ const HIGHEST_RATE: f64 = 1e9;
 
 /// Positions of a linkage: every joint for one value of its input, or for a revolution of it
 ///
-/// The linkage is a single loop that decomposes into two spherical four-bars which share an imaginary
-/// joint (Bennett's double spherical 6R). Any joint can be the input; without --input it is the actuated
-/// one, at home. The answer has every branch, named by its signs, and the range of the input. An input out
-/// of its range is an answer (exit status 0).
+/// The linkage is a single loop that decomposes into the loops of two sections, which share an imaginary
+/// joint: planar or spherical four-bars, slider-cranks, coaxial joints (Sarrus' linkage, Bennett's double
+/// spherical and plano-spherical 6R). Any joint can be the input; without --input it is the actuated one,
+/// at home. The answer has every branch, named by its signs, and the range of the input; in JSON, a range
+/// without an end has null there. An input out of its range is an answer (exit status 0).
 ///
 /// --sweep follows the branch of home for one round. An input that can make a revolution makes one.
 /// Otherwise it goes to the end of its range, back in the branch that meets the first one there, and so on
 /// until the linkage is home. CSV: all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in
-/// radians. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
+/// radians and metres. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm linkage bennett-double-spherical-6r --input a1=30deg
   opm linkage bennett-double-spherical-6r --input b3=10deg --format json
+  opm linkage sarrus --input a1=45deg
   opm linkage bennett-double-spherical-6r --input a1 --sweep > round.csv
   opm linkage bennett-double-spherical-6r --sweep --count 1001 -o round.mcap")]
 pub struct LinkageArgs {

@@ -1,12 +1,13 @@
 //! The printed positions of a linkage.
 
+use crate::decompose::describe;
 use crate::load::Loaded;
 use crate::output::named;
 use crate::text::{self, Table};
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::linkage::{Input, Linkage, Position};
-use opm_core::mechanism::joint::{JointCoordinate, Quantity};
+use opm_core::mechanism::joint::JointCoordinate;
 use opm_study::input_intervals;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -45,9 +46,14 @@ impl Run<'_> {
             return "the full turn".to_owned();
         }
         let units = self.loaded.file.units;
-        let range = |ends: &[f64; 2]| text::range(*ends, Quantity::Angle, units);
-        let ranges: Vec<String> = input_intervals(&self.input).iter().map(range).collect();
-        format!("{} {}", ranges.join(", "), units.symbol(Quantity::Angle))
+        let quantity = self.input.coordinate().quantity;
+        let intervals = input_intervals(&self.input);
+        if intervals.iter().any(|[low, high]| low.is_infinite() && high.is_infinite()) {
+            return "no end".to_owned();
+        }
+        let range = |ends: &[f64; 2]| text::range(*ends, quantity, units);
+        let ranges: Vec<String> = intervals.iter().map(range).collect();
+        format!("{} {}", ranges.join(", "), units.symbol(quantity))
     }
 
     pub fn text(&self, value: f64, positions: &[Position]) -> String {
@@ -56,7 +62,7 @@ impl Run<'_> {
         let mut text = format!(
             "{}, moved by {name} = {}\nrange of {name}: {}\n\n",
             self.linkage.mechanism().name,
-            units.show(value, Quantity::Angle),
+            units.show(value, self.input.coordinate().quantity),
             self.range()
         );
         if positions.is_empty() {
@@ -71,6 +77,11 @@ impl Run<'_> {
             self.input.home_branch()
         );
         let _ = write!(text, "{}", self.table(positions));
+        if self.linkage.platform_is_imaginary() {
+            let name = &self.linkage.imaginary().name;
+            let common = describe(&self.linkage.decomposition().intersection, units);
+            let _ = write!(text, "\n{name} is the motion of the platform: {common}\n");
+        }
         if positions.iter().any(|position| !position.within_limits) {
             text.push_str("\n* beyond its limits\n");
         }
@@ -80,13 +91,11 @@ impl Run<'_> {
     /// A table with a row for each joint and a column for each branch.
     fn table(&self, positions: &[Position]) -> Table {
         let units = self.loaded.file.units;
-        let angle = |value: f64| text::number(value, Quantity::Angle, units);
-        let unit = units.symbol(Quantity::Angle);
         let mut headers = ["leg", "joint", "", "unit"].map(String::from).to_vec();
         headers.extend(positions.iter().map(|position| format!(">{}", position.branch)));
         let mut table = Table::new(headers);
-        let mut row = |leg: &str, name: &str, kind: &str, values: Vec<String>| {
-            let head = [leg, name, kind, unit].map(String::from);
+        let mut row = |leg: &str, name: &str, kind: &str, quantity, values: Vec<String>| {
+            let head = [leg, name, kind, units.symbol(quantity)].map(String::from);
             table.row(head.into_iter().chain(values));
         };
         let mut number = 0;
@@ -95,7 +104,7 @@ impl Run<'_> {
                 for coordinate in &joint.coordinates {
                     let value = |position: &Position| {
                         let value = position.joints[number];
-                        angle(value)
+                        text::number(value, coordinate.quantity, units)
                             + if within(&self.linkage.limits()[number], coordinate, value) {
                                 ""
                             } else {
@@ -104,15 +113,17 @@ impl Run<'_> {
                     };
                     let values = positions.iter().map(value).collect();
                     let kind = if joint.actuated { "actuated" } else { "passive" };
-                    row(&leg.name, &coordinate.name, kind, values);
+                    row(&leg.name, &coordinate.name, kind, coordinate.quantity, values);
                     number += 1;
                 }
             }
         }
         let imaginary = self.linkage.imaginary();
         let leg = &self.linkage.mechanism().legs[imaginary.leg].name;
-        let values = positions.iter().map(|position| angle(position.imaginary)).collect();
-        row(leg, &imaginary.name, "imaginary", values);
+        let quantity = imaginary.quantity;
+        let value = |position: &Position| text::number(position.imaginary, quantity, units);
+        let values = positions.iter().map(value).collect();
+        row(leg, &imaginary.name, "imaginary", quantity, values);
         table
     }
 }

@@ -16,6 +16,8 @@ use std::path::Path;
 pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Failure> {
     let dash = Path::new("-");
     let Run { linkage, input, .. } = run;
+    // A linkage that does not come home is refused before anything is written.
+    input.cycle().map_err(|error| Failure::at(&run.loaded.label, error))?;
     let sweep = Sweep { run, round: LinkageRound { linkage, input, count: args.count } };
     let Some(path) = args.output.as_deref().filter(|path| *path != dash) else {
         if output.format == Format::Json {

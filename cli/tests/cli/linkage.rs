@@ -1,4 +1,4 @@
-//! `opm linkage`: positions and sweeps of Bennett's double spherical 6R.
+//! `opm linkage`: positions and sweeps of Bennett's double spherical 6R, of Sarrus' linkage and of sliders.
 
 use crate::run::{Folder, Run, keys, number, opm};
 use crate::{HELICAL, PLANO};
@@ -165,6 +165,76 @@ fn a_sweep_goes_to_a_file() {
     assert_eq!(folder.names(), ["round.csv", "round.mcap"]);
 }
 
+/// The file says where the plates of Sarrus' linkage are level and in line: there the angle of the lower
+/// plate is arccos 0.8, and the platform is at sqrt(200^2 - 20^2) mm.
+#[test]
+fn sarrus_platform_goes_up_and_down() {
+    let sarrus =
+        |input: &str| opm(&["linkage", "sarrus", "--input", input, "--format", "json"]).json();
+    let found = sarrus("a1");
+    let [low, high] = [0, 1].map(|i| number(&found["range"][0][i]));
+    assert!((low - 0.8_f64.acos()).abs() < ROUNDING, "{low}");
+    assert!((high - (TAU - 0.8_f64.acos())).abs() < ROUNDING, "{high}");
+    assert_eq!((&found["full_turn"], found["range"].as_array().unwrap().len()), (&json!(false), 1));
+    // The heights of the platform above home, on both sides of the base.
+    let home = number(&sarrus("a1=60deg")["input"]["value"]);
+    assert!((home - PI / 3.0).abs() < ROUNDING);
+    for angle in [40.0_f64, 60.0, 90.0, 150.0, 200.0] {
+        let found = sarrus(&format!("a1={angle}deg"));
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let rise = (0.01 - (0.02 + 0.1 * cos).powi(2)).sqrt();
+        let height = |sign: f64| 0.1 * sin + sign * rise - 0.158_016_824_663_872;
+        let solutions = found["solutions"].as_array().unwrap();
+        for sign in [-1.0, 1.0] {
+            let same =
+                |s: &&Value| (number(&s["imaginary"]["tau.leg1"]) - height(sign)).abs() < ROUNDING;
+            // The plates of the other leg bend outwards or inwards.
+            assert_eq!(solutions.iter().filter(same).count(), 2, "{angle} {found}");
+        }
+    }
+    let run = opm(&["linkage", "sarrus"]);
+    let told = "tau.leg1 is the motion of the platform: translation along (0, 0, 1)";
+    assert!(run.text().contains(told), "{}", run.text());
+    assert!(run.text().contains("range of a1: 36.8699 .. 323.1301 deg"), "{}", run.text());
+    let back = opm(&["linkage", "sarrus", "--sweep", "--count", "101"]);
+    let rows = rows(back.text());
+    let tops = rows.iter().map(|row| row[6]).fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(rows.len(), 101);
+    assert!(tops > 0.04 && tops < 0.198_997_487_5 - 0.158_016_824_6, "{tops}");
+    assert!((rows[0][6] - rows[100][6]).abs() < ROUNDING);
+}
+
+/// Lengths are lengths, and a joint that runs away to infinity has no cycle.
+#[test]
+fn a_slider_has_its_own_unit_and_may_have_no_end() {
+    let folder = Folder::new();
+    let file = folder.arg("slides.toml");
+    let slide = |name: &str, axis: &str, more: &str| {
+        format!("{{ name = \"{name}\", type = \"prismatic\", axis = {axis}{more} }}")
+    };
+    let text = format!(
+        "format = 1\nname = \"slides\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\n\
+         [platform]\npoint = [0, 0, 0]\n\
+         [[leg]]\nname = \"leg1\"\njoints = [{}, {}]\n[[leg]]\nname = \"leg2\"\njoints = [{}, {}]\n",
+        slide("a", "[1, 0, 1]", ", actuated = true"),
+        slide("b", "[1, 0, -1]", ""),
+        slide("c", "[0, 1, 1]", ""),
+        slide("d", "[0, 1, -1]", "")
+    );
+    std::fs::write(&file, text).unwrap();
+    let run = opm(&["linkage", &file, "--input", "a=10mm"]);
+    assert!(run.text().contains("range of a: no end"), "{}", run.text());
+    let found = opm(&["linkage", &file, "--input", "a=10mm", "--format", "json"]).json();
+    assert_eq!(found["range"], json!([[null, null]]));
+    assert_eq!(found["solutions"].as_array().unwrap().len(), 1);
+    // The two sliders of a leg move alike, so that the platform goes straight up.
+    for name in ["b", "c", "d"] {
+        assert!((number(&found["solutions"][0]["joints"][name]).abs() - 0.01).abs() < 1e-12);
+    }
+    opm(&["linkage", &file, "--input", "a=10deg"]).fails_with_one_line(2, &["a is a length"]);
+    opm(&["linkage", &file, "--sweep"]).fails_with_one_line(1, &["moved by a", "infinity"]);
+}
+
 #[test]
 fn wrong_usage_names_the_flag() {
     for (args, parts) in [
@@ -184,7 +254,8 @@ fn wrong_usage_names_the_flag() {
 #[test]
 fn what_is_no_linkage_is_told_so_and_a_linkage_its_command() {
     for (name, legs) in [(PLANO, "4 legs"), (HELICAL, "3 legs")] {
-        opm(&["linkage", name]).fails_with_one_line(1, &[name, legs, "two spherical four-bars"]);
+        opm(&["linkage", name])
+            .fails_with_one_line(1, &[name, legs, "expected a linkage of two legs"]);
     }
     let hint = format!("use `opm linkage {BENNETT}`");
     opm(&["ik", BENNETT, "--pose", ""]).fails_with_one_line(1, &["closed-form", &hint]);

@@ -20,7 +20,7 @@ pub mod cylindrical;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod equation;
-mod joint;
+pub(crate) mod joint;
 pub mod limits;
 pub mod planar;
 // Public for the sibling crates of the workspace only.

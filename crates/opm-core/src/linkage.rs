@@ -1,25 +1,35 @@
-//! Position analysis of single-loop linkages that decompose: Bennett's double spherical 6R linkage
-//! (Selvi, "Kinematic analysis of overconstrained manipulators with partial subspaces using
-//! decomposition method", Robotica, Fig. 1) as an input-output linkage.
+//! Position analysis of single-loop linkages that decompose, as input-output linkages (Selvi,
+//! "Kinematic analysis of overconstrained manipulators with partial subspaces using decomposition
+//! method", Robotica, on Bennett's double spherical 6R linkage of Fig. 1).
 //!
-//! Two legs form one loop, `L₁U₁ = L₂U₂`. The lower parts rotate about a centre `A` and the upper
-//! parts about a centre `B`. Then
+//! Two legs form one loop, `L₁U₁ = L₂U₂`. The lower parts move in one subspace and the upper parts in
+//! another one, and the two share a one-parameter group: a rotation or a translation. Then
 //!
 //! ```text
 //! L₂⁻¹ L₁ = U₂ U₁⁻¹ = exp(I τ)
 //! ```
 //!
-//! lies in both groups of rotations: it is a rotation about the line through the two centres, and
-//! this line is the axis of the imaginary joint. With three revolutes in each section, the loop
-//! divides into two spherical four-bars that share the imaginary joint,
+//! lies in both groups: it is the displacement of an imaginary joint. The loop divides into the
+//! [loops](SectionLoop) of the two sections, which share this joint,
 //! ```text
 //! exp(-I τ) · L₂⁻¹ L₁ = 1      exp(-I τ) · U₂ U₁⁻¹ = 1
 //! ```
 //!
-//! The four-bar with the input joint determines `τ`, and `τ` determines the other one. Each of them
-//! has a two-valued choice, so an input has up to four positions. Where a product passes a joint
-//! from its platform side to its base side, the joint's axis is reversed, so that its rotation is
-//! always the reported one.
+//! Each has one joint more than its subspace has dimensions, so it is a four-bar, a slider-crank or
+//! another loop with one freedom:
+//!
+//! * Bennett's linkage consists of two spherical four-bars that share a revolute joint;
+//! * Sarrus' linkage consists of two planar slider-cranks that share the slider: the platform moves
+//!   along the line in which the two planes meet;
+//! * a planar four-bar or slider-crank and a spherical four-bar share a revolute joint along the
+//!   plane's normal through the centre;
+//! * coaxial joints and a planar loop share a rotation, if the axis is perpendicular to the plane, or a
+//!   translation, if it lies in the plane.
+//!
+//! The loop with the input joint determines `τ`, and `τ` determines the other one. Most loops have a
+//! two-valued choice, so an input has up to four positions. Where a product passes a joint from its
+//! platform side to its base side, the joint's axis is reversed, so that its displacement is always
+//! the reported one.
 //!
 //! ```
 //! use opm_core::linkage::Linkage;
@@ -36,26 +46,26 @@
 //! ```
 
 mod cycle;
-pub mod four_bar;
+mod drive;
 mod input;
 mod range;
+mod section_loop;
 
-pub use cycle::Cycle;
-pub use input::{Input, LinkageBranch, Position};
+pub use cycle::{Cycle, NoCycle};
+pub use input::{Input, LinkageBranch, Position, Rates};
 pub use range::InputRange;
+pub use section_loop::{DeadPoint, DrivenLoop, SectionLoop};
 
-use crate::chain::ChainError;
 use crate::chain::limits::Limits;
+use crate::chain::{ChainError, ChainJoint};
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, Freedom, LegSplit, decompose};
-use crate::group::SubspaceKind;
-use crate::manipulator::{ImaginaryJoint, Section};
+use crate::group::Subspace;
+use crate::manipulator::{ImaginaryJoint, Section, chain_joints, coordinate_number};
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::{Joint, JointCoordinate, JointKind};
+use crate::mechanism::joint::{JointCoordinate, JointKind};
 use crate::mechanism::leg::Leg;
-use crate::task::{Task, TaskError};
-use four_bar::FourBar;
-use nalgebra::{Unit, Vector3};
+use crate::task::{IntersectionAxis, Task, TaskError};
 
 /// Why a mechanism is not a linkage that this module can solve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,16 +74,16 @@ pub enum LinkageError {
     /// The mechanism cannot be decomposed.
     #[error(transparent)]
     Decompose(#[from] DecomposeError),
-    /// The mechanism decomposes, but not into two spherical four-bars.
+    /// The mechanism decomposes, but not into the loops of two sections.
     #[error(
-        "the mechanism has {0}, expected a linkage of two legs with three revolute axes through each \
-         of two centres (two spherical four-bars that share an imaginary joint)"
+        "the mechanism has {0}, expected a linkage of two legs, each section of which closes a loop with \
+         the imaginary joint (two planar or spherical four-bars, slider-cranks, or coaxial joints)"
     )]
     NotCovered(Obstacle),
-    /// Two neighbouring axes of a four-bar (the imaginary joint's included) are parallel.
-    #[error("the {section} four-bar has no closed form: {error}")]
-    FourBar {
-        /// The section of the four-bar.
+    /// Some joints of a section's loop (the imaginary joint included) are dependent everywhere.
+    #[error("the loop of the {section} section has no closed form: {error}")]
+    Loop {
+        /// The section.
         section: Section,
         /// The reason.
         error: ChainError,
@@ -83,35 +93,42 @@ pub enum LinkageError {
     Task(#[from] TaskError),
 }
 
-/// What a mechanism has that keeps it from being two spherical four-bars.
+/// What a mechanism has that keeps it from being a linkage of two sections.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Obstacle {
     /// More than one loop; the number of legs.
     #[error("{0} legs")]
     Legs(usize),
-    /// Sections that are not spherical.
-    #[error("a {lower} and a {upper} section")]
+    /// Sections without closed-form chains, or that share a helical motion.
+    #[error("a {lower} and a {upper} section that share a {shared}")]
     Subspaces {
         /// The name of the lower section's subspace.
         lower: &'static str,
         /// The name of the upper section's subspace.
         upper: &'static str,
+        /// The name of the motion that they share.
+        shared: &'static str,
     },
-    /// A section whose loop does not have three freedoms besides the imaginary joint.
-    #[error("{count} joint freedoms in the {section} section")]
+    /// A section whose loop does not have one freedom.
+    #[error(
+        "{count} joint {} in the {section} section, where its subspace has {dimension} dimensions",
+        if *count == 1 { "freedom" } else { "freedoms" }
+    )]
     Freedoms {
         /// The section.
         section: Section,
         /// The number of freedoms of both legs in this section.
         count: usize,
+        /// The number of dimensions of the section's subspace.
+        dimension: usize,
     },
     /// A spherical joint, whose freedoms have no axes of their own; its name.
     #[error("the spherical joint {0}")]
     Ball(String),
 }
 
-/// A single-loop linkage, decomposed into two spherical four-bars. It is immutable and can be
+/// A single-loop linkage, decomposed into the loops of two sections. It is immutable and can be
 /// shared between threads. See the example in the docs of [`linkage`](crate::linkage).
 #[derive(Clone, Debug)]
 pub struct Linkage {
@@ -122,14 +139,16 @@ pub struct Linkage {
     imaginary: ImaginaryJoint,
     /// Whether the imaginary joint belongs to the second leg, so that its displacement is `-τ`.
     reversed: bool,
-    sections: [Loop; 2],
+    sections: [LinkageSection; 2],
+    /// The mechanism's size, metres.
+    size: f64,
 }
 
-/// A four-bar of the linkage. Its first joint is the imaginary one.
+/// A section of the linkage. The first joint of its loop is the imaginary one.
 #[derive(Clone, Debug)]
-struct Loop {
-    four_bar: FourBar,
-    /// Indices of the joint coordinates of the other three joints.
+struct LinkageSection {
+    closed: SectionLoop,
+    /// Indices of the joint coordinates of the loop's other joints; those beyond its joints are zero.
     coordinates: [usize; 3],
 }
 
@@ -138,7 +157,7 @@ impl Linkage {
     ///
     /// # Errors
     /// [`LinkageError`] if the mechanism cannot be decomposed, or for its preferred decomposition
-    /// if none consists of two spherical four-bars.
+    /// if none consists of the loops of two sections.
     pub fn new(mechanism: &Mechanism) -> Result<Self, LinkageError> {
         let mut refused = None;
         for decomposition in decompose(mechanism)? {
@@ -153,7 +172,7 @@ impl Linkage {
     /// Prepares a mechanism with one of its decompositions.
     ///
     /// # Errors
-    /// [`LinkageError`] if the decomposition does not consist of two spherical four-bars.
+    /// [`LinkageError`] if the decomposition does not consist of the loops of two sections.
     pub fn with_decomposition(
         mechanism: Mechanism,
         decomposition: Decomposition,
@@ -164,6 +183,7 @@ impl Linkage {
         let subspaces = Obstacle::Subspaces {
             lower: decomposition.lower.name(),
             upper: decomposition.upper.name(),
+            shared: decomposition.intersection.name(),
         };
         let task = match Task::new(&mechanism, &decomposition) {
             Err(TaskError::Subspace { .. } | TaskError::Screw) => {
@@ -171,26 +191,17 @@ impl Linkage {
             }
             task => task?,
         };
-        if [&task.lower, &task.upper].iter().any(|s| s.kind != SubspaceKind::Spherical) {
-            return Err(LinkageError::NotCovered(subspaces));
-        }
-
         let Some(axis) = &task.intersection else {
             return Err(LinkageError::NotCovered(subspaces));
         };
         let first = [0, one.coordinates().count()];
-        let axes = |(leg, number): (&Leg, usize), part: &[Freedom]| {
-            let axis = |freedom: &Freedom| loop_axis(leg, first[number], *freedom);
-            part.iter().map(axis).collect::<Result<Vec<_>, _>>()
-        };
-        let compile = |section: Section, part: fn(&LegSplit) -> &[Freedom]| {
-            let one = axes((one, 0), part(split_one))?;
-            let two = axes((two, 1), part(split_two))?;
-            Loop::new(section, -axis.direction, one, two)
+        let compile = |section: Section, subspace: &Subspace, part: fn(&LegSplit) -> &[Freedom]| {
+            let legs = [(one, first[0], part(split_one)), (two, first[1], part(split_two))];
+            LinkageSection::new(section, subspace, imaginary_joint(axis), legs)
         };
         let sections = [
-            compile(Section::Lower, |split| &split.lower)?,
-            compile(Section::Upper, |split| &split.upper)?,
+            compile(Section::Lower, &task.lower, |split| &split.lower)?,
+            compile(Section::Upper, &task.upper, |split| &split.upper)?,
         ];
         let owner = decomposition.legs.iter().position(|split| split.imaginary).unwrap_or(0);
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
@@ -201,6 +212,7 @@ impl Linkage {
             limits: coordinates.iter().map(|c| c.displacement_limits(size)).collect(),
             coordinates,
             sections,
+            size,
             mechanism,
             decomposition,
         })
@@ -231,50 +243,84 @@ impl Linkage {
         &self.imaginary
     }
 
+    /// Whether one leg is the whole lower section and the other leg the whole upper one. The platform
+    /// then moves as the imaginary joint does: along or about the intersection motion (Sarrus' linkage).
+    pub fn platform_is_imaginary(&self) -> bool {
+        let [one, two] = &*self.decomposition.legs else { return false };
+        let apart = |one: &LegSplit, two: &LegSplit| one.upper.is_empty() && two.lower.is_empty();
+        apart(one, two) || apart(two, one)
+    }
+
     /// The linkage driven by the joint coordinate with this name; `None` if there is none.
     pub fn input(&self, name: &str) -> Option<Input<'_>> {
         let coordinate = self.coordinates.iter().position(|c| c.name == name)?;
-        self.sections.iter().enumerate().find_map(|(section, four_bar)| {
-            let loop_index = four_bar.coordinates.iter().position(|&c| c == coordinate)? + 1;
+        self.sections.iter().enumerate().find_map(|(section, of)| {
+            let own = &of.coordinates[..of.closed.joints() - 1];
+            let loop_index = own.iter().position(|&c| c == coordinate)? + 1;
             Some(Input { linkage: self, coordinate, section, loop_index })
         })
     }
 }
 
-/// The index of a freedom's coordinate, and its axis.
-type LoopAxis = (usize, Unit<Vector3<f64>>);
-
-/// The axis of a freedom in a leg whose first coordinate has the index `first`.
-fn loop_axis(leg: &Leg, first: usize, freedom: Freedom) -> Result<LoopAxis, LinkageError> {
-    let joint = &leg.joints[freedom.joint];
-    if joint.kind == JointKind::Spherical {
-        return Err(LinkageError::NotCovered(Obstacle::Ball(joint.name.clone())));
+/// The imaginary joint of a section's loop, with the displacement `exp(-I τ)`.
+fn imaginary_joint(axis: &IntersectionAxis) -> ChainJoint {
+    match axis.point {
+        Some(point) => ChainJoint::Screw { axis: -axis.direction, point, pitch: 0.0 },
+        None => ChainJoint::Slide { axis: -axis.direction },
     }
-    let before: usize = leg.joints[..freedom.joint].iter().map(Joint::freedoms).sum();
-    let axis = Unit::new_normalize(joint.screws()[freedom.index].angular);
-    Ok((first + before + freedom.index, axis))
 }
 
-impl Loop {
-    /// Builds the loop of a section: the imaginary joint's axis as in `exp(-I τ)`, then the joints
-    /// of both legs in the order of `L₂⁻¹ L₁` or of `U₂ U₁⁻¹`.
+/// The same joint, passed from its platform side to its base side.
+fn reversed(joint: ChainJoint) -> ChainJoint {
+    match joint {
+        ChainJoint::Screw { axis, point, pitch } => ChainJoint::Screw { axis: -axis, point, pitch },
+        ChainJoint::Slide { axis } => ChainJoint::Slide { axis: -axis },
+        ChainJoint::Ball => ChainJoint::Ball,
+    }
+}
+
+/// A leg, the index of its first coordinate, and its freedoms in one section.
+type SectionLeg<'a> = (&'a Leg, usize, &'a [Freedom]);
+
+/// The index of each freedom's coordinate, and its joint.
+fn loop_joints((leg, first, part): SectionLeg<'_>) -> Result<Vec<(usize, ChainJoint)>, Obstacle> {
+    let ball = |freedom: &&Freedom| leg.joints[freedom.joint].kind == JointKind::Spherical;
+    if let Some(freedom) = part.iter().find(ball) {
+        return Err(Obstacle::Ball(leg.joints[freedom.joint].name.clone()));
+    }
+    let coordinates = part.iter().map(|freedom| first + coordinate_number(leg, *freedom));
+    Ok(coordinates.zip(chain_joints(leg, part)).collect())
+}
+
+impl LinkageSection {
+    /// Builds the loop of a section: the imaginary joint, then the joints of both legs in the order of
+    /// `L₂⁻¹ L₁` or of `U₂ U₁⁻¹`.
     fn new(
         section: Section,
-        imaginary: Unit<Vector3<f64>>,
-        one: Vec<LoopAxis>,
-        two: Vec<LoopAxis>,
+        subspace: &Subspace,
+        imaginary: ChainJoint,
+        [one, two]: [SectionLeg<'_>; 2],
     ) -> Result<Self, LinkageError> {
-        let count = one.len() + two.len();
-        let reverse = |axes: Vec<LoopAxis>| axes.into_iter().rev().map(|(c, axis)| (c, -axis));
-        let joints: Vec<LoopAxis> = match section {
-            Section::Lower => reverse(two).chain(one).collect(),
-            Section::Upper => two.into_iter().chain(reverse(one)).collect(),
+        let [one, two] = [loop_joints(one), loop_joints(two)];
+        let (one, two) =
+            (one.map_err(LinkageError::NotCovered)?, two.map_err(LinkageError::NotCovered)?);
+        let back = |joints: Vec<_>| joints.into_iter().rev().map(|(c, joint)| (c, reversed(joint)));
+        let others: Vec<(usize, ChainJoint)> = match section {
+            Section::Lower => back(two).chain(one).collect(),
+            Section::Upper => two.into_iter().chain(back(one)).collect(),
         };
-        let [a, b, c] = *joints else {
-            return Err(LinkageError::NotCovered(Obstacle::Freedoms { section, count }));
-        };
-        let four_bar = FourBar::new([imaginary, a.1, b.1, c.1])
-            .map_err(|error| LinkageError::FourBar { section, error })?;
-        Ok(Self { four_bar, coordinates: [a.0, b.0, c.0] })
+        let (count, dimension) = (others.len(), subspace.dimension());
+        if count != dimension {
+            let obstacle = Obstacle::Freedoms { section, count, dimension };
+            return Err(LinkageError::NotCovered(obstacle));
+        }
+        let joints: Vec<_> = std::iter::once(imaginary).chain(others.iter().map(|o| o.1)).collect();
+        let closed = SectionLoop::new(subspace, &joints)
+            .map_err(|error| LinkageError::Loop { section, error })?;
+        let mut coordinates = [0; 3];
+        for (slot, (coordinate, _)) in coordinates.iter_mut().zip(&others) {
+            *slot = *coordinate;
+        }
+        Ok(Self { closed, coordinates })
     }
 }

@@ -26,6 +26,7 @@ mod transitions;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
+pub(crate) use leg::{chain_joints, coordinate_number};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;

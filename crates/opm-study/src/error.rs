@@ -8,6 +8,7 @@ pub use request::{RequestError, RequestOption, SetPart, Spelling};
 #[cfg(feature = "recording")]
 pub use shard::{MissingShards, ShardError, ShardProblem};
 
+use opm_core::linkage::NoCycle;
 use opm_core::trajectory::TrajectoryError;
 use opm_workspace::{Cancelled, ConditionError, SetError};
 
@@ -44,11 +45,14 @@ pub enum StudyError {
     OpenLoop {
         /// The joint that moves the linkage.
         joint: String,
-        /// Its value, radians.
+        /// Its value, radians or metres.
         value: f64,
         /// The branch.
         branch: String,
     },
+    /// A linkage does not come back to home.
+    #[error(transparent)]
+    NoCycle(#[from] NoCycle),
     /// A motion lasts longer than the clock of a recording can count.
     #[error("{motion}: lasts {duration:e} s, expected at most {most:e} s")]
     LongMotion {

@@ -36,7 +36,7 @@ impl LinkageRound<'_> {
         &self,
         mut take: impl FnMut(u32, &Position) -> Result<(), E>,
     ) -> Result<RoundSummary, E> {
-        let cycle = self.input.cycle();
+        let cycle = self.input.cycle().map_err(StudyError::NoCycle)?;
         let mut position = self.input.home();
         let mut within_limits = 0;
         for number in 0..self.count {
@@ -60,6 +60,6 @@ pub fn input_intervals(input: &Input<'_>) -> Vec<[f64; 2]> {
     let home = input.coordinate().home;
     match input.range() {
         InputRange::FullTurn => vec![[home - PI, home + PI]],
-        InputRange::Intervals(intervals) => intervals,
+        InputRange::Intervals { intervals, .. } => intervals,
     }
 }

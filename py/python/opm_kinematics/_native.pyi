@@ -135,7 +135,7 @@ class TaskCoordinate:
 
 @final
 class Linkage:
-    """A single loop that decomposes into two spherical four-bars, which share an imaginary joint.
+    """A single loop that decomposes into the loops of two sections, which share an imaginary joint.
 
     Immutable; it can be pickled, and shared between threads.
 
@@ -155,7 +155,7 @@ class Linkage:
         Parameters
         ----------
         path : path
-            TOML. Shipped linkages are read by :func:`examples.bennett`.
+            TOML. Shipped linkages are read by :func:`examples.linkage`.
         tolerance : float, optional
             Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
             count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
@@ -171,7 +171,7 @@ class Linkage:
         OSError
             The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
         OpmError
-            Lists every problem of the file with its line and column, or says why it is not a loop of two spherical four-bars.
+            Lists every problem of the file with its line and column, or says why it is not a single loop of two sections.
         """
     @staticmethod
     def parse(text: str, label: str | None = None, *, tolerance: float | None = None) -> Linkage:
@@ -196,7 +196,7 @@ class Linkage:
         Raises
         ------
         OpmError
-            Lists every problem of the text with its line and column, or says why it is not a loop of two spherical four-bars.
+            Lists every problem of the text with its line and column, or says why it is not a single loop of two sections.
         """
     @property
     def name(self) -> str:
@@ -212,7 +212,7 @@ class Linkage:
         """Name of the imaginary joint."""
     @property
     def home(self) -> list[float]:
-        """(k,): every joint at home, radians."""
+        """(k,): every joint at home, radians and metres."""
     def home_branch(self, input: str | None = None) -> str:
         """The branch in which the linkage is assembled, if one of its joints moves it.
 
@@ -224,7 +224,7 @@ class Linkage:
         Returns
         -------
         str
-            Two signs: the first for the four-bar with the input, the second for the other one.
+            Two signs: the first for the loop with the input, the second for the other one. A loop without a choice has +.
 
         Raises
         ------
@@ -242,7 +242,8 @@ class Linkage:
         Returns
         -------
         (r, 2) array
-            Lowest and highest value of every interval, radians. A full revolution is given as the interval around home.
+            Lowest and highest value of every interval, radians or metres; infinite where a slider has no end. A full revolution
+            is given as the interval around home.
 
         Raises
         ------
@@ -257,7 +258,7 @@ class Linkage:
         Parameters
         ----------
         values : (n,) array_like
-            Values of the joint that moves the linkage, radians.
+            Values of the joint that moves the linkage, radians or metres.
         input : str, optional
             Name of that joint; the actuated one if not given.
         threads : int, optional

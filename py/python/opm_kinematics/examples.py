@@ -11,7 +11,7 @@ from ._native import Linkage, Manipulator
 from ._native import example as _text
 from ._native import examples as names
 
-__all__ = ["bennett", "load", "names", "plano_spherical", "text", "translational_helical"]
+__all__ = ["bennett", "linkage", "load", "names", "plano_spherical", "text", "translational_helical"]
 
 
 def text(name: str) -> str:
@@ -56,6 +56,22 @@ def translational_helical() -> Manipulator:
     return load("translational-helical-3dof")
 
 
+def linkage(name: str) -> Linkage:
+    """An example as a linkage: a single loop that one of its joints moves.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`names`, such as "sarrus".
+
+    Raises
+    ------
+    OpmError
+        There is no example of this name, or it is not a single loop of two sections.
+    """
+    return Linkage.parse(_text(name), label=name)
+
+
 def bennett() -> Linkage:
     """Bennett's double spherical 6R (the paper's Fig. 1), which is moved by its joint a1."""
-    return Linkage.parse(_text("bennett-double-spherical-6r"), label="bennett-double-spherical-6r")
+    return linkage("bennett-double-spherical-6r")

@@ -91,7 +91,7 @@ impl CylindricalChain {
 
     /// The joints' coordinates; those of revolute joints count revolutions too.
     #[inline(always)]
-    fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
+    pub(crate) fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
         let [p, q] = self.joints;
         let first = (target.angle * q.advance - q.rotation * target.advance) / self.determinant;
         let second = (p.rotation * target.advance - target.angle * p.advance) / self.determinant;

@@ -1,7 +1,13 @@
 //! Functions of one number, and the intervals in which they are too near to zero for their sign to be
 //! certain.
 
+use crate::group::JointDisplacement;
+use nalgebra::Complex;
 use std::f64::consts::TAU;
+
+/// A coefficient of `t` or of its cosine and sine below this counts as zero, as a fraction of the function's
+/// largest coefficient.
+const CONSTANT: f64 = 1e-12;
 
 /// A function of `t` that has its zeros in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +46,43 @@ impl Span {
 }
 
 impl Equation {
+    /// The zeros, at most two: numbers, or directions of unit length where the function has the period 2π.
+    /// A constant has none.
+    ///
+    /// # Panics
+    /// If the function has another period.
+    pub(crate) fn roots(&self) -> Vec<JointDisplacement> {
+        let value = JointDisplacement::Value;
+        match *self {
+            Self::Polynomial([c0, c1, 0.0]) => {
+                let slope = c1.abs() > CONSTANT * c0.abs().max(1.0);
+                if slope { vec![value(-c0 / c1)] } else { Vec::new() }
+            }
+            Self::Polynomial([c0, c1, c2]) => {
+                let middle = -0.5 * c1 / c2;
+                let square = middle * middle - c0 / c2;
+                let roots =
+                    (square >= 0.0).then(|| [middle - square.sqrt(), middle + square.sqrt()]);
+                roots.into_iter().flatten().map(value).collect()
+            }
+            Self::Harmonic([c0, c1, c2]) => {
+                let axis = Complex::new(c1, c2);
+                let square = axis.norm_sqr();
+                let length = square.sqrt();
+                let below = (length - c0) * (length + c0);
+                if below < 0.0 || length <= CONSTANT * c0.abs() || length == 0.0 {
+                    return Vec::new();
+                }
+                let root = below.sqrt();
+                let at = |root: f64| axis * Complex::new(-c0, root) / square;
+                [root, -root].map(|root| JointDisplacement::Direction(at(root))).to_vec()
+            }
+            Self::Periodic(..) => {
+                panic!("a function with a period of its own has no list of zeros")
+            }
+        }
+    }
+
     /// Calls `found` with the intervals of a span in which the absolute value of the function is at most
     /// `tolerance`, in any order. Between them the function keeps its sign.
     #[inline]
@@ -108,5 +151,63 @@ fn every(period: f64, from: f64, to: f64, span: &Span, found: &mut impl FnMut([f
     while count <= last {
         span.give(from + count * period, to + count * period, found);
         count += 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Rounding, where a double root loses half of the digits.
+    const ROUNDING: f64 = 1e-7;
+
+    fn at(equation: &Equation, t: f64) -> f64 {
+        match *equation {
+            Equation::Polynomial([c0, c1, c2]) => c0 + t * (c1 + t * c2),
+            Equation::Harmonic([c0, c1, c2]) => c0 + c1 * t.cos() + c2 * t.sin(),
+            Equation::Periodic([c0, c1], _) => c0 + c1 * t,
+        }
+    }
+
+    proptest! {
+        /// Roots are zeros, and between two of them, or without any, the function keeps its sign.
+        #[test]
+        fn roots_are_all_zeros(c0 in -2.0..2.0_f64, c1 in -2.0..2.0_f64, c2 in 0.01..2.0_f64) {
+            let equations = [
+                Equation::Polynomial([c0, c1, c2]),
+                Equation::Polynomial([c0, c1, 0.0]),
+                Equation::Harmonic([c0, c1, c2]),
+            ];
+            for equation in equations {
+                let mut roots: Vec<f64> = equation.roots().iter().map(|root| root.value()).collect();
+                roots.sort_by(f64::total_cmp);
+                for root in &roots {
+                    prop_assert!(at(&equation, *root).abs() < ROUNDING * (1.0 + root * root));
+                }
+                let mut sign = 0.0;
+                for i in 0..200 {
+                    let t = -std::f64::consts::PI + TAU * f64::from(i) / 200.0;
+                    let value = at(&equation, t);
+                    let crossed = roots.iter().any(|root| (root - t).abs() <= TAU / 200.0);
+                    prop_assert!(crossed || sign * value >= 0.0, "{equation:?} at {t}");
+                    sign = value.signum();
+                }
+            }
+        }
+    }
+
+    /// A joint that a dead point does not depend on gives a constant, up to rounding.
+    #[test]
+    fn a_constant_has_no_roots() {
+        for equation in [
+            Equation::Polynomial([0.3, 0.0, 0.0]),
+            Equation::Polynomial([0.3, 1e-17, 0.0]),
+            Equation::Harmonic([0.3, 1e-17, -1e-17]),
+            Equation::Harmonic([0.0, 0.0, 0.0]),
+        ] {
+            assert!(equation.roots().is_empty(), "{equation:?}");
+        }
+        assert_eq!(Equation::Polynomial([1.0, -2.0, 1.0]).roots().len(), 2);
     }
 }

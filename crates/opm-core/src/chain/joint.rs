@@ -69,18 +69,23 @@ pub(super) fn coaxial_joints(
     subspace: &Subspace,
     joints: &[ChainJoint; 2],
 ) -> Result<[CoaxialJoint; 2], ChainError> {
-    let mut coaxial = [CoaxialJoint { rotation: 0.0, advance: 0.0 }; 2];
-    for (coaxial, joint) in coaxial.iter_mut().zip(joints) {
-        let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
-        *coaxial = match joint {
-            ChainJoint::Screw { axis, pitch, .. } => {
-                CoaxialJoint { rotation: sign(axis), advance: sign(axis) * pitch }
-            }
-            ChainJoint::Slide { axis } => CoaxialJoint { rotation: 0.0, advance: sign(axis) },
-            ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
-        };
-    }
-    Ok(coaxial)
+    let [first, second] = joints;
+    Ok([coaxial_joint(subspace, first)?, coaxial_joint(subspace, second)?])
+}
+
+/// A joint on the axis of a cylindrical subspace.
+pub(crate) fn coaxial_joint(
+    subspace: &Subspace,
+    joint: &ChainJoint,
+) -> Result<CoaxialJoint, ChainError> {
+    let sign = |axis: &Unit<Vector3<f64>>| subspace.direction(axis).z.signum();
+    Ok(match joint {
+        ChainJoint::Screw { axis, pitch, .. } => {
+            CoaxialJoint { rotation: sign(axis), advance: sign(axis) * pitch }
+        }
+        ChainJoint::Slide { axis } => CoaxialJoint { rotation: 0.0, advance: sign(axis) },
+        ChainJoint::Ball => return Err(ChainError::Foreign("cylindrical")),
+    })
 }
 
 pub(super) fn slides(
@@ -96,7 +101,10 @@ pub(super) fn slides(
 }
 
 /// The unit direction in the plane of a direction given in base coordinates.
-fn in_plane(subspace: &Subspace, axis: &Vector3<f64>) -> Result<Complex<f64>, ChainError> {
+pub(crate) fn in_plane(
+    subspace: &Subspace,
+    axis: &Vector3<f64>,
+) -> Result<Complex<f64>, ChainError> {
     let d = subspace.direction(axis);
     let along = Complex::new(d.x, d.y);
     let length = along.norm();

@@ -118,8 +118,9 @@ impl Surface {
         self.along(path).zeros((SHARE + 2.0 * blur) * scale, span, found);
     }
 
-    /// The function of the path parameter whose zeros are the targets on the surface.
-    fn along(&self, path: &Path) -> Equation {
+    /// The function of the path parameter whose zeros are the targets on the surface. Panics if the path is in
+    /// another kind of subspace.
+    pub(crate) fn along(&self, path: &Path) -> Equation {
         match *self {
             Self::Circle { point, centre, square } => match *path.planar() {
                 PlanarPath::Translation { start, rate } => {

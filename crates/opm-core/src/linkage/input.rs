@@ -1,22 +1,22 @@
 //! A linkage driven by one of its joints, and the resulting positions of the others.
 
-use super::{Linkage, Loop};
+use super::{DrivenLoop, Linkage, LinkageSection};
 use crate::chain::Branch;
 use crate::group::JointDisplacement;
-use crate::mechanism::joint::JointCoordinate;
+use crate::mechanism::joint::{JointCoordinate, Quantity};
 use crate::numeric::angle::unit;
-use nalgebra::Complex;
 use std::fmt;
 
-/// The signs of a position's two choices, in the order of solution: first for the four-bar with the
-/// input joint, then for the other one. A sign is `+` if the triple product of the three axes that
-/// follow the input (or the imaginary joint) in its loop is positive, in their directions at that
-/// position.
+/// The signs of a position's two choices, in the order of solution: first for the loop with the input
+/// joint, then for the other one. A sign is that of the chain of joints that follow the input (or the
+/// imaginary joint) in its loop: in a spherical loop it is `+` if the triple product of their three
+/// axes, in their directions at that position, is positive; for planar chains see
+/// [`PlanarChain`](crate::chain::planar::PlanarChain). A loop without a choice has `+`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LinkageBranch {
-    /// The sign for the four-bar with the input.
+    /// The sign for the loop with the input.
     pub first: Branch,
-    /// The sign for the other four-bar.
+    /// The sign for the other loop.
     pub second: Branch,
 }
 
@@ -42,13 +42,22 @@ impl fmt::Display for LinkageBranch {
 pub struct Position {
     /// The branch of the position.
     pub branch: LinkageBranch,
-    /// Every joint coordinate in radians, in the order of [`Linkage::coordinates`]: the home value
-    /// plus the displacement.
+    /// Every joint coordinate in radians or metres, in the order of [`Linkage::coordinates`]: the home
+    /// value plus the displacement.
     pub joints: Vec<f64>,
-    /// The value of the imaginary joint, radians.
+    /// The value of the imaginary joint, radians or metres.
     pub imaginary: f64,
     /// Whether every joint is within its limits.
     pub within_limits: bool,
+}
+
+/// The rates of all joints for a unit rate of the input: the linkage's transmission ratios.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rates {
+    /// The derivative of every joint coordinate by the input, in the order of [`Linkage::coordinates`].
+    pub joints: Vec<f64>,
+    /// The derivative of the imaginary joint by the input.
+    pub imaginary: f64,
 }
 
 /// A linkage driven by one of its joints.
@@ -71,10 +80,7 @@ impl<'a> Input<'a> {
 
     /// The branch in which the linkage is assembled.
     pub fn home_branch(&self) -> LinkageBranch {
-        LinkageBranch {
-            first: self.own().four_bar.driven_by(self.loop_index).home(),
-            second: self.other().four_bar.driven_by(0).home(),
-        }
+        LinkageBranch { first: self.first_loop().home(), second: self.second_loop().home() }
     }
 
     /// The home position, which [`Input::position`] can overwrite.
@@ -87,9 +93,13 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Every position with the input at `value`, radians, with the home value included: at most
-    /// four, and none if the loop does not close. Angles are within π of home, unless limits
+    /// Every position with the input at `value`, radians or metres, with the home value included: at
+    /// most four, and none if the loop does not close. Angles are within π of home, unless limits
     /// require another revolution. Where links are folded, branches that meet are all listed.
+    ///
+    /// Coaxial joints count revolutions. With other numbers of revolutions, a linkage with screws has
+    /// further positions without end; only those with home's are given, and an imaginary joint on the
+    /// screws' axis is within π of home.
     pub fn solve(&self, value: f64) -> Vec<Position> {
         let solved = |branch| {
             let mut position = self.home();
@@ -128,7 +138,9 @@ impl<'a> Input<'a> {
     ) -> bool {
         let linkage = self.linkage;
         let displacement = value - self.coordinate().home;
-        let Some([own, other]) = self.displacements(unit(displacement), branch) else {
+        let near = linkage.imaginary.displacement(imaginary);
+        let near = if linkage.reversed { -near } else { near };
+        let Some([own, other]) = self.displacements(displacement, branch, near) else {
             return false;
         };
         position.branch = branch;
@@ -142,13 +154,15 @@ impl<'a> Input<'a> {
             position.joints[coordinate] = home + value;
             position.within_limits &= within;
         };
-        for (i, &displacement) in own.iter().enumerate() {
-            let index = (self.loop_index + 1 + i) % 4;
+        let joints = self.own().closed.joints();
+        for (i, &displacement) in own.iter().enumerate().take(joints - 1) {
+            let index = (self.loop_index + 1 + i) % joints;
             if index > 0 {
                 put(self.own().coordinates[index - 1], displacement);
             }
         }
-        for (&coordinate, displacement) in self.other().coordinates.iter().zip(other) {
+        let others = self.other().closed.joints() - 1;
+        for (&coordinate, displacement) in self.other().coordinates[..others].iter().zip(other) {
             put(coordinate, displacement);
         }
         let tau = own[self.imaginary_index()];
@@ -157,32 +171,97 @@ impl<'a> Input<'a> {
         true
     }
 
-    /// The rotations of the three joints after the input in its loop, and of the three after the
-    /// imaginary joint in the other loop.
+    /// The rates of all joints at a position, for a unit rate of the input. `None` at a dead point of
+    /// either loop, where they are infinite or free.
+    pub fn rates(&self, position: &Position) -> Option<Rates> {
+        let displacement = position.joints[self.coordinate] - self.coordinate().home;
+        let near = self.linkage.imaginary.displacement(position.imaginary);
+        let near = if self.linkage.reversed { -near } else { near };
+        let [own, other] = self.displacements(displacement, position.branch, near)?;
+        let own_rates = self.first_loop().rates(&own)?;
+        let tau = own_rates[self.imaginary_index()];
+        let mut joints = vec![0.0; position.joints.len()];
+        joints[self.coordinate] = 1.0;
+        let count = self.own().closed.joints();
+        for (i, rate) in own_rates.into_iter().enumerate().take(count - 1) {
+            let index = (self.loop_index + 1 + i) % count;
+            if index > 0 {
+                joints[self.own().coordinates[index - 1]] = rate;
+            }
+        }
+        let others = self.other().closed.joints() - 1;
+        let other_rates = self.second_loop().rates(&other)?;
+        for (&coordinate, rate) in self.other().coordinates[..others].iter().zip(other_rates) {
+            joints[coordinate] = tau * rate;
+        }
+        let sign = self.linkage.imaginary.sign * if self.linkage.reversed { -1.0 } else { 1.0 };
+        Some(Rates { joints, imaginary: sign * tau })
+    }
+
+    /// The displacements of the joints after the input in its loop, and of those after the imaginary
+    /// joint in the other loop. Where revolutions of the imaginary joint count, it is the one nearest
+    /// to `near`.
     #[inline]
     fn displacements(
         &self,
-        turn: Complex<f64>,
+        displacement: f64,
         branch: LinkageBranch,
+        near: f64,
     ) -> Option<[[JointDisplacement; 3]; 2]> {
-        let own = self.own().four_bar.driven_by(self.loop_index).solve(turn, branch.first).ok()?;
-        let tau = own[self.imaginary_index()].unit_direction();
-        let other = self.other().four_bar.driven_by(0).solve(tau, branch.second).ok()?;
+        let (first, second) = (self.first_loop(), self.second_loop());
+        let absent = |driven: &DrivenLoop, branch| branch == Branch::Minus && !driven.has_choice();
+        if absent(first, branch.first) || absent(second, branch.second) {
+            return None;
+        }
+        let own = first.solve(self.driving(displacement)?, branch.first).ok()?;
+        let tau = own[self.imaginary_index()];
+        let tau = match tau {
+            JointDisplacement::Direction(_) if second.counts_revolutions() => {
+                JointDisplacement::Value(tau.nearest(near))
+            }
+            JointDisplacement::Direction(_) => JointDisplacement::Direction(tau.unit_direction()),
+            JointDisplacement::Value(_) => tau,
+        };
+        let other = second.solve(tau, branch.second).ok()?;
         Some([own, other])
+    }
+
+    /// The input's displacement as its loop takes it; `None` where it is not finite.
+    #[inline]
+    pub(super) fn driving(&self, displacement: f64) -> Option<JointDisplacement> {
+        let angle = self.coordinate().quantity == Quantity::Angle;
+        let direction = angle && !self.first_loop().counts_revolutions();
+        displacement.is_finite().then(|| {
+            if direction {
+                JointDisplacement::Direction(unit(displacement))
+            } else {
+                JointDisplacement::Value(displacement)
+            }
+        })
     }
 
     /// The index of the imaginary joint among the joints after the input.
     pub(super) fn imaginary_index(&self) -> usize {
-        3 - self.loop_index
+        self.own().closed.joints() - 1 - self.loop_index
     }
 
-    /// The loop with the input.
-    pub(super) fn own(&self) -> &'a Loop {
+    /// The section with the input.
+    pub(super) fn own(&self) -> &'a LinkageSection {
         &self.linkage.sections[self.section]
     }
 
-    /// The loop driven by the imaginary joint.
-    pub(super) fn other(&self) -> &'a Loop {
+    /// The section driven by the imaginary joint.
+    pub(super) fn other(&self) -> &'a LinkageSection {
         &self.linkage.sections[1 - self.section]
+    }
+
+    /// The loop of the section with the input, driven by the input.
+    pub(super) fn first_loop(&self) -> &'a DrivenLoop {
+        self.own().closed.driven_by(self.loop_index)
+    }
+
+    /// The loop of the other section, driven by the imaginary joint.
+    pub(super) fn second_loop(&self) -> &'a DrivenLoop {
+        self.other().closed.driven_by(0)
     }
 }

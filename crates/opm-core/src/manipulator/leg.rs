@@ -371,7 +371,7 @@ pub(crate) struct LegBranches {
 }
 
 /// The freedoms of a section as chain joints; the three freedoms of a spherical joint are one chain joint.
-fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
+pub(crate) fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
     let mut joints = Vec::with_capacity(3);
     for freedom in freedoms {
         let joint = &leg.joints[freedom.joint];
@@ -393,7 +393,7 @@ fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
 }
 
 /// The number of a freedom among the leg's coordinates.
-fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
+pub(crate) fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
     let before: usize =
         leg.joints[..freedom.joint].iter().map(crate::mechanism::joint::Joint::freedoms).sum();
     before + freedom.index

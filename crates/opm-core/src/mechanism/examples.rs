@@ -11,8 +11,8 @@ pub struct Example {
     pub text: &'static str,
 }
 
-/// Every example: first the paper's mechanisms, families before joint lists, then those designed for
-/// this project, then those of one subspace from the literature.
+/// Every example: first the paper's mechanisms, families before joint lists, then other linkages, then
+/// those designed for this project, then those of one subspace from the literature.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -38,6 +38,16 @@ pub const EXAMPLES: &[Example] = &[
         name: "bennett-double-spherical-6r",
         description: "Bennett's double spherical 6R: one loop, one freedom (Selvi, Fig. 1)",
         text: include_str!("../../mechanisms/bennett-double-spherical-6r.toml"),
+    },
+    Example {
+        name: "bennett-plano-spherical-6r",
+        description: "Bennett's plano-spherical 6R: one loop, one freedom (Bennett 1905)",
+        text: include_str!("../../mechanisms/bennett-plano-spherical-6r.toml"),
+    },
+    Example {
+        name: "sarrus",
+        description: "Sarrus' linkage, two planes: one loop, one translation (Sarrus 1853)",
+        text: include_str!("../../mechanisms/sarrus.toml"),
     },
     Example {
         name: "planar-planar-5dof",

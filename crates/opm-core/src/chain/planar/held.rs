@@ -57,7 +57,7 @@ impl PlanarChain {
     }
 
     /// Whether a joint's displacement is a rotation.
-    pub(in crate::chain) fn is_rotation(&self, joint: usize) -> bool {
+    pub(crate) fn is_rotation(&self, joint: usize) -> bool {
         matches!(self.joints()[joint], Revolute { .. })
     }
 

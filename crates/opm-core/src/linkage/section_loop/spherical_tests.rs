@@ -1,13 +1,38 @@
-//! Comparison with the input-output equation of the textbook, in coordinates of its own.
+//! The spherical four-bar, compared with the input-output equation of the textbook (J. M. McCarthy and
+//! G. S. Soh, *Geometric Design of Linkages*, on spherical linkages), in coordinates of its own.
 
 use super::*;
+use crate::group::SubspaceKind;
 use crate::numeric::angle::unit;
-use nalgebra::{Rotation3, UnitQuaternion};
+use nalgebra::{Complex, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
 /// Tolerance: the rounding of a few dozen operations on numbers up to one.
 const ROUNDING: f64 = 1e-12;
+
+/// Four revolutes through the origin, in the order of the loop.
+fn four_bar(axes: [Unit<Vector3<f64>>; 4]) -> Result<SectionLoop, ChainError> {
+    let centre = Subspace {
+        kind: SubspaceKind::Spherical,
+        origin: Point3::origin(),
+        axes: Matrix3::identity(),
+        measured_from: Point3::origin(),
+    };
+    let point = Point3::origin();
+    SectionLoop::new(&centre, &axes.map(|axis| ChainJoint::Screw { axis, point, pitch: 0.0 }))
+}
+
+fn at(angle: f64) -> JointDisplacement {
+    JointDisplacement::Direction(unit(angle))
+}
+
+fn direction(point: &DeadPoint) -> Complex<f64> {
+    match point.at {
+        JointDisplacement::Direction(e) => e,
+        JointDisplacement::Value(_) => panic!("{point:?}"),
+    }
+}
 
 /// Arcs of the input crank, the coupler, the output crank and the base, as in McCarthy and Soh.
 #[derive(Clone, Copy, Debug)]
@@ -81,13 +106,13 @@ struct Assembled {
     input: f64,
     output: f64,
     axes: [Unit<Vector3<f64>>; 4],
-    four_bar: FourBar,
+    four_bar: SectionLoop,
 }
 
 impl Assembled {
     fn new(arcs: Arcs, input: f64, output: f64) -> Self {
         let axes = arcs.axes(input, output);
-        Self { arcs, input, output, axes, four_bar: FourBar::new(axes).unwrap() }
+        Self { arcs, input, output, axes, four_bar: four_bar(axes).unwrap() }
     }
 }
 
@@ -132,10 +157,10 @@ proptest! {
         let clearly = (a.hypot(b) - c.abs()).abs() > 1e-6;
         prop_assume!(clearly);
         let expected = arcs.outputs(input);
-        prop_assert_eq!(driven.closes(unit(input - home)), expected.is_some());
+        prop_assert_eq!(driven.closes(at(input - home)), expected.is_some());
         let Some(expected) = expected else { return Ok(()) };
         let found = Branch::BOTH.map(|branch| {
-            let displacements = driven.solve(unit(input - home), branch).unwrap();
+            let displacements = driven.solve(at(input - home), branch).unwrap();
             // Seen from the base, which rotates about the output's axis as the loop's last joint.
             output - displacements[2].value()
         });
@@ -152,7 +177,7 @@ proptest! {
     ) {
         let Assembled { axes, four_bar, .. } = assembled;
         for branch in Branch::BOTH {
-            let Ok(displacements) = four_bar.driven_by(driver).solve(unit(input), branch) else { continue };
+            let Ok(displacements) = four_bar.driven_by(driver).solve(at(input), branch) else { continue };
             let mut q = [0.0; 4];
             q[driver] = input;
             for (i, displacement) in displacements.iter().enumerate() {
@@ -175,7 +200,7 @@ proptest! {
         let [a1, a2, a3] = [1, 2, 3].map(|i| axes[(driver + i) % 4]);
         // A folded home loses half of the digits.
         prop_assume!(a1.dot(&a2.cross(&a3)).abs() > 1e-3);
-        for displacement in driven.solve(unit(0.0), driven.home()).unwrap() {
+        for displacement in driven.solve(at(0.0), driven.home()).unwrap() {
             prop_assert!(displacement.value().abs() < 1e-9, "{displacement:?}");
         }
     }
@@ -187,11 +212,13 @@ proptest! {
         let Assembled { arcs, four_bar, .. } = assembled;
         prop_assume!(arcs.margin() > 1e-4);
         let driven = four_bar.driven_by(0);
-        let dead: Vec<_> = driven.dead_points().collect();
+        let dead: Vec<_> = driven.dead_points().iter().map(direction).collect();
         prop_assert_eq!(arcs.is_crank(), dead.is_empty(), "{:?}", arcs);
         for point in dead {
             prop_assert!((point.norm() - 1.0).abs() < ROUNDING);
-            let sides = [-1e-6, 1e-6].map(|step| driven.closes(point * unit(step)));
+            let sides = [-1e-6, 1e-6].map(|step| {
+                driven.closes(JointDisplacement::Direction(point * unit(step)))
+            });
             prop_assert!(sides[0] != sides[1], "{arcs:?} {point} {sides:?}");
         }
     }
@@ -206,12 +233,11 @@ fn change_points_are_inside() {
     let Assembled { four_bar, axes, .. } = Assembled::new(arcs, 0.7, output);
     let driven = four_bar.driven_by(0);
     for i in 0..=720 {
-        let input = unit(f64::from(i) * PI / 360.0);
-        assert!(driven.closes(input), "{i}");
+        assert!(driven.closes(at(f64::from(i) * PI / 360.0)), "{i}");
     }
     for folded in [0.0, PI] {
         for branch in Branch::BOTH {
-            let displacements = driven.solve(unit(folded - 0.7), branch).unwrap();
+            let displacements = driven.solve(at(folded - 0.7), branch).unwrap();
             let q = [
                 folded - 0.7,
                 displacements[0].value(),
@@ -230,7 +256,7 @@ fn a_free_angle_is_home() {
     let output = arcs.outputs(1.0).unwrap()[1];
     let Assembled { four_bar, axes, .. } = Assembled::new(arcs, 1.0, output);
     for branch in Branch::BOTH {
-        let displacements = four_bar.driven_by(0).solve(unit(-1.0), branch).unwrap();
+        let displacements = four_bar.driven_by(0).solve(at(-1.0), branch).unwrap();
         let q =
             [-1.0, displacements[0].value(), displacements[1].value(), displacements[2].value()];
         assert_eq!(displacements[0].value(), 0.0);
@@ -241,9 +267,9 @@ fn a_free_angle_is_home() {
 #[test]
 fn parallel_neighbours_are_refused() {
     let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
-    assert!(FourBar::new([x, y, z, y]).is_ok());
+    assert!(four_bar([x, y, z, y]).is_ok());
     for axes in [[x, x, y, z], [y, x, -x, z], [x, y, z, z], [-z, x, y, z]] {
-        assert!(matches!(FourBar::new(axes), Err(ChainError::Dependent(_))), "{axes:?}");
+        assert!(matches!(four_bar(axes), Err(ChainError::Dependent(_))), "{axes:?}");
     }
 }
 
@@ -251,9 +277,9 @@ fn parallel_neighbours_are_refused() {
 #[test]
 fn no_number_no_position() {
     let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
-    let four_bar = FourBar::new([x, y, z, y]).unwrap();
+    let four_bar = four_bar([x, y, z, y]).unwrap();
     for input in [f64::NAN, f64::INFINITY] {
-        assert!(!four_bar.driven_by(0).closes(unit(input)));
-        assert!(four_bar.driven_by(1).solve(unit(input), Branch::Plus).is_err());
+        assert!(!four_bar.driven_by(0).closes(at(input)));
+        assert!(four_bar.driven_by(1).solve(at(input), Branch::Plus).is_err());
     }
 }
