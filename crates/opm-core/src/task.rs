@@ -390,7 +390,7 @@ impl Task {
     pub fn lower(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(&pose[..self.lower_count], 0);
         let displacement = lower_displacement(self.form(Section::Lower), at, home, sin_cos);
-        self.from_home(Section::Lower, displacement)
+        self.displaced_from_home(Section::Lower, displacement)
     }
 
     /// What the two subspaces share; `None` for the identity alone.
@@ -410,7 +410,7 @@ impl Task {
 
     /// The displacement from home of a section that its coordinates describe: Euler angles are absolute.
     #[inline]
-    fn from_home(&self, section: Section, displacement: Displacement) -> Displacement {
+    fn displaced_from_home(&self, section: Section, displacement: Displacement) -> Displacement {
         match (displacement, &self.home_orientation_inverse) {
             (Displacement::Spherical(absolute), Some(inverse))
                 if self.euler_section() == Some(section) =>
@@ -448,7 +448,7 @@ impl Task {
     pub fn upper(&self, pose: &[f64]) -> Displacement {
         let (at, home) = self.section_of(pose, self.lower_count);
         let displacement = upper_displacement(self.form(Section::Upper), at, home, sin_cos);
-        self.from_home(Section::Upper, displacement)
+        self.displaced_from_home(Section::Upper, displacement)
     }
 
     /// The form of a section, which determines its coordinates.
