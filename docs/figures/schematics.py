@@ -30,6 +30,10 @@ DRAWN = (
     ("schoenflies-lift-4dof", "schoenflies-lift", (26, -58), {}),
     ("translational-helical-3dof-joints", "translational-helical", (34, -62), {}),
     ("translational-planar-4dof", "translational-planar", (24, -35), {}),
+    ("planar-3rrr", "planar-3rrr", (58, -75), {}),
+    ("planar-3rpr", "planar-3rpr", (58, -75), {}),
+    ("agile-eye", "agile-eye", (22, 35), {"leg1": 48, "leg2": 60, "leg3": 72}),
+    ("orbita", "orbita", (18, -60), {"leg1": 60, "leg2": 60, "leg3": 60}),
 )
 
 
@@ -70,7 +74,7 @@ def spread(joints, found, radius):
     spherical = {
         color
         for color, section in ((LOWER, "lower"), (UPPER, "upper"))
-        if found[section]["subspace"] == "spherical"
+        if found[section] is not None and found[section]["subspace"] == "spherical"
     }
     for joint in joints:
         if joint.kind == "revolute" and joint.section in spherical:
@@ -103,7 +107,8 @@ def schematic(name, picture, view, radii):
         panel.plot(*np.array([leg[-1].at, platform]).T, color=INK, linewidth=2.2, zorder=2, alpha=0.55)
         base = leg[0].at
         panel.plot(*base, marker="s", color="white", markeredgecolor=FAINT, markersize=13, zorder=1)
-    imaginary(panel, found, legs, size)
+    if found["intersection"] is not None:
+        imaginary(panel, found, legs, size)
     for joint in joints:
         symbol(panel, joint, 0.085 * size)
     panel.plot(*platform, marker="*", color=INK, markersize=11, zorder=6)
@@ -158,8 +163,10 @@ def imaginary(panel, found, legs, size):
         lines = []
         for leg in cuts:
             lower, upper = ([j for j in leg if j.section == s] for s in (LOWER, UPPER))
-            middle = (lower[-1].at + upper[0].at) / 2
-            if np.allclose(lower[-1].at, upper[0].at):
+            # A leg that is a whole section has the imaginary joint at its platform.
+            ends = [joint.at for joint in (*lower[-1:], *upper[:1])]
+            middle = np.mean(ends, axis=0)
+            if len(ends) == 2 and np.allclose(*ends):
                 middle = middle + (0, 0, 0.05 * size)  # beside the axes that meet there
             lines.append(np.array([middle - 0.14 * size * along, middle + 0.14 * size * along]))
     for line in lines:
@@ -170,11 +177,17 @@ def legend(figure, found):
     def line(color, **more):
         return Line2D([], [], color=color, **more)
 
-    shared = f"imaginary: {found['intersection']['kind']}"
+    if found["upper"] is None:
+        sections = [(line(LOWER, linewidth=2), f"one subspace: {found['lower']['subspace']}")]
+    else:
+        shared = f"imaginary: {found['intersection']['kind']}"
+        sections = [
+            (line(LOWER, linewidth=2), f"lower: {found['lower']['subspace']}"),
+            (line(UPPER, linewidth=2), f"upper: {found['upper']['subspace']}"),
+            (line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared),
+        ]
     entries = [
-        (line(LOWER, linewidth=2), f"lower: {found['lower']['subspace']}"),
-        (line(UPPER, linewidth=2), f"upper: {found['upper']['subspace']}"),
-        (line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared),
+        *sections,
         (line(INK, marker="o", linestyle="", markersize=7), "driven"),
         (line(INK, marker="o", linestyle="", markersize=7, markerfacecolor="white"), "passive"),
         (line(INK, marker="*", linestyle="", markersize=10), "platform"),

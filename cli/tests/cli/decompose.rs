@@ -33,6 +33,7 @@ fn the_plano_spherical_manipulator() {
         "upper",
         "intersection",
         "task_coordinates",
+        "dependent_coordinates",
         "legs",
         "frames",
         "applies",

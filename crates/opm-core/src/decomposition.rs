@@ -30,6 +30,7 @@ pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 
 use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
+use crate::group::SubspaceKind;
 use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::Joint;
@@ -327,15 +328,14 @@ fn found_or_near<T>(
 pub const MAX_DECOMPOSITIONS: usize = 1024;
 
 /// The decomposition of a mechanism whose legs all move in one proper subgroup: the subgroup is the lower
-/// section, and there is no upper one. `None` if the joint screws do not span such a subgroup.
+/// section, and there is no upper one. `None` if the joint screws do not span a subgroup that has closed forms.
 fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option<Decomposition> {
     let frame = frame(mechanism);
     let screws: Vec<_> =
         mechanism.legs.iter().flat_map(Leg::screws).map(|screw| frame.unit(&screw)).collect();
     let group = fit(&screws).filter(|group| group.class.dimension() == lambda)?;
-    if group.class == SubspaceClass::Full {
-        return None;
-    }
+    // Others have no closed forms, alone.
+    SubspaceKind::of(&group.class)?;
     let whole = |leg: &Leg| {
         let freedom = |(joint, j): (usize, &Joint)| {
             (0..j.screws().len()).map(move |index| Freedom { joint, index })
@@ -399,6 +399,12 @@ impl<'a> Sections<'a> {
         let upper = partial(SplitCandidate::upper_screws)?;
         let intersection = lower.basis.intersection(&upper.basis);
         if intersection.dimension() != shared {
+            return None;
+        }
+        // Of pairs that share nothing, those are listed that have closed forms: with a group such as that of
+        // Schoenflies motions, too much is such a pair.
+        let solvable = |fit: &Fit| SubspaceKind::of(&fit.class).is_some();
+        if shared == 0 && !(solvable(&lower) && solvable(&upper)) {
             return None;
         }
         let intersection = match shared {

@@ -91,6 +91,12 @@ pub fn nearly(mechanism: &Mechanism) -> Result<Option<NearMiss>, MobilityError> 
 
 /// What a mechanism misses of smaller sections, if it has a section that is large or has a pitch.
 pub(super) fn near_smaller(mechanism: &Mechanism, found: &[Decomposition]) -> Option<NearMiss> {
+    near_miss(mechanism, smaller(found)?)
+}
+
+/// The most dimensions that smaller sections have together, if the preferred decomposition has a section that
+/// is large or has a pitch; `None` if it has none.
+fn smaller(found: &[Decomposition]) -> Option<usize> {
     let large = |group: &SubspaceClass| match group {
         SubspaceClass::TranslationalSpace
         | SubspaceClass::PlanarHelical { .. }
@@ -106,7 +112,7 @@ pub(super) fn near_smaller(mechanism: &Mechanism, found: &[Decomposition]) -> Op
         | SubspaceClass::Spherical { .. } => false,
     };
     let first = found.first().filter(|d| large(&d.lower) || large(&d.upper))?;
-    near_miss(mechanism, dimensions(first) - 1)
+    Some(dimensions(first) - 1)
 }
 
 /// The dimensions of both sections together.
@@ -140,7 +146,10 @@ pub fn snap(mechanism: &Mechanism, tolerance: f64) -> Result<Snapped, MobilityEr
     mobility(mechanism)?;
     let unchanged = || Snapped { mechanism: mechanism.clone(), joints: vec![] };
     let most = match plain(mechanism) {
-        Ok(found) if is_exact(&found) => found.first().map_or(0, dimensions).saturating_sub(1),
+        Ok(found) if is_exact(&found) => match smaller(&found) {
+            Some(most) => most,
+            None => return Ok(unchanged()),
+        },
         Ok(_) | Err(_) => MOST_DIMENSIONS,
     };
     let correction = correction(mechanism, tolerance / frame(mechanism).length, most);
