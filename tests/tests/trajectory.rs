@@ -5,12 +5,14 @@ use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::motion::{self, Harmonics, Path, PlatformMotion, Sinusoid};
 use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Meet, Options, PAIRS, mechanism, meet};
 use std::f64::consts::{PI, TAU};
 
 /// Samples per second of the tested motion, and of the reference.
 const RATE: f64 = 200.0;
 const FINE: f64 = 5000.0;
+/// A measure that changes its sign between values as large as this does so at a pole.
+const POLE: f64 = 1e3;
 /// Both agree on a time up to the reference's step, because it may be on one side or the other.
 const STEP: f64 = 1.0 / FINE;
 
@@ -133,8 +135,10 @@ fn look(manipulator: &Manipulator, motion: &PlatformMotion) -> Vec<Seen> {
 /// Whether a leg is out of reach in both of its sections, one after the other, within a sample of a time. If it
 /// is back in reach in between, the two are reported as one stretch.
 fn changes_section(seen: &[Seen], leg: usize, time: f64) -> bool {
-    let near = seen.iter().filter(|seen| (seen.time - time).abs() <= 1.0 / RATE);
+    let (at, sample) = ((time * FINE).round() as usize, (FINE / RATE) as usize);
+    let near = &seen[at.saturating_sub(sample)..seen.len().min(at + sample + 1)];
     let sections: Vec<Section> = near
+        .iter()
         .flat_map(|seen| &seen.out_of_reach)
         .filter(|(number, _)| *number == leg)
         .map(|(_, section)| *section)
@@ -144,10 +148,12 @@ fn changes_section(seen: &[Seen], leg: usize, time: f64) -> bool {
 
 #[test]
 fn what_is_violated_is_reported_and_nothing_else() {
-    let mut rng = Rng::with_seed(7);
     let (mut reach, mut limit, mut crossings) = (0, 0, 0);
-    for _ in 0..8 {
-        for pair in PAIRS {
+    // Pairs that share a motion, then the others, each with numbers of their own.
+    let (bridged, others): (Vec<_>, Vec<_>) =
+        PAIRS.into_iter().partition(|pair| meet(*pair) != Meet::Nothing);
+    for (pairs, mut rng) in [(bridged, Rng::with_seed(7)), (others, Rng::with_seed(8))] {
+        for pair in std::iter::repeat_n(pairs, 8).flatten() {
             let options = Options { limited: 0.5, balls: true };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
@@ -196,7 +202,10 @@ fn what_is_violated_is_reported_and_nothing_else() {
                     let [Some(before), Some(after)] = [pair[0].signs[i], pair[1].signs[i]] else {
                         continue;
                     };
-                    if before * after < 0.0 {
+                    // Where the sliders of a leg become parallel they are infinitely far out, and so is the
+                    // measure: it changes its sign there without being zero.
+                    let pole = before.abs().min(after.abs()) > POLE;
+                    if before * after < 0.0 && !pole {
                         crossings += 1;
                         let near = |t: &f64| *t > pair[0].time - STEP && *t < pair[1].time + STEP;
                         assert!(
