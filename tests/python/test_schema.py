@@ -91,7 +91,6 @@ UNSAYABLE = [
     "two (joints|legs) are called",
     "is .* for two legs, expected different names",
     "is the name of that leg's imaginary joint",
-    "no joint is actuated",
     "has no `pitch`, expected it for exactly one leg",
     "`pitch` is given for . legs, expected it for exactly one",
     "gives the direction alpha \\+ beta = ",

@@ -239,6 +239,30 @@ fn orbita_turns_its_discs_as_its_documentation_says() {
     assert!(reached > 100, "{reached}");
 }
 
+/// Axes whose points are written with few digits miss the centre by their rounding, and legs then close to some
+/// multiple of that. Such a mechanism is assembled all the same.
+#[test]
+fn axes_that_miss_the_centre_by_rounding_are_assembled() {
+    let exact = Manipulator::example("orbita").unwrap();
+    for digits in [5, 7, 10] {
+        let unit = 10_f64.powi(-digits);
+        let rounded = |c: f64| (c / unit).round() * unit;
+        let mut mechanism = exact.mechanism().clone();
+        for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+            joint.point = (joint.axis.into_inner() * 0.06).map(rounded).into();
+        }
+        let manipulator = Manipulator::new(mechanism).unwrap();
+        let pose = manipulator.pose([("zeta", 0.3), ("xi", 0.2), ("psi", -0.4)]).unwrap();
+        let mut buffer = manipulator.solution();
+        let solution =
+            manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer).unwrap().unwrap();
+        let discs = [0, 3, 6].map(|joint| solution.joints()[joint]);
+        let assemblies = manipulator.forward(&discs).unwrap();
+        let near = |a: &[f64]| a.iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(assemblies.list.iter().any(|a| near(&a.pose)), "{digits}: {assemblies:?}");
+    }
+}
+
 /// The upright platform rotates with its discs, by any angle: `zeta + psi`.
 #[test]
 fn orbita_s_yaw_is_that_of_its_discs() {

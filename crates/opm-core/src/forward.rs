@@ -56,9 +56,14 @@ pub use near::{NearError, NotFound, Stop};
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
 use search::Search;
 
-/// The largest residual of an assembly, in radians and shares of the mechanism's size. A candidate with a
-/// larger residual does not close, and is rejected.
+/// The largest residual of an assembly, in radians and shares of the mechanism's size, where the joints are
+/// exactly in their subspaces. A candidate with a larger residual does not close, and is rejected. Where joints
+/// miss their subspaces by a [`deviation`](crate::decomposition::Decomposition::deviation), legs close to some
+/// multiple of that at best.
 pub const RESIDUAL: f64 = 1e-12;
+
+/// The largest residual in multiples of the deviation: what six joints add up to, with a margin.
+const DEVIATIONS: f64 = 20.0;
 
 /// One assembly of the mechanism for given actuated joints. See the example in the docs of
 /// [`forward`](crate::forward).
@@ -140,6 +145,11 @@ pub enum ForwardError {
 }
 
 impl Manipulator {
+    /// The largest residual of an assembly of this mechanism.
+    fn largest_residual(&self) -> f64 {
+        RESIDUAL.max(DEVIATIONS * self.decomposition().deviation)
+    }
+
     /// Whether [`Manipulator::forward`] has a closed form, and if not, why.
     ///
     /// # Errors

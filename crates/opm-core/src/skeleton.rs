@@ -288,7 +288,7 @@ impl Builder<'_> {
         }
         let ball = Solid::ball(mechanism.platform, self.sizes.ball);
         self.draw(platform, ball, Material::Platform);
-        let imaginary = self.imaginary(joints);
+        let imaginary = self.imaginary(joints, platform);
         Skeleton {
             coordinates: mechanism.coordinates().count(),
             bodies: self.bodies,
@@ -363,8 +363,8 @@ impl Builder<'_> {
     }
 
     /// Draws the imaginary joints: a shaft on the platform of the lower section, and a link on it
-    /// for each leg. The link rotates, or slides, by the value of the imaginary joint.
-    fn imaginary(&mut self, joints: ImaginaryJoints<'_>) -> Vec<ImaginaryBody> {
+    /// for each leg. The link rotates, or slides, by the value of the imaginary joint. `top` is the platform.
+    fn imaginary(&mut self, joints: ImaginaryJoints<'_>, top: usize) -> Vec<ImaginaryBody> {
         let (axis, point) = match &joints.decomposition.intersection {
             SubspaceClass::Rotation { axis, point } => (*axis, Some(*point)),
             SubspaceClass::Translation { axis } => (*axis, None),
@@ -374,7 +374,7 @@ impl Builder<'_> {
         let ends: Vec<_> = joints
             .imaginary
             .iter()
-            .map(|joint| self.attachment(joint, joints.decomposition))
+            .map(|joint| self.attachment(joint, joints.decomposition, top))
             .collect();
         // The axis of a translation has no position, so the shaft runs through the first leg's
         // attachment.
@@ -423,7 +423,12 @@ impl Builder<'_> {
 
     /// The point where a leg's imaginary joint is attached to it: the last joint of its lower
     /// section.
-    fn attachment(&self, joint: &ImaginaryJoint, decomposition: &Decomposition) -> Attachment {
+    fn attachment(
+        &self,
+        joint: &ImaginaryJoint,
+        decomposition: &Decomposition,
+        top: usize,
+    ) -> Attachment {
         let split = &decomposition.legs[joint.leg];
         let leg = &self.mechanism.legs[joint.leg];
         let last = split.lower.last().copied().unwrap_or(Freedom { joint: 0, index: 0 });
@@ -432,8 +437,9 @@ impl Builder<'_> {
         // A joint that is split between the sections has no link after its first freedoms. The link
         // before it holds the joint's centre as well.
         let outward = if whole { Some(last.joint) } else { last.joint.checked_sub(1) };
-        let body = outward.map_or(Some(0), |joint| movers[joint].body);
-        Attachment { centre: self.centres[joint.leg][last.joint], body: body.unwrap_or(0) }
+        // A leg that is all in the lower section ends at the platform, `top`.
+        let body = outward.map_or(0, |joint| movers[joint].body.unwrap_or(top));
+        Attachment { centre: self.centres[joint.leg][last.joint], body }
     }
 }
 

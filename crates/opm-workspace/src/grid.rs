@@ -37,6 +37,9 @@ pub struct Axis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
+    /// The grid is of the upper section, but all legs move in one subspace.
+    #[error("the mechanism has no upper section: all its legs move in one subspace")]
+    NoUpperSection,
     /// No coordinate has the name of the axis.
     #[error("grid axis {name}: no such {}, expected one of {expected}", section.coordinate())]
     Unknown {
@@ -250,6 +253,9 @@ impl Grid {
     ) -> Result<Self, GridError> {
         let coordinates = sections.coordinates(manipulator);
         let mut axes: Vec<Option<Axis>> = vec![None; coordinates.len()];
+        if coordinates.is_empty() {
+            return Err(GridError::NoUpperSection);
+        }
         for axis in given {
             let Some(number) = coordinates.iter().position(|c| c.name == axis.name) else {
                 let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();

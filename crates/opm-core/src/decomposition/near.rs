@@ -32,6 +32,9 @@ use std::fmt;
 const TOLERANCES: [f64; 7] = [TOLERANCE, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, FARTHEST];
 const FARTHEST: f64 = 5e-2;
 
+/// The largest angle by which an axis is corrected, radians, and the largest length in characteristic lengths.
+const LARGEST_ANGLE: f64 = 0.1;
+
 /// An offset up to this size, in radians and characteristic lengths, is rounding of exact numbers.
 /// Such joints stay as they are.
 const EXACT: f64 = 1e-12;
@@ -138,7 +141,8 @@ pub(super) fn near_miss(mechanism: &Mechanism, dimensions: usize) -> Option<Near
 /// Puts every joint exactly into the subspace of its section, if none is farther from it than
 /// `tolerance`: a length in metres. Angles count as lengths at the mechanism's characteristic length.
 ///
-/// A mechanism that does not decompose within the tolerance is returned as it is.
+/// A mechanism that does not decompose within the tolerance is returned as it is. No axis is rotated by more
+/// than some six degrees, however small the mechanism is: then it would be another one.
 ///
 /// # Errors
 /// [`MobilityError`] if the mechanism is incomplete or has numbers that are not finite.
@@ -152,7 +156,8 @@ pub fn snap(mechanism: &Mechanism, tolerance: f64) -> Result<Snapped, MobilityEr
         },
         Ok(_) | Err(_) => MOST_DIMENSIONS,
     };
-    let correction = correction(mechanism, tolerance / frame(mechanism).length, most);
+    let tolerance = (tolerance / frame(mechanism).length).min(LARGEST_ANGLE);
+    let correction = correction(mechanism, tolerance, most);
     Ok(correction.map_or_else(unchanged, |correction| correction.snapped))
 }
 

@@ -2,7 +2,7 @@
 //! close.
 
 use super::search::Search;
-use super::{Assemblies, Assembly, RESIDUAL, Unmet};
+use super::{Assemblies, Assembly, Unmet};
 use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement};
@@ -233,7 +233,7 @@ impl Search<'_> {
                 }
             }
         }
-        if assembly.residual.is_nan() || assembly.residual > RESIDUAL {
+        if assembly.residual.is_nan() || assembly.residual > m.largest_residual() {
             self.reject(assembly.residual);
             return;
         }

@@ -2,7 +2,7 @@
 //! with the Jacobian of the actuated joints. Steps are twists, not changes of the task coordinates, so that
 //! a singularity of the Euler angles does not stop them. Home is such a pose in many mechanisms.
 
-use super::{Assembly, ForwardError, RESIDUAL};
+use super::{Assembly, ForwardError};
 use crate::group::LocalTwist;
 use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
 use crate::mechanism::joint::JointKind;
@@ -142,7 +142,7 @@ impl Manipulator {
         let target = self.task().displacement(&pose);
         let mut solution = newton.solution.clone();
         let assembly = self.assembly(&pose, mode, &displacements, &mut solution, &target);
-        if assembly.residual > RESIDUAL {
+        if assembly.residual > self.largest_residual() {
             return Err(newton.ended(Stop::Stalled, STEPS, assembly.residual).into());
         }
         Ok(assembly)

@@ -112,6 +112,9 @@ impl DomainAxis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DomainError {
+    /// The upper section is asked for, but all legs move in one subspace.
+    #[error("the mechanism has no upper section: all its legs move in one subspace")]
+    NoUpperSection,
     /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
@@ -186,7 +189,7 @@ impl Domain {
     /// A domain over these ranges. A coordinate without a range stays at its home value.
     ///
     /// # Errors
-    /// [`DomainError`]: unknown or repeated coordinates, ends that are not finite numbers or reversed, more
+    /// [`DomainError`]: a section that the mechanism does not have, unknown or repeated coordinates, ends that are not finite numbers or reversed, more
     /// than [`MOST`] ranges, or ranges whose product is out of the range of double precision.
     pub fn new(
         manipulator: &Manipulator,
@@ -194,6 +197,9 @@ impl Domain {
         given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
         let mut axes = axes(manipulator, sections);
+        if axes.is_empty() {
+            return Err(DomainError::NoUpperSection);
+        }
         let mut seen = vec![false; axes.len()];
         for CoordinateRange { name, min, max } in given {
             let Some(number) = axes.iter().position(|axis| axis.name == *name) else {
