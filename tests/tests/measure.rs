@@ -153,8 +153,10 @@ fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) 
     }
     let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
     let mode = [None, Some(m.home_mode())][rng.usize(..2)];
-    let sections = [Sections::Whole, Sections::Whole, Sections::Upper, Sections::Lower];
-    (m, mode, sections[rng.usize(..4)])
+    let sections = [Sections::Whole, Sections::Whole, Sections::Lower, Sections::Upper];
+    // A mechanism of one subspace has no upper section.
+    let drawable = if Sections::Upper.coordinates(&m).is_empty() { 3 } else { 4 };
+    (m, mode, sections[rng.usize(..drawable)])
 }
 
 /// A box about a pose near home: its widths are `size` times a scale along each coordinate, and
