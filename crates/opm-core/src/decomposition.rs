@@ -62,6 +62,22 @@ pub struct LegSplit {
 }
 
 /// A split of a mechanism into a lower and an upper section.
+///
+/// ```
+/// use opm_core::decomposition::decompose;
+/// use opm_core::mechanism::{examples, file};
+///
+/// let text = examples::find("plano-spherical-5dof-joints").expect("it is shipped").text;
+/// let mechanism = file::read(text)?.mechanism;
+/// let preferred = &decompose(&mechanism)?[0];
+/// assert_eq!((preferred.lower.name(), preferred.upper.name()), ("planar", "spherical"));
+/// assert_eq!(preferred.intersection.name(), "rotation");
+/// // lambda = 5, N = 5, J = 3, M = 2 (section 3.1 of the paper).
+/// let d = preferred;
+/// let numbers = [d.lambda, d.mobility, d.imaginary_joints, d.first_section_motions];
+/// assert_eq!(numbers, [5, 5, 3, 2]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decomposition {
     /// Dimension of the span of all joint screws, `lambda`.

@@ -7,7 +7,8 @@
 //!
 //! The platform moves in a product `A · B` of two subgroups of SE(3) that share a one-dimensional motion
 //! `I`. Each leg is split in two where it passes from one subgroup to the other, by an *imaginary joint*
-//! that moves along `I`, and both sections have closed forms.
+//! that moves along `I`, and both sections have closed forms. If all legs move in one subgroup, there is
+//! nothing to split: `B` is the identity.
 //!
 //! ```
 //! use opm_core::Manipulator;
@@ -45,11 +46,19 @@
 //! | [`velocity`] | joint and platform velocities and accelerations, Jacobians, singularities |
 //! | [`motion`] | motions of the platform: splines, tables, motion files |
 //! | [`trajectory`] | joint values along a motion, and violations of limits |
-//! | [`linkage`] | mechanisms with one freedom whose legs form four-bar linkages |
+//! | [`linkage`] | single loops of two sections, such as Bennett's and Sarrus' linkages |
 //! | [`skeleton`] | a mechanism as lines and solids, for drawing |
 //! | [`chain`] | closed forms of serial chains in one subspace |
 //! | [`group`] | subgroups of SE(3), their displacements, screws |
 //! | [`numeric`] | angles, rotations, quantities, small numerical methods |
+//!
+//! # Features
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `files` (default) | reading and writing mechanism and motion files, and the shipped examples |
+//! | `schema` | JSON schemas of these files |
+//! | `serde` | `Serialize` for results and mechanisms |
 //!
 //! # Conventions
 //!

@@ -97,6 +97,21 @@ pub enum CompileError {
 }
 
 /// A mechanism compiled for closed-form inverse kinematics. Immutable; share it between threads.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let names: Vec<&str> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+/// assert_eq!(names, ["x", "y", "zeta", "xi", "psi"]);
+/// // Seven two-valued choices: 128 working modes.
+/// assert_eq!(manipulator.modes().count(), 128);
+///
+/// // A text, or any `Mechanism`, is compiled in the same way.
+/// let text = opm_core::mechanism::examples::find("planar-3rrr").expect("it is shipped").text;
+/// assert!(Manipulator::read(text)?.imaginary().is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Manipulator {
     mechanism: Mechanism,

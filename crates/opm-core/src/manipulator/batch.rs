@@ -19,7 +19,8 @@ use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
 use section::{Found, Side, Step};
 
-/// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose.
+/// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose. See the
+/// example there.
 #[derive(Debug)]
 pub struct BatchOutput<'a> {
     /// Every joint coordinate, in the order of [`Manipulator::coordinates`], row after row; radians and
@@ -85,7 +86,7 @@ impl BatchOutput<'_> {
     }
 }
 
-/// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`].
+/// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`]. See the example there.
 #[derive(Clone, Debug)]
 pub struct Batch {
     arch: Arch,

@@ -61,6 +61,20 @@ pub struct Unreachable {
 /// Every joint in one working mode at one pose. [`Manipulator::solution`] makes a buffer of this type.
 ///
 /// Its numbers are read-only, since velocities and Jacobians are computed from them.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("translational-helical-3dof")?;
+/// let mut buffer = manipulator.solution();
+/// let pose = manipulator.pose([("phi", 0.5)])?;
+/// let solution = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer)?;
+/// let solution = solution.expect("a pose in reach");
+/// // One value for each joint coordinate, and one for each imaginary joint: S = p phi (Eq. 24).
+/// assert_eq!(solution.joints().len(), manipulator.coordinates().len());
+/// assert!((solution.imaginary()[0] - 0.020 * 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, PartialEq)]
 pub struct Solution {
     pub(crate) joints: Vec<f64>,
@@ -165,6 +179,22 @@ impl Clone for Solution {
 
 /// The actuated and the imaginary joints in one working mode at one pose.
 /// [`Manipulator::actuated_joints`] makes a buffer of this type.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let (mode, mut few) = (manipulator.home_mode(), manipulator.actuated_joints());
+/// let pose = manipulator.pose([("x", 0.01)])?;
+/// let motors = manipulator.inverse_actuated(&pose, mode, &mut few)?.expect("a pose in reach");
+/// // The same values as with all joints.
+/// let mut all = manipulator.solution();
+/// let joints = manipulator.inverse(&pose, mode, &mut all)?.expect("a pose in reach").joints();
+/// for (value, &number) in motors.actuated().iter().zip(manipulator.actuated()) {
+///     assert_eq!(*value, joints[number]);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ActuatedJoints {
@@ -195,6 +225,21 @@ impl ActuatedJoints {
 }
 
 /// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("planar-3rrr")?;
+/// let (mut every, mut buffer) = (manipulator.all_modes(), manipulator.solution());
+/// let pose = manipulator.pose([("theta", 0.1)])?;
+/// let found = manipulator.inverse_all(&pose, &mut every)?.expect("a pose in reach");
+/// for mode in found.modes(&manipulator) {
+///     let joints = manipulator.solution_in_mode(found, mode, &mut buffer).expect("it is listed");
+///     println!("{}: {:?}", manipulator.format_mode(mode), joints.joints());
+/// }
+/// assert_eq!(found.modes(&manipulator).count(), 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct AllModes {
     solved: SolvedPose,

@@ -4,6 +4,17 @@ use super::leg::{CompiledLeg, LegBranches, Section};
 use crate::chain::Branch;
 
 /// One sign for every two-valued choice of a manipulator, a set bit for a minus.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+/// let mode = manipulator.parse_mode("-+ ++ ++ +")?;
+/// assert_eq!(manipulator.format_mode(mode), "-+ ++ ++ +");
+/// assert_ne!(mode, manipulator.home_mode());
+/// assert!(manipulator.parse_mode("-+").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Mode(pub(super) u64);
@@ -11,6 +22,7 @@ pub struct Mode(pub(super) u64);
 /// A text that is not a working mode of the manipulator.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("working mode `{given}`: {problem}, expected {}", expected(example))]
+#[non_exhaustive]
 pub struct ModeError {
     /// The text that was given.
     pub given: String,

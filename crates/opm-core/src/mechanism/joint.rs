@@ -58,6 +58,19 @@ impl JointCoordinate {
 }
 
 /// A joint at the assembled home pose, in base coordinates.
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use opm_core::mechanism::joint::{Joint, JointKind};
+///
+/// let point = Point3::new(0.1, 0.0, 0.0);
+/// let hinge = Joint::new("hinge", JointKind::Revolute, Vector3::z_axis(), point);
+/// assert_eq!((hinge.freedoms(), hinge.actuated), (1, false));
+/// // A quarter revolution about its axis takes the origin to (0.1, -0.1, 0).
+/// let moved = hinge.displacement(&[std::f64::consts::FRAC_PI_2])? * Point3::origin();
+/// assert!((moved - Point3::new(0.1, -0.1, 0.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Joint {

@@ -82,6 +82,15 @@ impl CoordinateKind {
 }
 
 /// One coordinate of the pose.
+///
+/// ```
+/// use opm_core::{Manipulator, Quantity};
+///
+/// let manipulator = Manipulator::example("planar-3rrr")?;
+/// let angle = &manipulator.task_coordinates()[2];
+/// assert_eq!((angle.name, angle.quantity, angle.home), ("theta", Quantity::Angle, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskCoordinate {
     kind: CoordinateKind,

@@ -17,6 +17,7 @@ const ON_LIMIT: f64 = 1e-12;
 /// Why a set of parameters does not assemble: a list of all problems, at least one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.describe())]
+#[non_exhaustive]
 pub struct AssemblyError {
     /// The problems, in the order of the legs.
     pub problems: Vec<AssemblyProblem>,

@@ -57,6 +57,7 @@ pub enum ParameterValue {
 /// Why parameters could not be changed: a list of all problems, at least one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .problems.join("; "))]
+#[non_exhaustive]
 pub struct ParameterErrors {
     /// The problems. Each starts with the name of the parameter.
     pub problems: Vec<String>,

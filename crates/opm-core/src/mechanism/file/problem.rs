@@ -26,6 +26,7 @@ impl fmt::Display for Problem {
 /// file's name in front.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", lines(.problems, ""))]
+#[non_exhaustive]
 pub struct FileErrors {
     /// The problems, sorted by location.
     pub problems: Vec<Problem>,
