@@ -211,7 +211,7 @@ impl Skeleton {
             let mut lower = Isometry3::identity();
             for mover in leg {
                 let values = &configuration.joints[first + coordinate..];
-                for taken in 0..mover.freedoms.len() {
+                for taken in 0..=mover.freedoms.len() {
                     if cut.is_some_and(|i| self.imaginary[i].lower == coordinate + taken) {
                         lower = moved * mover.part(values, taken);
                     }
