@@ -24,10 +24,10 @@ pub struct Decomposition {
     first_section_motions: usize,
     /// Subspace of the lower section: ``"planar"``, for instance.
     lower: String,
-    /// Subspace of the upper section.
-    upper: String,
-    /// The motion that both sections have in common.
-    intersection: Intersection,
+    /// Subspace of the upper section; None where all legs move in one subspace.
+    upper: Option<String>,
+    /// The motion that both sections have in common; None where that is the identity alone.
+    intersection: Option<Intersection>,
     /// One entry for each leg, in the order of the mechanism file.
     legs: Vec<LegSplit>,
 }
@@ -96,7 +96,7 @@ impl Decomposition {
             imaginary_joints: found.imaginary_joints,
             first_section_motions: found.first_section_motions,
             lower: found.lower.name().to_owned(),
-            upper: found.upper.name().to_owned(),
+            upper: (found.upper != SubspaceClass::Identity).then(|| found.upper.name().to_owned()),
             intersection: Intersection::of(&found.intersection),
             legs: splits.collect(),
         }
@@ -104,8 +104,9 @@ impl Decomposition {
 }
 
 impl Intersection {
-    fn of(class: &SubspaceClass) -> Self {
+    fn of(class: &SubspaceClass) -> Option<Self> {
         let (axis, point, pitch) = match class {
+            SubspaceClass::Identity => return None,
             SubspaceClass::Rotation { axis, point } => (Some(axis), Some(point), None),
             SubspaceClass::Helical { axis, point, pitch } => {
                 (Some(axis), Some(point), Some(*pitch))
@@ -113,22 +114,29 @@ impl Intersection {
             SubspaceClass::Translation { axis } => (Some(axis), None, None),
             _ => (None, None, None),
         };
-        Self {
+        Some(Self {
             kind: class.name().to_owned(),
             axis: axis.map(|a| (a.x, a.y, a.z)),
             point: point.map(|p| (p.x, p.y, p.z)),
             pitch,
-        }
+        })
     }
 }
 
 #[pymethods]
 impl Decomposition {
     fn __repr__(&self) -> String {
-        format!(
-            "<Decomposition of {}: {} + {}, {} in common, {} imaginary joints>",
-            self.name, self.lower, self.upper, self.intersection.kind, self.imaginary_joints
-        )
+        let sections = match &self.upper {
+            Some(upper) => format!("{} + {upper}", self.lower),
+            None => self.lower.clone(),
+        };
+        let shared = match &self.intersection {
+            Some(shared) => {
+                format!(", {} in common, {} imaginary joints", shared.kind, self.imaginary_joints)
+            }
+            None => String::new(),
+        };
+        format!("<Decomposition of {}: {sections}{shared}>", self.name)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

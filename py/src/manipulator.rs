@@ -9,6 +9,7 @@ use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
 use opm_core::Quantity;
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
@@ -375,11 +376,13 @@ impl Manipulator {
     fn __repr__(&self) -> String {
         let coordinates: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
         let decomposition = self.inner.decomposition();
+        let sections = match &decomposition.upper {
+            SubspaceClass::Identity => decomposition.lower.name().to_owned(),
+            upper => format!("{} + {}", decomposition.lower.name(), upper.name()),
+        };
         format!(
-            "<Manipulator {}: {} + {}, {} degrees of freedom: {}>",
+            "<Manipulator {}: {sections}, {} degrees of freedom: {}>",
             self.inner.mechanism().name,
-            decomposition.lower.name(),
-            decomposition.upper.name(),
             decomposition.mobility,
             coordinates.join(" ")
         )

@@ -127,8 +127,8 @@ def test_wrong_recordings_are_told(manipulator, tmp_path):
     swept = opm.sweep(manipulator, **GRID)
     for options, message in [
         ({"axes": ["x", "y"]}, "^axes: .*expected three different task coordinates"),
-        ({"scalars": ["w"]}, "^scalars: .*none of"),
-        ({"color": "w"}, "^color: .*none of"),
+        ({"scalars": ["w"]}, "^scalars: .*not one of"),
+        ({"color": "w"}, "^color: .*not one of"),
     ]:
         with pytest.raises(opm.OpmError, match=message):
             swept.write_mcap(tmp_path / "a.mcap", **options)

@@ -15,9 +15,10 @@ MOST_ROWS = 10
 
 
 def decomposition(found: Decomposition) -> str:
+    sections = " + ".join(escape(section) for section in (found.lower, found.upper) if section)
+    shared = f", {escape(found.intersection.kind)} in common" if found.intersection else ""
     summary = (
-        f"<b>{escape(found.name)}</b>: {escape(found.lower)} + {escape(found.upper)}, "
-        f"{escape(found.intersection.kind)} in common; "
+        f"<b>{escape(found.name)}</b>: {sections}{shared}; "
         f"N = {found.mobility}, J = {found.imaginary_joints}, M = {found.first_section_motions}"
     )
     legs = ([leg.name, " ".join(leg.lower), " ".join(leg.upper), leg.imaginary or ""] for leg in found.legs)

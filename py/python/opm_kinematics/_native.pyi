@@ -67,11 +67,11 @@ class Decomposition:
     def lower(self) -> str:
         """Subspace of the lower section: ``"planar"``, for instance."""
     @property
-    def upper(self) -> str:
-        """Subspace of the upper section."""
+    def upper(self) -> str | None:
+        """Subspace of the upper section; None where all legs move in one subspace."""
     @property
-    def intersection(self) -> Intersection:
-        """The motion that both sections have in common."""
+    def intersection(self) -> Intersection | None:
+        """The motion that both sections have in common; None where that is the identity alone."""
     @property
     def legs(self) -> list[LegSplit]:
         """One entry for each leg, in the order of the mechanism file."""
