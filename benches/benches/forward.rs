@@ -21,7 +21,7 @@ fn main() {
         }
     }
     let n = poses.len() as u64;
-    let home = manipulator.task().home();
+    let home = manipulator.home_pose();
     let timings = compare(vec![
         Contender::new("inverse kinematics, all joints", n, || {
             for pose in &poses {

@@ -210,7 +210,7 @@ fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
         Convex::Disc(_) | Convex::Capsule(_) => 1,
     };
     let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
-    let v = manipulator.task().lower(&manipulator.task().home()[..grid.lower()]);
+    let v = manipulator.task().lower(&manipulator.home_pose()[..grid.lower()]);
     let regions = ways.iter().map(|way| {
         let region = manipulator.region(way, &v, 1.0);
         region.expect("only sliders are limited")

@@ -149,7 +149,7 @@ impl Batch<'_> {
             WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
         let mut table = Rows::new(self.manipulator, writer)?;
 
-        let mut pose = self.manipulator.task().home();
+        let mut pose = self.manipulator.home_pose();
         while let Some(line) = lines.next().map_err(|error| self.unreadable(error))? {
             if progress.is_cancelled() {
                 return Err(Failure::interrupted("interrupted").into());

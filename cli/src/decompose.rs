@@ -162,13 +162,42 @@ impl<'a> Way<'a> {
         self.decomposition.upper == SubspaceClass::Identity
     }
 
-    fn coordinates(&self) -> &[TaskCoordinate] {
-        self.task().map_or(&[], |task| &task.coordinates)
+    /// The independent coordinates, and those that follow from them.
+    fn coordinates(&self) -> [&[TaskCoordinate]; 2] {
+        match &self.compiled {
+            Ok(manipulator) => {
+                [manipulator.task_coordinates(), manipulator.dependent_coordinates()]
+            }
+            Err(_) => [&[]; 2],
+        }
+    }
+
+    /// What the legs that tie coordinates together do; empty if there are none.
+    fn constraints(&self) -> String {
+        let Ok(manipulator) = &self.compiled else { return String::new() };
+        let names =
+            |list: &[TaskCoordinate]| list.iter().map(|c| c.name).collect::<Vec<_>>().join(" ");
+        let [independent, dependent] = self.coordinates();
+        if dependent.is_empty() {
+            return String::new();
+        }
+        let mut legs: Vec<&str> =
+            manipulator.constraining_legs().map(|(leg, _)| self.legs[leg].name).collect();
+        legs.dedup();
+        let verb = if legs.len() == 1 { "has" } else { "have" };
+        format!(
+            "{} {verb} too few freedoms to follow every motion: a pose is given by {}, and {} {} from it.\n",
+            legs.join(" and "),
+            names(independent),
+            names(dependent),
+            if dependent.len() == 1 { "follows" } else { "follow" }
+        )
     }
 
     fn json(&self) -> Value {
         let d = self.decomposition;
         let coordinate = |c: &TaskCoordinate| json!({ "name": c.name, "home": c.home, "unit": c.quantity.unit() });
+        let [independent, dependent] = self.coordinates();
         let upper = (!self.is_one_subspace()).then_some(d.upper);
         let frames = self.task().map(|task| {
             let upper = upper.map(|_| frame_json(&task.upper));
@@ -180,8 +209,8 @@ impl<'a> Way<'a> {
             "lower": { "subspace": d.lower.name() },
             "upper": upper.map(|upper| json!({ "subspace": upper.name() })),
             "intersection": intersection(&d.intersection),
-            "task_coordinates": self.coordinates().iter().map(coordinate).collect::<Vec<_>>(),
-            "dependent_coordinates": [],
+            "task_coordinates": independent.iter().map(coordinate).collect::<Vec<_>>(),
+            "dependent_coordinates": dependent.iter().map(coordinate).collect::<Vec<_>>(),
             "legs": self.legs,
             "frames": frames,
         })
@@ -308,12 +337,18 @@ impl Report<'_> {
         }
 
         if let Some(task) = way.task() {
-            let mut table = Table::new(["task coordinate", ">home", "unit"]);
-            for c in &task.coordinates {
+            let mut table = Table::new(["task coordinate", ">home", "unit", ""]);
+            let [independent, dependent] = way.coordinates();
+            let rows = independent.iter().map(|c| (c, ""));
+            for (c, note) in rows.chain(dependent.iter().map(|c| (c, "dependent"))) {
                 let home = text::number(c.home, c.quantity, units);
-                table.row([c.name, &home, units.symbol(c.quantity)]);
+                table.row([c.name, &home, units.symbol(c.quantity), note]);
             }
             line(&format_args!("\n{table}"));
+            let constraints = way.constraints();
+            if !constraints.is_empty() {
+                line(&constraints);
+            }
             line(&frame_table(task, way.is_one_subspace(), units));
             if task.coordinates.iter().any(|c| c.kind() == CoordinateKind::Zeta) {
                 line(&"Euler angles: R = Rz(zeta) Ry(xi) Rz(psi)\n");

@@ -33,7 +33,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         (near, closed_form) => {
             let start = match near {
                 Some(pose) => pose.resolve_for("--near", manipulator.task_coordinates())?,
-                None => manipulator.task().home(),
+                None => manipulator.home_pose(),
             };
             if let (None, Err(why)) = (near, closed_form) {
                 output.note(format_args!(
@@ -170,7 +170,7 @@ impl Answer<'_> {
         };
         let actuated = m.actuated().iter().map(|&i| &*m.coordinates()[i].name).collect();
         let assembly = |a: &Assembly| JsonAssembly {
-            pose: pair(m.task_coordinates().iter().map(|c| c.name).collect(), &a.pose),
+            pose: named(crate::text::whole_pose(m, &a.pose, &a.dependent)),
             mode: m.format_mode(a.mode),
             within_limits: a.within_limits,
             joints: pair(m.coordinates().iter().map(|c| &*c.name).collect(), &a.joints),
@@ -243,6 +243,8 @@ impl Answer<'_> {
         }
         headers
             .extend(m.task_coordinates().iter().map(|c| text::header(c.name, c.quantity, units)));
+        let dependent = m.dependent_coordinates();
+        headers.extend(dependent.iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(m.imaginary().iter().map(|j| text::header(&j.name, j.quantity, units)));
         headers.push(String::new());
         let mut table = Table::new(headers);
@@ -252,6 +254,7 @@ impl Answer<'_> {
                 row.push(m.format_mode(a.mode));
             }
             let pose = a.pose.iter().zip(m.task_coordinates());
+            let pose = pose.chain(a.dependent.iter().zip(m.dependent_coordinates()));
             row.extend(pose.map(|(&value, c)| text::number(value, c.quantity, units)));
             let imaginary = a.imaginary.iter().zip(m.imaginary());
             row.extend(imaginary.map(|(&value, j)| text::number(value, j.quantity, units)));

@@ -5,6 +5,7 @@ use crate::batch::{self, Modes};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::named;
+use crate::pose::Checks;
 use crate::text::{self, Table};
 use crate::transform::{self, Located};
 use opm_core::chain::limits::Limits;
@@ -12,6 +13,7 @@ use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::joint::{JointCoordinate, Quantity};
+use opm_core::task::TaskCoordinate;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
@@ -23,13 +25,24 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let modes = modes(args, &manipulator)?;
+    let mut checks = None;
     let located = match (&args.pose, &args.transform) {
-        (Some(pose), _) => Located::Pose(pose.resolve(manipulator.task_coordinates())?),
+        (Some(pose), _) => {
+            let (pose, given) = pose.resolve_with_checks(&manipulator)?;
+            checks = Some(given);
+            Located::Pose(pose)
+        }
         (None, Some(transform)) => transform.locate(&manipulator),
         (None, None) => return batch::run(args, output, &loaded, &manipulator, modes),
     };
     let answer = match located {
-        Located::Pose(pose) => Answer::new(&loaded, &manipulator, modes, pose)?,
+        Located::Pose(pose) => {
+            let mut answer = Answer::new(&loaded, &manipulator, modes, pose)?;
+            if let Some(checks) = checks {
+                answer.keep(&checks)?;
+            }
+            answer
+        }
         Located::Outside(outside) => Answer::outside(&loaded, &manipulator, modes, outside),
     };
     output.print(&answer.json(), answer.text())
@@ -80,6 +93,9 @@ struct JsonSolution {
     within_limits: bool,
     joints: Map<String, Value>,
     imaginary: Map<String, Value>,
+    /// The dependent coordinates, which may differ from mode to mode.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    dependent: Map<String, Value>,
 }
 
 #[derive(Serialize)]
@@ -120,6 +136,30 @@ impl<'a> Answer<'a> {
         Ok(Self { loaded, manipulator, pose, all, solutions, unreachable, outside: None })
     }
 
+    /// Keeps the solutions that have the given values of dependent coordinates.
+    fn keep(&mut self, checks: &Checks) -> Result<(), Failure> {
+        let manipulator = self.manipulator;
+        if let [(_, only)] = &*self.solutions
+            && !self.all
+        {
+            return checks.verify(manipulator, only, self.loaded.file.units);
+        }
+        let before = self.solutions.len();
+        self.solutions.retain(|(_, solution)| checks.hold(manipulator, solution));
+        if self.solutions.is_empty() && before > 0 {
+            let modes = text::plural(before as u64, "working mode");
+            let problem = format!("the dependent coordinates have other values in all {modes}");
+            return Err(Failure::flag("--pose", problem));
+        }
+        Ok(())
+    }
+
+    /// The names and values of the pose, and of the dependent coordinates of the first solution.
+    fn pose(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let dependent = self.solutions.first().map_or(&[][..], |(_, first)| first.dependent());
+        text::whole_pose(self.manipulator, &self.pose, dependent)
+    }
+
     /// The report for a transform that is not a pose.
     fn outside(
         loaded: &'a Loaded,
@@ -135,7 +175,7 @@ impl<'a> Answer<'a> {
     }
 
     fn json(&self) -> Json<'_> {
-        let coordinates = self.manipulator.task_coordinates();
+        let dependent = || self.manipulator.dependent_coordinates().iter().map(|c| c.name);
         let solution = |(mode, solution): &(Mode, Solution)| {
             let joints = self.manipulator.coordinates().iter().map(|c| &*c.name);
             let imaginary = self.manipulator.imaginary().iter().map(|j| &*j.name);
@@ -144,10 +184,11 @@ impl<'a> Answer<'a> {
                 within_limits: solution.within_limits(),
                 joints: named(joints.zip(solution.joints().iter().copied())),
                 imaginary: named(imaginary.zip(solution.imaginary().iter().copied())),
+                dependent: named(dependent().zip(solution.dependent().iter().copied())),
             }
         };
         Json {
-            pose: named(coordinates.iter().map(|c| c.name).zip(self.pose.iter().copied())),
+            pose: named(self.pose()),
             reachable: !self.solutions.is_empty(),
             solutions: self.solutions.iter().map(solution).collect(),
             unreachable: self
@@ -155,7 +196,10 @@ impl<'a> Answer<'a> {
                 .iter()
                 .map(|u| JsonUnreachable { leg: self.leg(u), reason: reason(u, FileUnits::SI) })
                 .collect(),
-            transform: transform::json(self.manipulator, &self.pose),
+            transform: match self.solutions.first() {
+                Some((_, first)) => transform::at(self.manipulator, first),
+                None => transform::json(self.manipulator, &self.pose),
+            },
             outside: self.outside.as_ref().map(transform::outside_json),
         }
     }
@@ -167,13 +211,19 @@ impl<'a> Answer<'a> {
             Some(outside) => format!("{name}: {}\nnearest pose: ", outside_text(outside, units)),
             None => format!("{name} at "),
         };
-        let pose: Vec<String> = (self.manipulator.task_coordinates().iter().zip(&self.pose))
-            .map(|(c, &value)| {
+        let shown = |coordinates: &[TaskCoordinate], values: &[f64]| {
+            let each = coordinates.iter().zip(values).map(|(c, &value)| {
                 let value = text::number(value, c.quantity, units);
                 format!("{} = {value} {}", c.name, units.symbol(c.quantity))
-            })
-            .collect();
-        let _ = writeln!(text, "{}\n", pose.join(", "));
+            });
+            each.collect::<Vec<_>>().join(", ")
+        };
+        let _ = write!(text, "{}", shown(self.manipulator.task_coordinates(), &self.pose));
+        let dependent = self.manipulator.dependent_coordinates();
+        if let ([(_, only)], false) = (&*self.solutions, self.all || dependent.is_empty()) {
+            let _ = write!(text, "; then {}", shown(dependent, only.dependent()));
+        }
+        let _ = writeln!(text, "\n");
         if self.outside.is_some() {
             return text.trim_end().to_owned() + "\n";
         }
@@ -250,12 +300,20 @@ impl<'a> Answer<'a> {
             || manipulator.actuated().iter().map(|&i| (i, &manipulator.coordinates()[i]));
         let imaginary = || manipulator.imaginary().iter();
         let mut headers = vec!["mode".to_owned(), "within limits".to_owned()];
+        let dependent = manipulator.dependent_coordinates();
+        headers.extend(dependent.iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(imaginary().map(|j| text::header(&j.name, j.quantity, units)));
         headers.extend(actuated().map(|(_, c)| text::header(&c.name, c.quantity, units)));
         let mut table = Table::new(headers);
         for (mode, solution) in &self.solutions {
             let within = if solution.within_limits() { "yes" } else { "no" };
             let mut row = vec![manipulator.format_mode(*mode), within.to_owned()];
+            row.extend(
+                dependent
+                    .iter()
+                    .zip(solution.dependent())
+                    .map(|(c, &value)| text::number(value, c.quantity, units)),
+            );
             row.extend(
                 imaginary()
                     .zip(solution.imaginary())

@@ -214,6 +214,7 @@ impl Loaded {
             | CompileError::Task(TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }) => {
                 of_leg(leg)
             }
+            CompileError::Constraint(error) => error.leg().and_then(of_leg),
             CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
             _ => None,
         };

@@ -2,11 +2,13 @@
 
 use crate::failure::Failure;
 use opm_core::Quantity;
-use opm_core::mechanism::file::{AngleUnit, LengthUnit};
+use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use opm_core::numeric::number::readable;
 use opm_core::task::TaskCoordinate;
 use opm_workspace::measure::CoordinateRange;
 use opm_workspace::{Axis, Coordinate, Sections};
+use std::f64::consts::TAU;
 use std::fmt;
 use std::str::FromStr;
 
@@ -170,6 +172,26 @@ impl Pose {
         self.resolve_for("--pose", coordinates)
     }
 
+    /// The pose of a manipulator, and the values of dependent coordinates that were given.
+    pub fn resolve_with_checks(
+        &self,
+        manipulator: &Manipulator,
+    ) -> Result<(Vec<f64>, Checks), Failure> {
+        let dependent = manipulator.dependent_coordinates();
+        let follows = |name: &str| dependent.iter().position(|c| c.name == name);
+        let (mut own, mut checks) = (Vec::new(), Vec::new());
+        for (name, number) in &self.0 {
+            match follows(name) {
+                Some(i) => {
+                    let value = number.of(&dependent[i]).map_err(|e| Failure::flag("--pose", e))?;
+                    checks.push((i, value));
+                }
+                None => own.push((name.clone(), *number)),
+            }
+        }
+        Ok((Self(own).resolve(manipulator.task_coordinates())?, Checks(checks)))
+    }
+
     /// As [`Pose::resolve`], for another flag.
     pub fn resolve_for(
         &self,
@@ -201,6 +223,50 @@ impl Pose {
             values[index] = number.of(&coordinates[index])?;
         }
         Ok(values)
+    }
+}
+
+/// Values of dependent coordinates that were given as a check: their numbers, and radians or metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checks(Vec<(usize, f64)>);
+
+/// A dependent coordinate counts as the one that was given if they differ by less than this, in radians or shares
+/// of the mechanism's size: digits that were left out when it was written down.
+const AS_GIVEN: f64 = 1e-4;
+
+impl Checks {
+    /// Whether a solution has the values that were given.
+    pub fn hold(&self, manipulator: &Manipulator, at: &Solution) -> bool {
+        self.broken(manipulator, at).is_none()
+    }
+
+    /// The number and the value of the first coordinate that a solution has another value of.
+    fn broken(&self, manipulator: &Manipulator, at: &Solution) -> Option<(usize, f64)> {
+        let off = |i: usize, value: f64| {
+            let off = at.dependent()[i] - value;
+            match manipulator.dependent_coordinates()[i].quantity {
+                Quantity::Length => off.abs() / manipulator.characteristic_length(),
+                Quantity::Angle => (off - TAU * (off / TAU).round()).abs(),
+            }
+        };
+        self.0.iter().copied().find(|&(i, value)| off(i, value) > AS_GIVEN)
+    }
+
+    /// Refuses a pose whose solution has other values.
+    pub fn verify(
+        &self,
+        manipulator: &Manipulator,
+        at: &Solution,
+        units: FileUnits,
+    ) -> Result<(), Failure> {
+        let Some((i, value)) = self.broken(manipulator, at) else { return Ok(()) };
+        let c = &manipulator.dependent_coordinates()[i];
+        let [given, found] = [value, at.dependent()[i]].map(|value| units.show(value, c.quantity));
+        let problem = format!(
+            "{} is given as {given}, but follows from the other coordinates as {found} in this mode",
+            c.name
+        );
+        Err(Failure::flag("--pose", problem))
     }
 }
 

@@ -3,6 +3,7 @@
 pub use opm_study::text::{chain, count};
 
 use opm_core::Quantity;
+use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use std::fmt;
 
@@ -69,6 +70,17 @@ pub fn number(value: f64, quantity: Quantity, units: FileUnits) -> String {
         },
     };
     fixed(value / units.factor(quantity), decimals)
+}
+
+/// The names and values of a pose, then those of its dependent coordinates, radians and metres.
+pub fn whole_pose(
+    manipulator: &Manipulator,
+    pose: &[f64],
+    dependent: &[f64],
+) -> impl Iterator<Item = (&'static str, f64)> {
+    let own = manipulator.task_coordinates().iter().zip(pose);
+    let others = manipulator.dependent_coordinates().iter().zip(dependent);
+    own.chain(others).map(|(c, &value)| (c.name, value)).collect::<Vec<_>>().into_iter()
 }
 
 /// A name with the unit of its values, as the header of a column aligned to the right.

@@ -5,7 +5,7 @@ use crate::pose::{Misread, Number};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use opm_core::Quantity;
 use opm_core::decomposition::mobility::frame;
-use opm_core::manipulator::{Manipulator, OutsideMotion};
+use opm_core::manipulator::{Manipulator, OutsideMotion, Solution};
 use serde_json::{Value, json};
 use std::str::FromStr;
 
@@ -92,7 +92,15 @@ impl Transform {
 /// The position of the platform at a pose, in metres, and its quaternion, whose scalar comes first and is not
 /// negative; null if there is no pose.
 pub fn json(manipulator: &Manipulator, pose: &[f64]) -> Value {
-    let Ok(platform) = manipulator.platform_pose(pose) else { return Value::Null };
+    manipulator.platform_pose(pose).map_or(Value::Null, |platform| placement(&platform))
+}
+
+/// The same for a solution.
+pub fn at(manipulator: &Manipulator, solution: &Solution) -> Value {
+    placement(&manipulator.platform_at(&solution.displacement(manipulator)))
+}
+
+fn placement(platform: &Isometry3<f64>) -> Value {
     let q = platform.rotation;
     let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
     let quaternion = [q.w, q.i, q.j, q.k].map(|part| sign * part + 0.0);

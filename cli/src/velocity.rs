@@ -20,7 +20,7 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let mode = load::mode(&manipulator, &args.mode)?;
-    let pose = args.pose.resolve(manipulator.task_coordinates())?;
+    let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
     let rates = args.rates.resolve_rates(manipulator.task_coordinates())?;
     let length = args.length.map(Number::characteristic_length).transpose()?;
     let length = characteristic_length(length, &manipulator)?;
@@ -28,7 +28,9 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let found = manipulator.inverse(&pose, mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let query = Query { loaded: &loaded, manipulator: &manipulator, pose, rates, mode };
-    if !reached {
+    if reached {
+        checks.verify(&manipulator, &at, loaded.file.units)?;
+    } else {
         return output.print(&query.out_of_reach(&at), query.out_of_reach_text(&at));
     }
     let answer = Answer::new(&query, &at, length)?;
@@ -187,6 +189,13 @@ impl<'a> Answer<'a> {
         let Singularities { upper: u, lower: l, whole, coordinates: at_pose, .. } = &self.measured;
         let mut json = self.query.head();
         json.insert("reachable".into(), true.into());
+        let dependent = || manipulator.dependent_coordinates().iter().map(|c| c.name);
+        if dependent().next().is_some() {
+            let pose = text::whole_pose(manipulator, &self.query.pose, self.at.dependent());
+            json.insert("pose".into(), named(pose).into());
+            let rates = dependent().zip(self.motion.dependent_rates.iter().copied());
+            json.insert("dependent_rates".into(), named(rates).into());
+        }
         json.insert("joint_rates".into(), joint_rates.into());
         json.insert("imaginary_rates".into(), imaginary_rates.into());
         json.insert(
@@ -224,6 +233,17 @@ impl<'a> Answer<'a> {
     fn text(&self) -> String {
         let units = self.query.loaded.file.units;
         let mut text = self.query.title();
+        let dependent = self.query.manipulator.dependent_coordinates();
+        if !dependent.is_empty() {
+            let mut table = Table::new(["dependent", ">value", "unit", ">rate", "unit"]);
+            let values = self.at.dependent().iter().zip(&self.motion.dependent_rates);
+            for (c, (&value, &rate)) in dependent.iter().zip(values) {
+                let symbol = units.symbol(c.quantity);
+                let [value, rate] = [value, rate].map(|v| text::number(v, c.quantity, units));
+                table.row([c.name, &value, symbol, &rate, &format!("{symbol}/s")]);
+            }
+            let _ = writeln!(text, "{table}");
+        }
         let _ = writeln!(text, "{}", self.joint_table());
         let _ = writeln!(text, "{}", self.jacobian_table());
 

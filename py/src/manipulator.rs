@@ -301,7 +301,7 @@ impl Manipulator {
     /// (d,): the pose at home, metres and radians.
     #[getter]
     fn home(&self) -> Vec<f64> {
-        self.inner.task().home()
+        self.inner.home_pose()
     }
 
     /// The working mode that the mechanism is assembled in.

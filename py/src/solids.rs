@@ -64,7 +64,7 @@ impl Manipulator {
         let mode = self.mode(mode)?;
         let pose = match pose {
             Some(given) => arguments::row(given, "pose", &self.pose_names())?,
-            None => manipulator.task().home(),
+            None => manipulator.home_pose(),
         };
         let mut solution = manipulator.solution();
         let found = manipulator.inverse(&pose, mode, &mut solution);
@@ -79,7 +79,7 @@ impl Manipulator {
         let posture = Configuration {
             joints: solution.joints(),
             imaginary: solution.imaginary(),
-            platform: manipulator.task().displacement(&pose),
+            platform: solution.displacement(manipulator),
         };
         let mut places = Vec::new();
         skeleton.place(&posture, &mut places).map_err(|error| failed(&error))?;

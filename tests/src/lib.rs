@@ -9,6 +9,16 @@ pub mod paper;
 pub mod random;
 pub mod structured;
 
+use nalgebra::Isometry3;
+use opm_core::manipulator::{Manipulator, Mode};
+
+/// The platform's displacement from home at a pose in a mode, on which dependent coordinates depend.
+pub fn displacement(manipulator: &Manipulator, pose: &[f64], mode: Mode) -> Isometry3<f64> {
+    let mut at = manipulator.solution();
+    manipulator.inverse(pose, mode, &mut at).unwrap();
+    at.displacement(manipulator)
+}
+
 /// Compiles the Rust code in the README with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

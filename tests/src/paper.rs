@@ -218,3 +218,27 @@ pub fn e(t: f64) -> [f64; 2] {
 pub fn n(t: f64) -> [f64; 2] {
     e(t + FRAC_PI_2)
 }
+
+/// The paper's first manipulator with fewer joints in its arm, as mechanism files: a universal joint or one revolute
+/// joint in place of the ball, or one planar joint less. As many joints are actuated as it has degrees of freedom.
+pub fn fewer_joints() -> [(&'static str, String); 3] {
+    let text = opm_core::mechanism::examples::find("plano-spherical-5dof-joints")
+        .expect("it is shipped")
+        .text;
+    let replaced = |text: &str, from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    };
+    let ball = r#"{ name = "s4", type = "spherical", point = [0, 0, 0] },"#;
+    let driven = "37.5, 0], actuated = true,";
+    let one = replaced(text, driven, "37.5, 0],");
+    let two = replaced(&one, "[0, 75, 0], actuated = true,", "[0, 75, 0],");
+    let universal = r#"{ name = "u4", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [0, 0, 0] },"#;
+    let revolute = r#"{ name = "r4", type = "revolute", axis = [1, 0, 0], point = [0, 0, 0] },"#;
+    let shorter: Vec<&str> = one.lines().filter(|line| !line.contains("\"phi24\"")).collect();
+    [
+        ("a universal joint", replaced(&one, ball, universal)),
+        ("a revolute joint", replaced(&two, ball, revolute)),
+        ("one planar joint less", shorter.join("\n")),
+    ]
+}

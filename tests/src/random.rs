@@ -2,6 +2,7 @@
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::mechanism::joint::{Joint, JointKind};
@@ -217,6 +218,50 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         task: TaskHints::default(),
     };
     (mechanism, decomposition)
+}
+
+/// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
+/// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
+/// joints, or some with several freedoms.
+pub fn constrained(
+    rng: &mut Rng,
+    pair: [Kind; 2],
+    lacks: [usize; 2],
+    repeated: bool,
+    options: Options,
+) -> Option<(Mechanism, Decomposition)> {
+    let (mut mechanism, mut decomposition) = mechanism(rng, pair, options);
+    let (leg, split) = (&mut mechanism.legs[0], &mut decomposition.legs[0]);
+    if leg.joints.iter().any(|joint| joint.freedoms() > 1) {
+        return None;
+    }
+    for (section, count) in [&mut split.lower, &mut split.upper].into_iter().zip(lacks) {
+        for _ in 0..count {
+            if section.is_empty() {
+                return None;
+            }
+            section.remove(rng.usize(..section.len()));
+        }
+    }
+    if split.lower.len() + split.upper.len() == 0 {
+        return None;
+    }
+    let kept: Vec<usize> = split.lower.iter().chain(&split.upper).map(|f| f.joint).collect();
+    leg.joints = kept.iter().map(|&joint| leg.joints[joint].clone()).collect();
+    for (number, freedom) in split.lower.iter_mut().chain(&mut split.upper).enumerate() {
+        freedom.joint = number;
+    }
+    if repeated {
+        let (mut again, split) = (leg.clone(), split.clone());
+        again.name = "again".into();
+        for joint in &mut again.joints {
+            joint.name = format!("{} again", joint.name);
+        }
+        mechanism.legs.push(again);
+        decomposition.legs.push(split);
+    }
+    decomposition.mobility = mobility(&mechanism).expect("legs with joints").mobility;
+    Some((mechanism, decomposition))
 }
 
 /// A random rigid displacement.

@@ -24,7 +24,7 @@ fn inverse_kinematics_does_not_allocate() {
             let mut all = manipulator.all_modes();
             let mode = manipulator.home_mode();
             for _ in 0..50 {
-                let mut pose = manipulator.task().home();
+                let mut pose = manipulator.home_pose();
                 pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
                 let info = measure(|| {
                     reached += u32::from(
@@ -58,9 +58,9 @@ fn velocities_do_not_allocate() {
             let (mut jacobians, length) =
                 (manipulator.jacobians(), manipulator.characteristic_length());
             let mut singularities = manipulator.singularities();
-            let rates: Vec<f64> = manipulator.task().home().iter().map(|_| rng.f64()).collect();
+            let rates: Vec<f64> = manipulator.home_pose().iter().map(|_| rng.f64()).collect();
             for _ in 0..50 {
-                let mut pose = manipulator.task().home();
+                let mut pose = manipulator.home_pose();
                 pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
                 let info = measure(|| {
                     if manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some() {

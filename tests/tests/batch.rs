@@ -57,7 +57,7 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
 /// revolutions, where sliders are parallel and arms are straight; a few count a million
 /// revolutions.
 fn poses(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<Vec<f64>> {
-    let home = manipulator.task().home();
+    let home = manipulator.home_pose();
     (0..count)
         .map(|_| {
             let kind = rng.u32(..20);
@@ -109,7 +109,7 @@ fn shipped_mechanisms_are_solved_as_one_is() {
             continue;
         };
         let mut tally = Tally::default();
-        let home = manipulator.task().home();
+        let home = manipulator.home_pose();
         let close: Vec<Vec<f64>> =
             (0..130).map(|_| home.iter().map(|h| h + 0.3 * (rng.f64() - 0.5)).collect()).collect();
         for number in 0..1_u32 << manipulator.choices() {
@@ -125,7 +125,7 @@ fn shipped_mechanisms_are_solved_as_one_is() {
 #[test]
 fn an_invalid_pose_is_reported() {
     let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
-    let mut poses = vec![manipulator.task().home(); 100];
+    let mut poses = vec![manipulator.home_pose(); 100];
     poses[99][0] = f64::INFINITY;
     poses[77][3] = f64::NAN;
     let (mut joints, mut imaginary) = (vec![0.0; 2000], vec![0.0; 300]);
@@ -150,7 +150,7 @@ fn slices_of_a_wrong_length_are_refused() {
     let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
     let (joints, imaginary) = (manipulator.coordinates().len(), manipulator.imaginary().len());
     let lengths = [2 * joints, 2 * imaginary, 2, 2];
-    let poses = [manipulator.task().home(), manipulator.task().home()].concat();
+    let poses = [manipulator.home_pose(), manipulator.home_pose()].concat();
     for (number, slice) in
         ["joints", "imaginary", "reachable", "within_limits"].into_iter().enumerate()
     {

@@ -150,7 +150,7 @@ fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
                 continue;
             }
             let alone = Alone::new(&mechanism, &decomposition, number);
-            let pose: Vec<f64> = (alone.manipulator.task().home().iter())
+            let pose: Vec<f64> = (alone.manipulator.home_pose().iter())
                 .map(|home| home + 1.2 * (rng.f64() - 0.5))
                 .collect();
             let closure = Closure {

@@ -70,7 +70,7 @@ fn it_finds_a_small_workspace() {
         let manipulator = limited(example("plano-spherical-5dof", turned), 0.003, radians);
         let (grid, _, reachable) = fitted(&manipulator);
         assert!(reachable > grid.poses() / 1000, "{reachable} of {grid:?} at {xi}, {radians}");
-        for (axis, home) in grid.axes().iter().zip(manipulator.task().home()) {
+        for (axis, home) in grid.axes().iter().zip(manipulator.home_pose()) {
             assert!((axis.min..=axis.max).contains(&home), "{axis:?}");
         }
     }

@@ -15,7 +15,7 @@ const OPTIONS: Options = Options { limited: 0.2, balls: true };
 /// A pose at a random distance from home.
 fn pose(rng: &mut Rng, manipulator: &Manipulator) -> Vec<f64> {
     let reach = 2.0 * rng.f64() * rng.f64();
-    let home = manipulator.task().home();
+    let home = manipulator.home_pose();
     home.iter().map(|h| h + reach * (rng.f64() * 2.0 - 1.0)).collect()
 }
 
@@ -111,7 +111,7 @@ fn home_is_where_the_joints_are() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
-            let home = manipulator.task().home();
+            let home = manipulator.home_pose();
             let reached = manipulator
                 .inverse(&home, manipulator.home_mode(), &mut solution)
                 .unwrap()
@@ -148,7 +148,7 @@ fn angles_stay_on_their_branch_along_a_path() {
             let screws = screws(&manipulator);
             let mode = manipulator.home_mode();
             let mut solution = manipulator.solution();
-            let mut pose = manipulator.task().home();
+            let mut pose = manipulator.home_pose();
             let direction: Vec<f64> = pose.iter().map(|_| rng.f64() * 2.0 - 1.0).collect();
             assert!(manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some());
             for _ in 0..4_000 {
@@ -230,7 +230,7 @@ fn a_path_starts_at_home() {
             joints.flat_map(|joint| &mut joint.coordinates).for_each(|c| c.home += 20.0);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
-            let home = manipulator.task().home();
+            let home = manipulator.home_pose();
             let mode = manipulator.home_mode();
             assert!(manipulator.inverse_near(&home, mode, &mut solution).unwrap().is_some());
             for (coordinate, q) in manipulator.coordinates().iter().zip(solution.joints()) {
@@ -298,7 +298,7 @@ fn a_path_beyond_limits_does_not_jump() {
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mode = manipulator.home_mode();
             let mut solution = manipulator.solution();
-            let mut pose = manipulator.task().home();
+            let mut pose = manipulator.home_pose();
             let direction: Vec<f64> = pose.iter().map(|_| rng.f64() * 2.0 - 1.0).collect();
             let screws = screws(&manipulator);
             for _ in 0..1_000 {

@@ -20,7 +20,7 @@ fn home_is_inside_limits_that_leave_nothing_else() {
             }
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut solution = manipulator.solution();
-            let home = manipulator.task().home();
+            let home = manipulator.home_pose();
             assert!(
                 manipulator
                     .inverse(&home, manipulator.home_mode(), &mut solution)
@@ -56,7 +56,7 @@ fn revolute_joints_know_no_whole_turns() {
             });
             let turning: Vec<bool> = kinds.collect();
             for _ in 0..10 {
-                let home = manipulator.task().home();
+                let home = manipulator.home_pose();
                 let pose: Vec<f64> =
                     home.iter().map(|h| h + (rng.f64() * 2.0 - 1.0) * 7.0).collect();
                 if manipulator

@@ -21,7 +21,7 @@ fn poses_come_back_from_their_displacements() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             for _ in 0..20 {
-                let home = manipulator.task().home();
+                let home = manipulator.home_pose();
                 let pose: Vec<f64> = home.iter().map(|q| q + 5.0 * (rng.f64() - 0.5)).collect();
                 let displacement = manipulator.task().displacement(&pose);
                 let located = manipulator.locate(&displacement);
@@ -44,8 +44,7 @@ fn outside_says_how_far_and_where() {
         let SubspaceClass::Spherical { centre } = decomposition.upper else { unreachable!() };
         mechanism.platform = centre;
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        let pose: Vec<f64> =
-            manipulator.task().home().iter().map(|q| q + rng.f64() - 0.5).collect();
+        let pose: Vec<f64> = manipulator.home_pose().iter().map(|q| q + rng.f64() - 0.5).collect();
         let normal = manipulator.task().intersection.as_ref().unwrap().direction;
         let by = 0.01 + 0.2 * rng.f64();
         let out =
@@ -78,10 +77,10 @@ fn the_platforms_place_is_its_point_and_its_orientation() {
     let text = examples::find("plano-spherical-5dof").unwrap().text;
     let text = text.replace("zeta = 0, xi = 0, psi = 0", "zeta = 25, xi = 10, psi = -40");
     let manipulator = Manipulator::read(&text).unwrap();
-    assert!(manipulator.task().home()[2] > 0.4, "home is turned");
+    assert!(manipulator.home_pose()[2] > 0.4, "home is turned");
     let mut rng = Rng::with_seed(44);
     for _ in 0..20 {
-        let home = manipulator.task().home();
+        let home = manipulator.home_pose();
         let pose: Vec<f64> = home.iter().map(|q| q + rng.f64() - 0.5).collect();
         let place = manipulator.platform_pose(&pose).unwrap();
         let [z, y] = [Vector3::z_axis(), Vector3::y_axis()];
@@ -96,7 +95,7 @@ fn the_platforms_place_is_its_point_and_its_orientation() {
     for pair in PAIRS {
         let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        let home = manipulator.platform_pose(&manipulator.task().home()).unwrap();
+        let home = manipulator.platform_pose(&manipulator.home_pose()).unwrap();
         assert!(home.rotation.angle() < 1e-12);
         assert!((home.translation.vector - manipulator.mechanism().platform.coords).norm() < 1e-12);
     }

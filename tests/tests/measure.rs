@@ -259,7 +259,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
             ways.first().and_then(LegBranch::intersection_displacement).unwrap_or(0.0)
         };
         let mut draw = || -> Vec<f64> {
-            let home = m.task().home().into_iter();
+            let home = m.home_pose().into_iter();
             home.map(|q| q + (2.0 * rng.f64() - 1.0) * PI).collect()
         };
         let ends: Vec<Vec<f64>> = (0..20).map(|_| draw()).collect();

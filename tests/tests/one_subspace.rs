@@ -290,3 +290,70 @@ fn one_subspace_has_no_upper_section() {
         assert!(manipulator.task().intersection.is_none());
     }
 }
+
+/// The five-bar by the law of cosines: each arm reaches the hand with two angles of its shoulder, and the right
+/// forearm's angle follows. The hand is where two circles about the elbows meet.
+#[test]
+fn the_five_bar_is_two_arms_of_two_links() {
+    let m = Manipulator::example("five-bar").unwrap();
+    let names = |list: &[opm_core::TaskCoordinate]| list.iter().map(|c| c.name).collect::<Vec<_>>();
+    assert_eq!(names(m.task_coordinates()), ["x", "y"]);
+    assert_eq!(names(m.dependent_coordinates()), ["theta"]);
+    let (upper, fore, half): (f64, f64, f64) = (0.138, 0.307, 0.160);
+    // The shoulder's angle with the elbow on one side, and the forearm's direction.
+    let arm = |shoulder: f64, hand: Complex<f64>, side: f64| {
+        let way = hand - shoulder;
+        let d = way.norm();
+        let cosine = (upper * upper + d * d - fore * fore) / (2.0 * upper * d);
+        let angle = (cosine.abs() <= 1.0).then(|| way.arg() + side * cosine.acos())?;
+        Some((angle, (hand - shoulder - Complex::from_polar(upper, angle)).arg()))
+    };
+    let home = (Complex::new(0.0, 0.323_981_552_428_366)
+        - Complex::new(0.229, 0.119_511_505_722_253))
+    .arg();
+    let mut rng = Rng::with_seed(5);
+    let (mut all, mut at) = (m.all_modes(), m.solution());
+    let (mut reached, mut beyond) = (0, 0);
+    for _ in 0..2_000 {
+        let hand = Complex::new(rng.f64() - 0.5, 1.2 * rng.f64() - 0.6);
+        let pose = [hand.re, hand.im];
+        let found = m.inverse_all(&pose, &mut all).unwrap().is_some();
+        let sides = [1.0, -1.0].map(|side| [arm(-half, hand, side), arm(half, hand, side)]);
+        assert_eq!(found, sides[0].iter().all(Option::is_some), "{hand}");
+        if !found {
+            beyond += 1;
+            continue;
+        }
+        reached += 1;
+        let mut seen = Vec::new();
+        for mode in all.modes(&m) {
+            m.solution_in_mode(&all, mode, &mut at).unwrap();
+            let shoulders: Vec<f64> = m.actuated().iter().map(|&i| at.joints()[i]).collect();
+            let which = |arm: usize| {
+                sides.iter().position(|side| {
+                    let (angle, forearm) = side[arm].unwrap();
+                    let theta = arm == 0 || apart(forearm - home, at.dependent()[0]) < 1e-7;
+                    apart(angle, shoulders[arm]) < 1e-7 && theta
+                })
+            };
+            seen.push([which(0).unwrap(), which(1).unwrap()]);
+            // Forward: one of the two places where the forearms' circles meet is the hand.
+            let elbow = |base: f64, angle: f64| base + Complex::from_polar(upper, angle);
+            let [a, b] = [elbow(-half, shoulders[0]), elbow(half, shoulders[1])];
+            let (middle, across) = (0.5 * (a + b), b - a);
+            let height = (fore * fore - 0.25 * across.norm_sqr()).max(0.0).sqrt();
+            let up = across * Complex::i() / across.norm() * height;
+            let assemblies = m.forward(&shoulders).unwrap().list;
+            for place in [middle + up, middle - up] {
+                let same = |a: &opm_core::forward::Assembly| {
+                    (Complex::new(a.pose[0], a.pose[1]) - place).norm() < 1e-6
+                };
+                assert!(assemblies.iter().any(same), "{place} is not in {assemblies:?}");
+            }
+            assert!(assemblies.len() <= 2, "{assemblies:?}");
+        }
+        seen.sort_unstable();
+        assert_eq!(seen, [[0, 0], [0, 1], [1, 0], [1, 1]], "{hand}");
+    }
+    assert!(reached > 300 && beyond > 300, "{reached} {beyond}");
+}

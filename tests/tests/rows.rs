@@ -119,6 +119,10 @@ fn round_numbers_are_no_exception() {
         let Ok(manipulator) = Manipulator::new(file::read(example.text).unwrap().mechanism) else {
             continue;
         };
+        // There is a test of its own for dependent coordinates.
+        if !manipulator.dependent_coordinates().is_empty() {
+            continue;
+        }
         for (step, count) in [(0.01, 81), (0.0125, 65), (0.05, 17), (0.1, 9)] {
             let axes = manipulator.task_coordinates().iter().enumerate().map(|(i, c)| {
                 let half = step * (count - 1) as f64 / 2.0;
@@ -230,7 +234,7 @@ fn legs_independent_of_the_slice_are_joined() {
         let mechanism =
             without_limits_on_angles(with_free_upper_sections(mechanism, &decomposition));
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        let home = manipulator.task().home();
+        let home = manipulator.home_pose();
         let lower = manipulator.task().lower_count;
         let [v, b] =
             [manipulator.task().lower(&home[..lower]), manipulator.task().upper(&home[lower..])];
@@ -272,7 +276,7 @@ fn fine_grids_are_no_exception() {
         let mechanism = without_limits_on_angles(mechanism);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let modes = Modes::One(manipulator.home_mode());
-        let mut pose = manipulator.task().home();
+        let mut pose = manipulator.home_pose();
         pose.iter_mut().for_each(|q| *q += rng.f64() - 0.5);
         let mut solution = manipulator.solution();
         let mut reached = |x: f64| {
@@ -331,7 +335,7 @@ fn rows_that_touch_a_boundary_are_no_exception() {
             .collect();
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let mode = manipulator.home_mode();
-        let mut pose = manipulator.task().home();
+        let mut pose = manipulator.home_pose();
         pose.iter_mut().for_each(|q| *q += 0.2 * (rng.f64() - 0.5));
         let lower = manipulator.task().lower_count;
         let b = manipulator.task().upper(&pose[lower..]);
@@ -421,7 +425,7 @@ fn rows_along_an_edge_are_no_exception() {
             if rng.bool() { ParameterValue::None } else { ParameterValue::Pair([-0.3, 0.3]) };
         let family = family.with([("leg3.alpha", alpha), ("leg3.limits.S", ends)]).unwrap();
         let manipulator = Manipulator::new(family.assemble().unwrap()).unwrap();
-        let mut pose = manipulator.task().home();
+        let mut pose = manipulator.home_pose();
         pose.iter_mut().for_each(|q| *q += 0.2 * (rng.f64() - 0.5));
         let modes = Modes::One(manipulator.home_mode());
         let b = manipulator.task().upper(&pose[2..]);

@@ -435,7 +435,7 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
                 .collect();
             let mut constant: Option<f64> = None;
             for _ in 0..6 {
-                let home = manipulator.task().home();
+                let home = manipulator.home_pose();
                 let pose: Vec<f64> = home.iter().map(|q| q + rng.f64() - 0.5).collect();
                 manipulator.inverse_all(&pose, &mut all).unwrap();
                 for mode in all.modes(&manipulator) {
@@ -514,7 +514,7 @@ fn measures_do_not_depend_on_place_and_size() {
             let here = Manipulator::with_decomposition(here, decomposition).unwrap();
             let there = Manipulator::with_decomposition(there, moved).unwrap();
             let mode = here.home_mode();
-            let home = here.task().home();
+            let home = here.home_pose();
             let pose: Vec<f64> = home.iter().map(|q| q + 0.6 * (rng.f64() - 0.5)).collect();
             let Some(found) = look(&here, &pose, mode) else { continue };
             let mut way = here.task().displacement(&pose);

@@ -85,7 +85,7 @@ fn each_coordinate_moves_along_its_own_screw() {
             };
             let reference = line.zip(axis).map_or(p, |(q, axis)| on(q, axis));
             let manipulator = Manipulator::with_decomposition(mechanism, d.clone()).unwrap();
-            let home = manipulator.task().home();
+            let home = manipulator.home_pose();
             for (number, coordinate) in manipulator.task_coordinates().iter().enumerate() {
                 let lower = number < manipulator.task().lower_count;
                 let class = if lower { d.lower } else { d.upper };
@@ -161,7 +161,7 @@ fn a_familys_pose_is_absolute_whatever_its_home() {
         joints.flat_map(|joint| &mut joint.coordinates).for_each(|c| c.limits = None);
         // A few of these homes are within the tolerance of a singular pose.
         let Ok(manipulator) = Manipulator::new(mechanism) else { continue };
-        assert_eq!(manipulator.task().home(), home);
+        assert_eq!(manipulator.home_pose(), home);
         let pose = home.map(|q| q + any(0.1));
         let Some(moved) = platform(&manipulator, &pose) else { continue };
         let turned = moved.rotation * orientation(&home);
@@ -232,7 +232,7 @@ fn the_hint_chooses_the_positive_direction() {
         };
         assert!((axis.into_inner() - Vector3::z() * z).norm() < AGREE);
         let manipulator = Manipulator::new(mechanism.clone()).unwrap();
-        let home = manipulator.task().home();
+        let home = manipulator.home_pose();
         let turned = [home[0], home[1], 0.2, 0.0, 0.0];
         let moved = platform(&manipulator, &turned).unwrap();
         let expected = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.2 * z);
@@ -441,7 +441,7 @@ fn given_frames_shift_home() {
         home: Vec::new(),
     };
     let manipulator = Manipulator::new(mechanism.clone()).unwrap();
-    let home = manipulator.task().home();
+    let home = manipulator.home_pose();
     let from = mechanism.platform - Point3::new(1.0, 2.0, 3.0);
     let expected = [from.dot(&x), from.dot(&y), 1.0 - mechanism.platform.z, 0.0];
     for (value, expected) in home.iter().zip(expected) {

@@ -26,7 +26,7 @@ struct Path {
 impl Path {
     fn random(rng: &mut Rng, manipulator: &Manipulator) -> Self {
         let reach = 2.0 * rng.f64() * rng.f64();
-        let home = manipulator.task().home();
+        let home = manipulator.home_pose();
         let mut any = |size: f64| size * (rng.f64() * 2.0 - 1.0);
         Self {
             pose: home.iter().map(|h| h + any(reach)).collect(),

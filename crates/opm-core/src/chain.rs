@@ -22,6 +22,7 @@ pub mod cylindrical;
 pub mod equation;
 pub(crate) mod joint;
 pub mod limits;
+pub(crate) mod partial;
 pub mod planar;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
@@ -42,7 +43,7 @@ pub use joint::ChainJoint;
 use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
 use cylindrical::CylindricalChain;
-use joint::{coaxial_joints, planar_joints, slides, spherical_axes};
+use joint::{coaxial_joint, each, planar_joint, slide, spherical_axis};
 use limits::Limits;
 use nalgebra::Complex;
 use planar::PlanarChain;
@@ -230,22 +231,26 @@ impl Chain {
             },
             SubspaceKind::Planar => {
                 let joints: [_; 3] = joints.try_into().map_err(|_| needs(3))?;
-                PlanarChain::new(planar_joints(subspace, &joints)?).map(Self::Planar)
+                PlanarChain::new(each(&joints, |joint| planar_joint(subspace, joint))?)
+                    .map(Self::Planar)
             }
             SubspaceKind::Spherical => match joints {
                 [ChainJoint::Ball] => Ok(Self::Ball(Ball { axes: subspace.axes })),
                 _ => {
                     let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
-                    SphericalChain::new(spherical_axes(subspace, joints)?).map(Self::Spherical)
+                    SphericalChain::new(each(joints, |joint| spherical_axis(subspace, joint))?)
+                        .map(Self::Spherical)
                 }
             },
             SubspaceKind::Cylindrical => {
                 let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-                CylindricalChain::new(coaxial_joints(subspace, joints)?).map(Self::Cylindrical)
+                CylindricalChain::new(each(joints, |joint| coaxial_joint(subspace, joint))?)
+                    .map(Self::Cylindrical)
             }
             SubspaceKind::TranslationalPlane => {
                 let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-                TranslationalChain::new(slides(subspace, joints)?).map(Self::Translational)
+                TranslationalChain::new(each(joints, |joint| slide(subspace, joint))?)
+                    .map(Self::Translational)
             }
         }
     }

@@ -73,6 +73,8 @@ pub struct Assembly {
     /// The task coordinates, in the order of [`Manipulator::task_coordinates`], metres and radians. Angles
     /// are within π of home.
     pub pose: Vec<f64>,
+    /// The dependent coordinates, in the order of [`Manipulator::dependent_coordinates`], metres and radians.
+    pub dependent: Vec<f64>,
     /// The working mode of the assembly: [`Manipulator::inverse`] at this pose and in this mode gives the
     /// actuated joints back.
     pub mode: Mode,

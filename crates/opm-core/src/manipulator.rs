@@ -13,6 +13,7 @@
 
 mod batch;
 mod closure;
+mod dependent;
 mod inverse;
 mod leg;
 mod locate;
@@ -24,6 +25,8 @@ mod read;
 mod transitions;
 
 pub use batch::{Batch, BatchError, BatchOutput};
+pub use dependent::ConstraintError;
+pub(crate) use dependent::Dependent;
 pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
@@ -52,6 +55,7 @@ use closure::Closure;
 use leg::CompileContext;
 pub(crate) use leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegBranches, LegSolution};
 use mode::ModeLayout;
+use nalgebra::Isometry3;
 use plan::Plan;
 
 /// The largest number of choices in a [`Mode`].
@@ -91,6 +95,9 @@ pub enum CompileError {
     /// The pose has no task coordinates.
     #[error(transparent)]
     Task(#[from] TaskError),
+    /// Some of the coordinates depend on the others in a way that has no closed form.
+    #[error(transparent)]
+    Constraint(#[from] ConstraintError),
     /// There are more two-valued choices than a [`Mode`] can hold.
     #[error("the legs have {0} two-valued choices, expected at most {MOST_CHOICES}")]
     Choices(u32),
@@ -117,6 +124,12 @@ pub struct Manipulator {
     mechanism: Mechanism,
     decomposition: Decomposition,
     task: Task,
+    /// The task coordinates that a pose consists of.
+    independent: Vec<TaskCoordinate>,
+    /// The task coordinates that follow from them.
+    dependent_coordinates: Vec<TaskCoordinate>,
+    /// How they follow; `None` where all coordinates are independent.
+    pub(crate) dependent: Option<Dependent>,
     pub(crate) legs: Vec<CompiledLeg>,
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
@@ -174,9 +187,30 @@ impl Manipulator {
         &self.task
     }
 
-    /// The task coordinates, in the order of a pose.
+    /// The task coordinates that a pose consists of, in its order: as many as the mechanism has degrees of
+    /// freedom.
     pub fn task_coordinates(&self) -> &[TaskCoordinate] {
-        &self.task.coordinates
+        &self.independent
+    }
+
+    /// The task coordinates that follow from those of the pose, because a leg with few freedoms ties them
+    /// together ([`Solution::dependent`] has their values); none in most mechanisms.
+    pub fn dependent_coordinates(&self) -> &[TaskCoordinate] {
+        &self.dependent_coordinates
+    }
+
+    /// How many of the coordinates of a pose are the lower section's; they come first.
+    pub fn lower_coordinates(&self) -> usize {
+        let lower = self.task.lower_count;
+        match &self.dependent {
+            None => lower,
+            Some(dependent) => dependent.independent.iter().filter(|&&i| i < lower).count(),
+        }
+    }
+
+    /// The numbers of the legs, and of their sections, whose constraints tie task coordinates together.
+    pub fn constraining_legs(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
+        self.dependent.iter().flat_map(|d| d.constraining().chain(d.checked()))
     }
 
     /// Whether the full revolutions of a task coordinate matter: it is an angle that a helical joint turns with.
@@ -224,6 +258,12 @@ impl Manipulator {
         self.length
     }
 
+    /// The characteristic length.
+    #[inline]
+    pub(crate) fn size(&self) -> f64 {
+        self.length
+    }
+
     /// The number of two-valued choices; there are `2^choices` working modes.
     pub fn choices(&self) -> u32 {
         self.modes.count()
@@ -262,10 +302,11 @@ impl Manipulator {
         self.modes.branches(mode, leg)
     }
 
-    /// The mode in which every leg's solution at home leaves its joints at home.
+    /// The mode in which every leg's solution at home leaves its joints at home, and the dependent coordinates
+    /// follow as they are at home.
     fn mode_at_home(&self) -> Mode {
         let home = self.task.home();
-        let (v, b) = (self.task.lower(&home), self.task.upper(&home[self.task.lower_count..]));
+        let (v, b) = self.task.sections(&home);
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
             match self.legs[number].solve(&self.task, [&v, &b], branches, 0.0) {
@@ -273,19 +314,37 @@ impl Manipulator {
                 Err(_) => f64::INFINITY,
             }
         };
-        (0..self.legs.len())
+        let of_legs = (0..self.legs.len())
             .filter_map(|number| {
                 self.modes
                     .leg_modes(number)
                     .min_by(|&a, &b| moved(number, a).total_cmp(&moved(number, b)))
             })
-            .fold(Mode::default(), |mode, leg| Mode(mode.0 | leg.0))
+            .fold(Mode::default(), |mode, leg| Mode(mode.0 | leg.0));
+        let Some(dependent) = &self.dependent else { return of_legs };
+        let displaced = |mode: Mode| {
+            let mut pose = home.clone();
+            match dependent.complete(self, mode, &mut pose) {
+                Ok(()) => self.apart(&self.task.displacement(&pose), &Isometry3::identity()),
+                Err(_) => f64::INFINITY,
+            }
+        };
+        let modes = dependent.step_modes().map(|steps| of_legs.with(steps));
+        modes.min_by(|&a, &b| displaced(a).total_cmp(&displaced(b))).unwrap_or(of_legs)
+    }
+
+    /// How far two displacements of the platform are apart, in radians or shares of the size.
+    pub(crate) fn apart(&self, one: &Isometry3<f64>, other: &Isometry3<f64>) -> f64 {
+        let reference = self.mechanism.platform;
+        let offset = (one * reference - other * reference).norm() / self.length;
+        offset.max(one.rotation.angle_to(&other.rotation))
     }
 }
 
 /// The parts of a manipulator that are computed from its mechanism and decomposition.
 struct Compiled {
     task: Task,
+    dependent: Option<Dependent>,
     legs: Vec<CompiledLeg>,
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
@@ -331,15 +390,28 @@ impl Compiled {
             first += leg.coordinates().count();
             legs.push(compiled);
         }
-        let modes = ModeLayout::new(&legs);
+        let names: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
+        let mut dependent = Dependent::new(&task, &legs, &names, decomposition.mobility, length)?;
+        let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choices).collect();
+        let modes = ModeLayout::new(&legs, &choices);
+        if let Some(dependent) = &mut dependent {
+            dependent.set_bits(&task, &modes, &legs);
+        }
         if modes.count() > MOST_CHOICES {
             return Err(CompileError::Choices(modes.count()));
         }
-        Ok(Self { task, legs, coordinates, limits, actuated, imaginary, modes, length })
+        Ok(Self { task, dependent, legs, coordinates, limits, actuated, imaginary, modes, length })
     }
 
     fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
-        let Self { task, legs, coordinates, limits, actuated, imaginary, modes, length } = self;
+        let Self { task, dependent, legs, coordinates, limits, actuated, imaginary, modes, length } =
+            self;
+        let (mut independent, mut dependent_coordinates) = (Vec::new(), Vec::new());
+        for (number, coordinate) in task.coordinates.iter().enumerate() {
+            let follows = dependent.as_ref().is_some_and(|d| d.coordinates.contains(&number));
+            let list = if follows { &mut dependent_coordinates } else { &mut independent };
+            list.push(coordinate.clone());
+        }
         let closure = Closure::new(&mechanism);
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
@@ -347,6 +419,9 @@ impl Compiled {
             mechanism,
             decomposition,
             task,
+            independent,
+            dependent_coordinates,
+            dependent,
             legs,
             coordinates,
             limits,
@@ -357,6 +432,16 @@ impl Compiled {
             length,
         };
         manipulator.home_mode = manipulator.mode_at_home();
+        // Where Euler angles are singular at home, those that follow may differ from the ones that are given.
+        let home = manipulator.home_pose();
+        if let (Some(d), Ok(all)) =
+            (&manipulator.dependent, manipulator.completed(&home, manipulator.home_mode))
+        {
+            for (coordinate, &i) in manipulator.dependent_coordinates.iter_mut().zip(&d.coordinates)
+            {
+                coordinate.home = all[i];
+            }
+        }
         manipulator
     }
 }

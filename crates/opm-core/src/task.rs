@@ -393,6 +393,14 @@ impl Task {
         self.displaced_from_home(Section::Lower, displacement)
     }
 
+    /// The displacements `v` and `b` for all coordinates of a pose.
+    ///
+    /// # Panics
+    /// If there are fewer than [`Task::lower_count`] coordinates.
+    pub(crate) fn sections(&self, pose: &[f64]) -> (Displacement, Displacement) {
+        (self.lower(pose), self.upper(&pose[self.lower_count..]))
+    }
+
     /// What the two subspaces share; `None` for the identity alone.
     #[inline]
     pub fn shared(&self) -> Option<MotionType> {

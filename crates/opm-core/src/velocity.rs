@@ -52,6 +52,7 @@
 
 mod closure;
 mod condition;
+mod dependent;
 mod jacobian;
 mod pose;
 mod rotation_vector;
@@ -167,6 +168,11 @@ pub struct JointMotion {
     pub imaginary_rates: Vec<f64>,
     /// The acceleration of every imaginary joint, in the same order; rad/s² or m/s².
     pub imaginary_accelerations: Vec<f64>,
+    /// The rate of every dependent coordinate, in the order of [`Manipulator::dependent_coordinates`]; rad/s and
+    /// m/s.
+    pub dependent_rates: Vec<f64>,
+    /// The acceleration of every dependent coordinate, in the same order; rad/s² and m/s².
+    pub dependent_accelerations: Vec<f64>,
     /// The legs with joints that have no rates. For these joints the numbers above are zeros without a
     /// meaning.
     pub singular: Vec<SingularLeg>,
@@ -213,11 +219,14 @@ impl Manipulator {
     /// A buffer for [`Manipulator::velocity`].
     pub fn joint_motion(&self) -> JointMotion {
         let (joints, imaginary) = (self.coordinates().len(), self.imaginary().len());
+        let dependent = self.dependent_coordinates().len();
         JointMotion {
             joint_rates: vec![0.0; joints],
             joint_accelerations: vec![0.0; joints],
             imaginary_rates: vec![0.0; imaginary],
             imaginary_accelerations: vec![0.0; imaginary],
+            dependent_rates: vec![0.0; dependent],
+            dependent_accelerations: vec![0.0; dependent],
             singular: Vec::with_capacity(self.legs()),
         }
     }
@@ -244,7 +253,12 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let twists = self.section_twists(&at.solved.pose, rates, accelerations);
+        let Some([rates, accelerations]) = self.all_rates(at, [rates, accelerations], out) else {
+            self.all_singular(&mut out.singular);
+            return Ok(false);
+        };
+        let n = self.task().coordinates.len();
+        let twists = self.section_twists(&at.solved.pose, &rates[..n], &accelerations[..n]);
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);
@@ -342,8 +356,20 @@ impl Manipulator {
             Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
         };
         LegDifferential {
-            lower: Differential::new(task.lower.kind, &leg.lower, &solved.lower, vector),
-            upper: Differential::new(task.upper.kind, &leg.upper, &solved.upper, vector),
+            lower: Differential::new(
+                task.lower.kind,
+                &leg.lower,
+                &solved.lower,
+                vector,
+                self.size(),
+            ),
+            upper: Differential::new(
+                task.upper.kind,
+                &leg.upper,
+                &solved.upper,
+                vector,
+                self.size(),
+            ),
         }
     }
 

@@ -138,7 +138,7 @@ fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn,
 
 /// Every value that the points of a kind of workspace have.
 fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
-    let lower = manipulator.task().lower_count;
+    let lower = manipulator.lower_coordinates();
     let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
     let mut known: Vec<NamedColumn> = coordinates
         .filter(|(i, _)| match kind {

@@ -258,7 +258,14 @@ fn check_kind(
     limit: Option<ConditionLimit>,
 ) -> Result<(), RequestError> {
     let coordinates = manipulator.task_coordinates();
-    if kind.needs_two_sections() && manipulator.task().lower_count == coordinates.len() {
+    let dependent = manipulator.dependent_coordinates();
+    let alone = kind.sections() != Sections::Whole || kind == WorkspaceKind::Imaginary;
+    if alone && !dependent.is_empty() {
+        let dependent = dependent.iter().map(|c| c.name.to_owned()).collect();
+        return Err(RequestError::Dependent { kind, dependent });
+    }
+    let lower = manipulator.lower_coordinates();
+    if kind.needs_two_sections() && (lower == 0 || lower == coordinates.len()) {
         let coordinates = coordinates.iter().map(|c| c.name.to_owned()).collect();
         return Err(RequestError::OneSection { kind, coordinates });
     }

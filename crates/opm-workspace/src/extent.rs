@@ -84,7 +84,7 @@ pub fn default_grid(
 ) -> Result<(Grid, Vec<Extent>), Cancelled> {
     let search = Search::new(manipulator, modes, progress)?;
     let ranges = search.fit()?;
-    let lower = manipulator.task().lower_count;
+    let lower = manipulator.lower_coordinates();
     let (n, uppers) = (ranges.len() as f64, (ranges.len() - lower) as f64);
     // lower^n / FINER^uppers = DEFAULT_POSES
     let fine = (DEFAULT_POSES * FINER.powf(uppers)).powf(1.0 / n);
@@ -114,6 +114,12 @@ impl Range {
         let (name, home) = (coordinate.name, coordinate.home);
         let [min, max] = match coordinate.quantity {
             Quantity::Length => [home - size, home + size],
+            // Elsewhere zeta and psi tell a tilt from its opposite.
+            Quantity::Angle
+                if coordinate.kind() == CoordinateKind::Xi && follows_xi(manipulator) =>
+            {
+                [-PI, PI].map(|end| end + whole_turns(home))
+            }
             Quantity::Angle => one_turn(coordinate.kind(), home),
         };
         let grows =
@@ -161,6 +167,11 @@ impl Range {
         }
         [low.max(self.start[0]), high.min(self.start[1])]
     }
+}
+
+/// Whether the third Euler angle follows from the second, so that a negative tilt is another pose.
+fn follows_xi(manipulator: &Manipulator) -> bool {
+    manipulator.dependent_coordinates().iter().any(|c| c.kind() == CoordinateKind::Psi)
 }
 
 /// The search for the extent of the workspace, by sweeps of coarse grids.

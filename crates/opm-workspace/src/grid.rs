@@ -179,7 +179,7 @@ impl Sections {
             home: c.home,
             counts_turns: manipulator.counts_turns(c.kind()),
         });
-        let lower = manipulator.task().lower_count;
+        let lower = manipulator.lower_coordinates();
         let cuts = || {
             manipulator.intersection_joints().into_iter().map(|joint| Coordinate {
                 name: joint.name,
@@ -275,7 +275,9 @@ impl Grid {
             .collect();
         let poses = axes.iter().try_fold(1_u64, |poses, axis| poses.checked_mul(axis.count));
         let lower = match sections {
-            Sections::Whole | Sections::Lower => manipulator.task().lower_count,
+            // A row needs a coordinate.
+            Sections::Whole => manipulator.lower_coordinates().max(1),
+            Sections::Lower => manipulator.lower_coordinates(),
             Sections::Upper => 0,
         };
         let cuts = match sections {

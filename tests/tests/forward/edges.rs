@@ -27,7 +27,7 @@ fn home_is_an_assembly() {
         // angles they are home's.
         let at_home = found.list.iter().find(|a| {
             a.mode == m.home_mode() && {
-                let off = a.pose.iter().zip(m.task().home()).map(|(q, h)| (q - h).abs());
+                let off = a.pose.iter().zip(m.home_pose()).map(|(q, h)| (q - h).abs());
                 off.fold(0.0, f64::max) < 1e-9
             }
         });
@@ -59,7 +59,7 @@ fn parallel_singularities_are_found() {
     let (mut met, mut pairs) = (0, 0);
     for name in ["plano-spherical-5dof", "double-spherical-5dof"] {
         let m = example(name);
-        let home = m.task().home();
+        let home = m.home_pose();
         for _ in 0..4_000 {
             let aim: Vec<f64> = home
                 .iter()
@@ -92,7 +92,7 @@ fn parallel_singularities_are_found() {
             met += 1;
             let singular = Reached::at(&m, between(&home, &aim, low), m.home_mode()).unwrap();
             let found = m.forward(&singular.actuated).unwrap();
-            let near = |pose: &[f64]| apart(&m, pose, &singular.pose);
+            let near = |pose: &[f64]| apart(&m, m.home_mode(), [pose, &singular.pose]);
             let nearest = found.list.iter().map(|a| near(&a.pose)).fold(1.0, f64::min);
             assert!(nearest < DOUBLE, "{name} {:?}: {nearest:e}", singular.pose);
             for a in &found.list {
@@ -102,9 +102,13 @@ fn parallel_singularities_are_found() {
             let aside = Reached::at(&m, between(&home, &aim, low - 1e-4), m.home_mode()).unwrap();
             let found = m.forward(&aside.actuated).unwrap();
             check_all(&m, &aside.actuated, &found.list);
-            let close = found.list.iter().filter(|a| apart(&m, &a.pose, &aside.pose) < 0.02);
+            let close =
+                found.list.iter().filter(|a| apart(&m, a.mode, [&a.pose, &aside.pose]) < 0.02);
             let modes = close.filter(|a| a.mode == aside.mode).count();
-            assert!(found.list.iter().any(|a| apart(&m, &a.pose, &aside.pose) < 1e-6), "{name}");
+            assert!(
+                found.list.iter().any(|a| apart(&m, a.mode, [&a.pose, &aside.pose]) < 1e-6),
+                "{name}"
+            );
             pairs += usize::from(modes == 2);
             if met % 40 == 0 {
                 break;
@@ -121,7 +125,7 @@ fn parallel_singularities_are_found() {
 fn the_boundary_of_reach_is_inside() {
     let mut rng = Rng::with_seed(12);
     let m = example("plano-spherical-5dof");
-    let home = m.task().home();
+    let home = m.home_pose();
     let mut tried = 0;
     while tried < 200 {
         let aim: Vec<f64> = home
@@ -144,7 +148,8 @@ fn the_boundary_of_reach_is_inside() {
         tried += 1;
         let edge = Reached::at(&m, between(&home, &aim, low), m.home_mode()).unwrap();
         let found = m.forward(&edge.actuated).unwrap();
-        let nearest = found.list.iter().map(|a| apart(&m, &a.pose, &edge.pose)).fold(1.0, f64::min);
+        let nearest =
+            found.list.iter().map(|a| apart(&m, a.mode, [&a.pose, &edge.pose])).fold(1.0, f64::min);
         assert!(nearest < DOUBLE, "{:?}: {nearest:e}", edge.pose);
         assert!(found.list.iter().all(|a| a.residual <= opm_core::forward::RESIDUAL));
     }
@@ -190,7 +195,7 @@ fn rods_side_by_side_leave_the_platform_loose() {
     let m = example("planar-planar-5dof");
     // In this mode the rods of legs 1 and 3, hinged to the platform on one axis, are side by side.
     let mode = m.parse_mode("+- -- +- ++").unwrap();
-    let reached = Reached::at(&m, m.task().home(), mode).unwrap();
+    let reached = Reached::at(&m, m.home_pose(), mode).unwrap();
     let found = m.forward(&reached.actuated).unwrap();
     assert_eq!(found.loose, [Section::Upper]);
 }

@@ -30,7 +30,8 @@ fn returns(rng: &mut Rng, m: &Manipulator, reach: [f64; 2], count: usize) -> usi
             Ok(assembly) => {
                 check(m, &reached.actuated, &assembly);
                 assert_eq!(assembly.mode, reached.mode);
-                found += usize::from(apart(m, &assembly.pose, &reached.pose) < 1e-6);
+                found +=
+                    usize::from(apart(m, assembly.mode, [&assembly.pose, &reached.pose]) < 1e-6);
             }
             Err(NearError::NotFound(not_found)) => {
                 // Some modes are singular everywhere: two rods side by side act as one.
@@ -68,11 +69,11 @@ fn poses_are_found_from_nearby() {
 #[test]
 fn home_is_a_start() {
     let m = example("plano-spherical-5dof");
-    let home = m.task().home();
+    let home = m.home_pose();
     let pose = vec![0.01, -0.02, 0.2, 0.15, -0.1];
     let reached = Reached::at(&m, pose, m.home_mode()).unwrap();
     let assembly = m.forward_near(&reached.actuated, &home, m.home_mode()).unwrap();
-    assert!(apart(&m, &assembly.pose, &reached.pose) < 1e-10);
+    assert!(apart(&m, assembly.mode, [&assembly.pose, &reached.pose]) < 1e-10);
 }
 
 /// An angle is taken modulo 2π, a screw's is not.
@@ -83,8 +84,8 @@ fn turns_of_the_arm_do_not_matter() {
     let mut turned = reached.actuated.clone();
     turned[3] += std::f64::consts::TAU;
     turned[4] -= 2.0 * std::f64::consts::TAU;
-    let assembly = m.forward_near(&turned, &m.task().home(), m.home_mode()).unwrap();
-    assert!(apart(&m, &assembly.pose, &reached.pose) < 1e-10);
+    let assembly = m.forward_near(&turned, &m.home_pose(), m.home_mode()).unwrap();
+    assert!(apart(&m, assembly.mode, [&assembly.pose, &reached.pose]) < 1e-10);
     let all = m.forward(&turned).unwrap();
     assert!(reached.is_in(&m, &all.list));
 }
@@ -92,7 +93,7 @@ fn turns_of_the_arm_do_not_matter() {
 #[test]
 fn a_failure_says_why() {
     let m = example("translational-planar-4dof");
-    let home = m.task().home();
+    let home = m.home_pose();
     // The first slider is a metre from the others, which no rod spans.
     let error = m.forward_near(&[1.0, 0.0, 0.0, 0.0], &home, m.home_mode());
     let error = error.expect_err("an assembly");

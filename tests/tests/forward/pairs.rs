@@ -101,7 +101,9 @@ fn random_mechanisms_of_every_pair() {
                 match m.forward_near(&reached.actuated, &start, reached.mode) {
                     Ok(assembly) => {
                         check(&m, &reached.actuated, &assembly);
-                        numeric[0] += usize::from(apart(&m, &assembly.pose, &reached.pose) < 1e-6);
+                        numeric[0] += usize::from(
+                            apart(&m, reached.mode, [&assembly.pose, &reached.pose]) < 1e-6,
+                        );
                     }
                     Err(NearError::NotFound(not_found)) => assert!(not_found.off.is_finite()),
                     Err(other) => panic!("{other}"),

@@ -17,12 +17,15 @@ const BACK: f64 = 1e-10;
 /// A pose leads to a displacement of the platform, that back to a pose, and that to the same displacement.
 fn there_and_back(m: &Manipulator, pose: &[f64]) {
     let (name, task) = (&m.mechanism().name, m.task());
-    let target = task.displacement(pose);
-    let found = task.pose(&task.lower(pose), &task.upper(&pose[task.lower_count..]));
-    let off = apart(m, &task.displacement(&found), &target);
-    assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
+    // Dependent coordinates have no solution at some poses.
+    let Ok(target) = m.displacement(pose) else { return };
+    if m.dependent_coordinates().is_empty() {
+        let found = task.pose(&task.lower(pose), &task.upper(&pose[task.lower_count..]));
+        let off = apart(m, &task.displacement(&found), &target);
+        assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
+    }
     let found = m.locate(&target).unwrap_or_else(|e| panic!("{name} {pose:?}: {e}"));
-    let off = apart(m, &m.task().displacement(&found), &target);
+    let off = apart(m, &m.displacement(&found).unwrap(), &target);
     assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
     let target = m.platform_pose(pose).unwrap();
     let found = m.locate_platform(&target).unwrap_or_else(|e| panic!("{name} {pose:?}: {e}"));
@@ -90,7 +93,8 @@ fn rotation_matrices_are_located() {
 fn nothing_is_nearer_than_the_nearest() {
     let mut rng = Rng::with_seed(3);
     let (mut outside, mut beaten) = (0, 0);
-    for m in manipulators() {
+    // With dependent coordinates the pose that is told is near, not nearest.
+    for m in manipulators().into_iter().filter(|m| m.dependent_coordinates().is_empty()) {
         let (name, size) = (&m.mechanism().name, m.characteristic_length());
         let miss = |target: &Isometry3<f64>, pose: &[f64]| {
             let here = m.task().displacement(pose);
@@ -117,7 +121,7 @@ fn nothing_is_nearer_than_the_nearest() {
             // A search that only compares: ever smaller steps from many poses.
             let mut best = f64::INFINITY;
             for start in 0..24 {
-                let mut pose = if start == 0 { m.task().home() } else { pose(&mut rng, &m) };
+                let mut pose = if start == 0 { m.home_pose() } else { pose(&mut rng, &m) };
                 let (mut least, mut step) = (miss(&target, &pose), 1.0);
                 while step > 1e-3 {
                     let mut better = false;

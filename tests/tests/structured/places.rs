@@ -23,7 +23,7 @@ fn mechanisms_are_the_same_anywhere() {
             assert_eq!(names(&here), names(&there), "{name} at {g}");
             let [x, y] = [here.characteristic_length(), there.characteristic_length()];
             assert!((x - y).abs() < 1e-9 * x, "{name} at {g}");
-            let (mut at, home) = (there.solution(), there.task().home());
+            let (mut at, home) = (there.solution(), there.home_pose());
             assert!(
                 there.inverse(&home, there.home_mode(), &mut at).unwrap().is_some(),
                 "{name} at {g}"
@@ -36,9 +36,10 @@ fn mechanisms_are_the_same_anywhere() {
                 Skeleton::new(there.mechanism(), ImaginaryJoints { decomposition, imaginary });
             for _ in 0..12 {
                 let pose = pose(&mut rng, &there);
-                let target = there.task().displacement(&pose);
+                // Dependent coordinates have no solution at some poses.
+                let Ok(target) = there.displacement(&pose) else { continue };
                 let back = there.locate(&target).unwrap_or_else(|e| panic!("{name} at {g}: {e}"));
-                let off = apart(&there, &there.task().displacement(&back), &target);
+                let off = apart(&there, &there.displacement(&back).unwrap(), &target);
                 assert!(off < 1e-11, "{name} at {g} {pose:?}: {off:e}");
                 if there.inverse(&pose, there.home_mode(), &mut at).unwrap().is_some() {
                     let off = gap(&there, at.joints(), &target);

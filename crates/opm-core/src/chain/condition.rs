@@ -5,8 +5,8 @@
 //! `E₀ E₁ E₂ = E₀ (E₁ E₂ E₁⁻¹) E₁`. Two free joints leave one equation on the displacement, one of those
 //! below.
 
-use crate::chain::Chain;
 use crate::chain::planar::PlanarJoint;
+use crate::chain::{Chain, ReachDeficit};
 use crate::group::{
     Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind, mismatch, rotation_about,
 };
@@ -127,6 +127,47 @@ impl Condition {
             | Self::CarriedLine { .. }
             | Self::Heading { .. }
             | Self::Flat { .. } => mismatch(SubspaceKind::Spherical, self.kind()),
+        }
+    }
+
+    /// The difference of the equation's two sides at a displacement, zero where that satisfies the condition. Of
+    /// a circle it is that of the squared distances, square metres; of a heading, the sine of the angle.
+    ///
+    /// It is a polynomial of degree one in the components of the displacement, but for a circle: that is of
+    /// degree two in a translation.
+    pub fn value(&self, g: &Displacement) -> f64 {
+        match self {
+            Self::Circle { point, centre, radius } => {
+                (g.planar().apply(*point) - centre).norm_sqr() - radius * radius
+            }
+            Self::Line { point, normal, offset } => dot(*normal, g.planar().apply(*point)) - offset,
+            Self::CarriedLine { point, normal, offset } => {
+                dot(*normal, g.planar().inverse().apply(*point)) - offset
+            }
+            Self::Heading { rotation } => (rotation.conj() * g.planar().rotation).im,
+            Self::Cone { fixed, carried, cosine } => fixed.dot(&(g.spherical() * carried)) - cosine,
+            Self::Flat { normal, value } => {
+                let [a, b] = g.sum();
+                normal[0] * a + normal[1] * b - value
+            }
+        }
+    }
+
+    /// By how much the condition is missed, where its [`value`](Self::value) is at least this far from zero.
+    pub fn deficit(&self, value: f64) -> ReachDeficit {
+        match self {
+            Self::Circle { radius, .. } => {
+                let square = (radius * radius + value).max(0.0);
+                ReachDeficit::length((square.sqrt() - radius).abs())
+            }
+            Self::Line { .. } | Self::CarriedLine { .. } | Self::Flat { .. } => {
+                ReachDeficit::length(value.abs())
+            }
+            Self::Heading { .. } => ReachDeficit::angle(value.clamp(-1.0, 1.0).asin().abs()),
+            Self::Cone { cosine, .. } => {
+                let arc = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
+                ReachDeficit::angle((arc(cosine + value) - arc(*cosine)).abs())
+            }
         }
     }
 

@@ -28,49 +28,46 @@ pub enum ChainJoint {
     Ball,
 }
 
-pub(super) fn planar_joints(
-    subspace: &Subspace,
-    joints: &[ChainJoint; 3],
-) -> Result<[PlanarJoint; 3], ChainError> {
-    let mut planar = [PlanarJoint::Prismatic { along: Complex::new(1.0, 0.0) }; 3];
-    for (planar, joint) in planar.iter_mut().zip(joints) {
-        *planar = match joint {
-            ChainJoint::Screw { axis, point, pitch: 0.0 } => {
-                let at = subspace.point(point);
-                let reversed = subspace.direction(axis).z < 0.0;
-                PlanarJoint::Revolute { at: Complex::new(at.x, at.y), reversed }
-            }
-            ChainJoint::Slide { axis } => {
-                PlanarJoint::Prismatic { along: in_plane(subspace, axis)? }
-            }
-            _ => return Err(ChainError::Foreign("planar")),
-        };
+/// The results of a function for every joint, or its first error.
+pub(super) fn each<T, const N: usize>(
+    joints: &[ChainJoint; N],
+    of: impl Fn(&ChainJoint) -> Result<T, ChainError>,
+) -> Result<[T; N], ChainError> {
+    let mut error = None;
+    let found = joints.each_ref().map(|joint| of(joint).map_err(|e| error.get_or_insert(e)).ok());
+    match error {
+        Some(error) => Err(error),
+        None => Ok(found.map(|joint| joint.expect("there is no error"))),
     }
-    Ok(planar)
 }
 
-pub(super) fn spherical_axes(
+pub(super) fn planar_joint(
     subspace: &Subspace,
-    joints: &[ChainJoint; 3],
-) -> Result<[Unit<Vector3<f64>>; 3], ChainError> {
-    let mut axes = [Vector3::z_axis(); 3];
-    for (local, joint) in axes.iter_mut().zip(joints) {
-        match joint {
-            ChainJoint::Screw { axis, pitch: 0.0, .. } => {
-                *local = Unit::new_normalize(subspace.direction(axis));
-            }
-            _ => return Err(ChainError::Foreign("spherical")),
+    joint: &ChainJoint,
+) -> Result<PlanarJoint, ChainError> {
+    match joint {
+        ChainJoint::Screw { axis, point, pitch: 0.0 } => {
+            let at = subspace.point(point);
+            let reversed = subspace.direction(axis).z < 0.0;
+            Ok(PlanarJoint::Revolute { at: Complex::new(at.x, at.y), reversed })
         }
+        ChainJoint::Slide { axis } => {
+            Ok(PlanarJoint::Prismatic { along: in_plane(subspace, axis)? })
+        }
+        _ => Err(ChainError::Foreign("planar")),
     }
-    Ok(axes)
 }
 
-pub(super) fn coaxial_joints(
+pub(super) fn spherical_axis(
     subspace: &Subspace,
-    joints: &[ChainJoint; 2],
-) -> Result<[CoaxialJoint; 2], ChainError> {
-    let [first, second] = joints;
-    Ok([coaxial_joint(subspace, first)?, coaxial_joint(subspace, second)?])
+    joint: &ChainJoint,
+) -> Result<Unit<Vector3<f64>>, ChainError> {
+    match joint {
+        ChainJoint::Screw { axis, pitch: 0.0, .. } => {
+            Ok(Unit::new_normalize(subspace.direction(axis)))
+        }
+        _ => Err(ChainError::Foreign("spherical")),
+    }
 }
 
 /// A joint on the axis of a cylindrical subspace.
@@ -88,14 +85,9 @@ pub(crate) fn coaxial_joint(
     })
 }
 
-pub(super) fn slides(
-    subspace: &Subspace,
-    joints: &[ChainJoint; 2],
-) -> Result<[Complex<f64>; 2], ChainError> {
-    match joints {
-        [ChainJoint::Slide { axis: a }, ChainJoint::Slide { axis: b }] => {
-            Ok([in_plane(subspace, a)?, in_plane(subspace, b)?])
-        }
+pub(super) fn slide(subspace: &Subspace, joint: &ChainJoint) -> Result<Complex<f64>, ChainError> {
+    match joint {
+        ChainJoint::Slide { axis } => in_plane(subspace, axis),
         _ => Err(ChainError::Foreign("translational")),
     }
 }

@@ -1,10 +1,10 @@
 //! The screws of a chain's joints at home, in the frame of its subspace.
 
-use super::joint::{coaxial_joints, planar_joints, slides, spherical_axes};
+use super::joint::{coaxial_joint, planar_joint, slide, spherical_axis};
 use super::planar::PlanarJoint;
 use super::{ChainError, ChainJoint};
 use crate::group::{LocalTwist, Subspace, SubspaceKind, angular_and_linear, linear, quarter};
-use nalgebra::{Unit, Vector3};
+use nalgebra::Vector3;
 
 /// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
 /// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Screws with
@@ -17,46 +17,44 @@ pub(crate) fn screws(
     subspace: &Subspace,
     joints: &[ChainJoint],
 ) -> Result<[LocalTwist; 3], ChainError> {
-    let needs = |needed| ChainError::Count { needed, given: joints.len() };
-    Ok(match subspace.kind {
-        SubspaceKind::Identity => match joints {
-            [] => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
-            _ => return Err(needs(0)),
-        },
-        SubspaceKind::Planar => {
-            let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
-            planar_joints(subspace, joints)?.map(|joint| match joint {
-                // ω = ±1 about the point `at` gives the origin the velocity -i ω at.
-                PlanarJoint::Revolute { at, reversed: false } => {
-                    angular_and_linear(1.0, -quarter(at))
-                }
-                PlanarJoint::Revolute { at, reversed: true } => {
-                    angular_and_linear(-1.0, quarter(at))
-                }
-                PlanarJoint::Prismatic { along } => angular_and_linear(0.0, along),
-            })
+    let needed = match (subspace.kind, joints) {
+        // About the base's directions, as a rotation vector is measured.
+        (SubspaceKind::Spherical, [ChainJoint::Ball]) => {
+            return Ok([0, 1, 2].map(|i| subspace.axes.row(i).transpose()));
         }
-        SubspaceKind::Spherical => match joints {
-            // About the base's directions, as a rotation vector is measured.
-            [ChainJoint::Ball] => [0, 1, 2].map(|i| subspace.axes.row(i).transpose()),
-            _ => {
-                let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
-                spherical_axes(subspace, joints)?.map(Unit::into_inner)
-            }
+        (kind, _) => kind.dimension(),
+    };
+    if joints.len() != needed {
+        return Err(ChainError::Count { needed, given: joints.len() });
+    }
+    let mut all = [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()];
+    for (screw, joint) in all.iter_mut().zip(joints) {
+        *screw = self::screw(subspace, joint)?;
+    }
+    Ok(all)
+}
+
+/// The screw of one joint other than a spherical one, in the frame of its subspace: see [`screws`].
+///
+/// # Errors
+/// A joint that is not in the subspace.
+pub(crate) fn screw(subspace: &Subspace, joint: &ChainJoint) -> Result<LocalTwist, ChainError> {
+    Ok(match subspace.kind {
+        SubspaceKind::Identity => return Err(ChainError::Count { needed: 0, given: 1 }),
+        SubspaceKind::Planar => match planar_joint(subspace, joint)? {
+            // ω = ±1 about the point `at` gives the origin the velocity -i ω at.
+            PlanarJoint::Revolute { at, reversed: false } => angular_and_linear(1.0, -quarter(at)),
+            PlanarJoint::Revolute { at, reversed: true } => angular_and_linear(-1.0, quarter(at)),
+            PlanarJoint::Prismatic { along } => angular_and_linear(0.0, along),
         },
+        SubspaceKind::Spherical => spherical_axis(subspace, joint)?.into_inner(),
         SubspaceKind::Cylindrical => {
-            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-            let [p, q] = coaxial_joints(subspace, joints)?;
-            [
-                Vector3::new(p.rotation, p.advance, 0.0),
-                Vector3::new(q.rotation, q.advance, 0.0),
-                Vector3::z(),
-            ]
+            let joint = coaxial_joint(subspace, joint)?;
+            Vector3::new(joint.rotation, joint.advance, 0.0)
         }
         SubspaceKind::TranslationalPlane => {
-            let joints: &[_; 2] = joints.try_into().map_err(|_| needs(2))?;
-            let [u, v] = slides(subspace, joints)?;
-            [Vector3::new(u.re, u.im, 0.0), Vector3::new(v.re, v.im, 0.0), Vector3::z()]
+            let along = slide(subspace, joint)?;
+            Vector3::new(along.re, along.im, 0.0)
         }
     })
 }

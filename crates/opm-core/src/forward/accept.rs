@@ -57,6 +57,7 @@ impl Manipulator {
         }
         Assembly {
             pose: pose.to_vec(),
+            dependent: solution.dependent().to_vec(),
             mode,
             joints: solution.joints.clone(),
             imaginary: solution.imaginary.clone(),
@@ -71,8 +72,12 @@ impl Search<'_> {
     /// the same actuated joints.
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
-        let pose = m.task().pose(v, b);
-        let Ok((v, b)) = m.displacements(&pose) else { return };
+        let all = m.task().pose(v, b);
+        let pose = m.independent_of(&all);
+        if m.check_pose(&pose).is_err() {
+            return;
+        }
+        let (v, b) = m.task().sections(&all);
         let target = m.task().isometry(&v, &b);
         let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
@@ -94,8 +99,29 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
-            self.accept(&pose, mode, &target);
+            if let Some(mode) = self.completed_in(mode, &pose, &target) {
+                self.solution.take_pose(m, &all);
+                self.accept(&pose, mode, &target);
+            }
         }
+    }
+
+    /// A mode of the legs with the choices of dependent coordinates that give a displacement; `None` if none do.
+    fn completed_in(&mut self, legs: Mode, pose: &[f64], target: &Isometry3<f64>) -> Option<Mode> {
+        let m = self.manipulator;
+        let Some(dependent) = &m.dependent else { return Some(legs) };
+        let off = |mode: Mode| {
+            let completed = m.completed(pose, mode);
+            completed.map_or(f64::INFINITY, |all| m.apart(&m.task().displacement(&all), target))
+        };
+        let modes = dependent.step_modes().map(|steps| legs.with(steps));
+        let (mode, error) =
+            modes.map(|mode| (mode, off(mode))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        if error > APART {
+            self.reject(error);
+            return None;
+        }
+        Some(mode)
     }
 
     /// Notes by how much the joints of a rejected candidate are off.

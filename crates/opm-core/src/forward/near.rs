@@ -136,10 +136,10 @@ impl Manipulator {
         if error.amax() > ARRIVED {
             return Err(newton.ended(Stop::Steps, STEPS, error.amax()).into());
         }
-        let (v, b) = self.displacements(&newton.pose)?;
-        let pose = self.task().pose(&v, &b);
+        let (v, b) = (newton.solution.solved.v, newton.solution.solved.b);
+        let pose = self.independent_of(&self.task().pose(&v, &b));
         self.inverse(&pose, mode, &mut newton.solution)?;
-        let target = self.task().displacement(&pose);
+        let target = newton.solution.displacement(self);
         let mut solution = newton.solution.clone();
         let assembly = self.assembly(&pose, mode, &displacements, &mut solution, &target);
         if assembly.residual > self.largest_residual() {
@@ -222,8 +222,14 @@ impl Newton<'_> {
             Quantity::Angle => 1.0,
             Quantity::Length => 1.0 / size,
         };
-        let matrix = DMatrix::from_fn(self.wanted.len(), columns.len(), |i, j| {
-            jacobians.joints[(m.actuated()[i], j)] * row(i) * columns[j]
+        // Locked joints stay where they are.
+        let (actuated, locked) = (self.wanted.len(), jacobians.locked.nrows());
+        let matrix = DMatrix::from_fn(actuated + locked, columns.len(), |i, j| {
+            let rate = match i.checked_sub(actuated) {
+                None => jacobians.joints[(m.actuated()[i], j)] * row(i),
+                Some(locked) => jacobians.locked[(locked, j)],
+            };
+            rate * columns[j]
         });
         let svd = Svd::new(matrix);
         if svd.rank(SINGULAR) < columns.len() {
@@ -231,10 +237,12 @@ impl Newton<'_> {
         }
         let mut step = DVector::zeros(columns.len());
         for (k, value) in svd.values.iter().enumerate() {
-            step += svd.right.column(k) * (svd.image.column(k).dot(error) / (value * value));
+            let image = svd.image.column(k);
+            let along = image.rows(0, actuated).dot(error);
+            step += svd.right.column(k) * (along / (value * value));
         }
         let share = (LONGEST / step.amax()).min(1.0);
-        let Ok((v, b)) = m.displacements(&self.pose) else { return Err(Stop::Stalled) };
+        let (v, b) = (self.solution.solved.v, self.solution.solved.b);
         let mut tried = self.solution.clone();
         let mut stop = Stop::Stalled;
         for halving in 0..HALVINGS {
@@ -247,7 +255,7 @@ impl Newton<'_> {
             // The twists are ḃ b⁻¹ and v⁻¹ v̇.
             let moved_b = upper.first_order(&upper_twist).after(&b);
             let moved_v = v.after(&lower.first_order(&lower_twist));
-            let pose = m.task().pose(&moved_v, &moved_b);
+            let pose = m.independent_of(&m.task().pose(&moved_v, &moved_b));
             match m.inverse(&pose, self.mode, &mut tried) {
                 Ok(Some(_)) => {
                     std::mem::swap(&mut self.solution, &mut tried);

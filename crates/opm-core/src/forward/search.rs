@@ -269,13 +269,13 @@ impl<'a> Search<'a> {
                 let mut taus = [None; 2];
                 let mut deficit = None;
                 for (tau, branch) in taus.iter_mut().zip(Branch::BOTH) {
-                    match leg.lower.chain.inverse(v, branch) {
+                    match leg.lower.inverse(v, branch) {
                         Ok(displacements) => {
                             *tau = Some(displacements[leg.lower.chain.freedoms() - 1].inverse());
                         }
                         Err(missed) => deficit = Some(missed),
                     }
-                    if !leg.lower.chain.has_choice() {
+                    if !leg.lower.has_choice() {
                         break;
                     }
                 }

@@ -178,13 +178,21 @@ impl Manipulator {
         batch: &mut Batch,
         out: &mut BatchOutput<'_>,
     ) -> Result<(), BatchError> {
-        let width = self.task.coordinates.len();
+        let width = self.task_coordinates().len();
         let widths = [self.coordinates.len(), self.imaginary.len()];
         let count = poses.len() / width;
         if !poses.len().is_multiple_of(width) {
             return Err(BatchError::Poses { given: poses.len(), width });
         }
         out.check(count, widths)?;
+        if self.dependent.is_some() {
+            // Each pose has to be completed first.
+            for (row, pose) in poses.chunks(width).enumerate() {
+                self.inverse_one(pose, mode, &mut batch.solution, row, out)
+                    .map_err(|error| BatchError::Pose { row, error })?;
+            }
+            return Ok(());
+        }
         for (number, poses) in poses.chunks(LANES * width).enumerate() {
             let first = number * LANES;
             let rows = poses.len() / width;
@@ -215,10 +223,11 @@ impl Manipulator {
         if block.pose.iter().all(fits) {
             return Ok(());
         }
-        let width = self.task.coordinates.len();
-        poses.chunks(width).enumerate().try_for_each(|(row, pose)| {
-            self.displacements(pose).map(drop).map_err(|error| (row, error))
-        })
+        let width = self.task_coordinates().len();
+        poses
+            .chunks(width)
+            .enumerate()
+            .try_for_each(|(row, pose)| self.check_pose(pose).map_err(|error| (row, error)))
     }
 
     /// Solves the pose of one row by [`Manipulator::inverse`].

@@ -5,11 +5,11 @@
 //! reach it returns `Ok(None)`, and the buffer tells which legs do not reach it. An error means that the
 //! pose is not valid. Nothing allocates.
 
-use super::leg::{ChainCoordinate, CompiledSection, LegSolution, Section};
-use super::{Manipulator, Mode};
+use super::leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegSolution, Section};
+use super::{Dependent, Manipulator, Mode};
 use crate::chain::{Chain, ReachDeficit};
 use crate::group::{Displacement, JointDisplacement};
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 use std::f64::consts::TAU;
 
 /// The largest absolute value of a coordinate of a pose, radians or metres: the fourth power of a larger one,
@@ -35,6 +35,17 @@ pub enum PoseError {
         name: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// The dependent coordinates of the pose have no solution.
+    #[error(
+        "no value of the dependent coordinates satisfies the constraint of leg {leg}, by {:.3e} {}",
+        deficit.excess, deficit.quantity.unit()
+    )]
+    Constraint {
+        /// The name of the leg.
+        leg: String,
+        /// By how much its constraint is missed.
+        deficit: ReachDeficit,
     },
     /// There is no task coordinate with this name.
     #[error("no task coordinate is called {name}, expected {expected}")]
@@ -84,6 +95,8 @@ pub struct Solution {
     taus: Vec<f64>,
     /// The pose that was solved, from which velocities are computed.
     pub(crate) solved: SolvedPose,
+    /// The values of its independent and of its dependent coordinates; empty where all are independent.
+    parts: [Vec<f64>; 2],
     /// Every leg's displacements from home, as its chains give them.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
@@ -93,6 +106,7 @@ pub struct Solution {
 /// A pose and its two displacements, `g = v · b`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SolvedPose {
+    /// All task coordinates, dependent ones too.
     pub pose: Vec<f64>,
     pub v: Displacement,
     pub b: Displacement,
@@ -127,7 +141,27 @@ impl Solution {
     /// The pose that this is the solution of, in the order of [`Manipulator::task_coordinates`].
     #[inline]
     pub fn pose(&self) -> &[f64] {
-        &self.solved.pose
+        let [independent, _] = &self.parts;
+        if independent.is_empty() { &self.solved.pose } else { independent }
+    }
+
+    /// The values of the dependent coordinates, in the order of [`Manipulator::dependent_coordinates`]; radians
+    /// and metres.
+    #[inline]
+    pub fn dependent(&self) -> &[f64] {
+        &self.parts[1]
+    }
+
+    /// The platform's displacement from home, base coordinates. `manipulator` is the one that was solved.
+    pub fn displacement(&self, manipulator: &Manipulator) -> Isometry3<f64> {
+        manipulator.task.isometry(&self.solved.v, &self.solved.b)
+    }
+
+    /// Takes a pose, with its dependent coordinates, as the one that was solved.
+    pub(crate) fn take_pose(&mut self, manipulator: &Manipulator, all: &[f64]) {
+        self.solved.pose.copy_from_slice(all);
+        (self.solved.v, self.solved.b) = manipulator.task.sections(all);
+        manipulator.divide(self);
     }
 
     /// This solution, if every leg closes.
@@ -158,6 +192,7 @@ impl Clone for Solution {
             imaginary: self.imaginary.clone(),
             taus: self.taus.clone(),
             solved: self.solved.clone(),
+            parts: self.parts.clone(),
             legs: self.legs.clone(),
             within_limits: self.within_limits,
             unreachable: self.unreachable.clone(),
@@ -171,6 +206,7 @@ impl Clone for Solution {
         self.taus.clone_from(&other.taus);
         self.solved.pose.clone_from(&other.solved.pose);
         (self.solved.v, self.solved.b) = (other.solved.v, other.solved.b);
+        self.parts.clone_from(&other.parts);
         self.legs.clone_from(&other.legs);
         self.within_limits = other.within_limits;
         self.unreachable.clone_from(&other.unreachable);
@@ -242,7 +278,16 @@ impl ActuatedJoints {
 /// ```
 #[derive(Clone, Debug)]
 pub struct AllModes {
+    /// One for each combination of the choices of dependent coordinates: one where all are independent.
+    completions: Vec<Completion>,
+}
+
+/// The solutions of the legs at a pose with its dependent coordinates.
+#[derive(Clone, Debug)]
+struct Completion {
     solved: SolvedPose,
+    /// The leg whose constraint has no solution, if there is one.
+    missed: Option<Unreachable>,
     legs: Vec<LegModes>,
 }
 
@@ -258,6 +303,10 @@ impl Manipulator {
             joints: self.coordinates.iter().map(|c| c.home).collect(),
             imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
             taus: vec![0.0; self.legs.len()],
+            parts: match &self.dependent {
+                Some(d) => [self.home_pose(), vec![0.0; d.coordinates.len()]],
+                None => [Vec::new(), Vec::new()],
+            },
             solved: self.solved_at_home(),
             legs: vec![LegSolution::HOME; self.legs.len()],
             within_limits: false,
@@ -276,12 +325,20 @@ impl Manipulator {
 
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
-        AllModes { solved: self.solved_at_home(), legs: vec![[None; 4]; self.legs.len()] }
+        let count = self.dependent.as_ref().map_or(1, Dependent::combinations);
+        let legs = vec![[None; 4]; self.legs.len()];
+        let completion = Completion { solved: self.solved_at_home(), missed: None, legs };
+        AllModes { completions: vec![completion; count] }
+    }
+
+    /// The pose at home, radians and metres.
+    pub fn home_pose(&self) -> Vec<f64> {
+        self.task_coordinates().iter().map(|c| c.home).collect()
     }
 
     fn solved_at_home(&self) -> SolvedPose {
         let pose = self.task.home();
-        let (v, b) = (self.task.lower(&pose), self.task.upper(&pose[self.task.lower_count..]));
+        let (v, b) = self.task.sections(&pose);
         SolvedPose { pose, v, b }
     }
 
@@ -303,8 +360,8 @@ impl Manipulator {
         &self,
         values: impl IntoIterator<Item = (&'a str, f64)>,
     ) -> Result<Vec<f64>, PoseError> {
-        let coordinates = &self.task.coordinates;
-        let mut pose = self.task.home();
+        let coordinates = self.task_coordinates();
+        let mut pose = self.home_pose();
         for (name, value) in values {
             let Some(number) = coordinates.iter().position(|c| c.name == name) else {
                 let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
@@ -344,8 +401,9 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.solved)?;
-        self.solve_legs(mode, buffer, Revolutions::NearHome);
+        if self.displace(pose, mode, buffer, Revolutions::NearHome)? {
+            self.solve_legs(mode, buffer, Revolutions::NearHome);
+        }
         Ok(buffer.reached())
     }
 
@@ -363,8 +421,9 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        self.displace(pose, &mut buffer.solved)?;
-        self.solve_legs(mode, buffer, Revolutions::NearHeld);
+        if self.displace(pose, mode, buffer, Revolutions::NearHeld)? {
+            self.solve_legs(mode, buffer, Revolutions::NearHeld);
+        }
         Ok(buffer.reached())
     }
 
@@ -379,7 +438,14 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut ActuatedJoints,
     ) -> Result<Option<&'a ActuatedJoints>, PoseError> {
-        let (v, b) = self.displacements(pose)?;
+        self.check_pose(pose)?;
+        let (v, b) = match &self.dependent {
+            None => self.task.sections(pose),
+            Some(_) => match self.completed(pose, mode) {
+                Ok(pose) => self.task.sections(&pose),
+                Err(_) => return Ok(None),
+            },
+        };
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
@@ -416,21 +482,46 @@ impl Manipulator {
         pose: &[f64],
         buffer: &'a mut AllModes,
     ) -> Result<Option<&'a AllModes>, PoseError> {
-        self.displace(pose, &mut buffer.solved)?;
-        let SolvedPose { v, b, .. } = buffer.solved;
-        for (number, (leg, modes)) in self.legs.iter().zip(&mut buffer.legs).enumerate() {
-            *modes = [None; 4];
-            for (part, mode) in self.modes.leg_modes(number).enumerate() {
-                let branches = self.modes.branches(mode, number);
-                let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
-                modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
-                    leg: number,
-                    section,
-                    deficit,
-                }));
+        self.check_pose(pose)?;
+        for (number, completion) in buffer.completions.iter_mut().enumerate() {
+            let Completion { solved, missed, legs } = completion;
+            legs.fill([None; 4]);
+            // The choices that the dependent coordinates are computed with.
+            let (mut mask, mut chosen) = (Mode::default(), Mode::default());
+            *missed = None;
+            match &self.dependent {
+                None => solved.pose.copy_from_slice(pose),
+                Some(dependent) => {
+                    (mask, chosen) = (dependent.mask(), dependent.mode(number));
+                    for (value, coordinate) in solved.pose.iter_mut().zip(&self.task.coordinates) {
+                        *value = coordinate.home;
+                    }
+                    dependent.independent.iter().zip(pose).for_each(|(&i, q)| solved.pose[i] = *q);
+                    *missed = dependent.complete(self, chosen, &mut solved.pose).err();
+                }
+            }
+            if missed.is_some() {
+                continue;
+            }
+            (solved.v, solved.b) = self.task.sections(&solved.pose);
+            let (v, b) = (solved.v, solved.b);
+            for (number, (leg, modes)) in self.legs.iter().zip(legs).enumerate() {
+                let own = self.modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
+                for (part, mode) in self.modes.leg_modes(number).enumerate() {
+                    if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
+                        continue;
+                    }
+                    let branches = self.modes.branches(mode, number);
+                    let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
+                    modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
+                        leg: number,
+                        section,
+                        deficit,
+                    }));
+                }
             }
         }
-        Ok(buffer.unreachable().next().is_none().then_some(buffer))
+        Ok(buffer.reached().then_some(buffer))
     }
 
     /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
@@ -444,17 +535,28 @@ impl Manipulator {
     ) -> Option<&'a Solution> {
         buffer.unreachable.clear();
         buffer.within_limits = true;
-        for (number, modes) in all.legs.iter().enumerate() {
+        let completion = &all.completions[self.completion(mode)];
+        if let Some(missed) = completion.missed {
+            buffer.unreachable.push(missed);
+            return None;
+        }
+        for (number, modes) in completion.legs.iter().enumerate() {
             match &modes[self.modes.of_leg(mode, number)] {
                 Some(Ok(solution)) => self.write(number, solution, buffer, Revolutions::NearHome),
                 Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
                 None => return None,
             }
         }
-        let SolvedPose { pose, v, b } = &all.solved;
+        let SolvedPose { pose, v, b } = &completion.solved;
         buffer.solved.pose.copy_from_slice(pose);
         (buffer.solved.v, buffer.solved.b) = (*v, *b);
+        self.divide(buffer);
         buffer.reached()
+    }
+
+    /// The number of the combination of choices of dependent coordinates in a mode.
+    fn completion(&self, mode: Mode) -> usize {
+        self.dependent.as_ref().map_or(0, |dependent| dependent.combination(mode))
     }
 
     /// The first working mode, all-plus first, that reaches the pose of `all` within the limits, and
@@ -464,8 +566,17 @@ impl Manipulator {
         all: &AllModes,
         buffer: &'a mut Solution,
     ) -> Option<(Mode, &'a Solution)> {
-        let mut first = Mode::default();
-        for (number, (leg, modes)) in self.legs.iter().zip(&all.legs).enumerate() {
+        let first = (all.completions.iter().enumerate())
+            .filter(|(_, completion)| completion.missed.is_none())
+            .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
+        self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
+    }
+
+    /// The first mode with the legs within their limits, and with one combination of choices of dependent
+    /// coordinates.
+    fn first_within_limits(&self, number: usize, completion: &Completion) -> Option<Mode> {
+        let mut first = self.dependent.as_ref().map_or(Mode::default(), |d| d.mode(number));
+        for (number, (leg, modes)) in self.legs.iter().zip(&completion.legs).enumerate() {
             let within = |solution: &LegSolution| {
                 leg.lower.admits(&self.limits, &solution.lower)
                     && leg.upper.admits(&self.limits, &solution.upper)
@@ -476,22 +587,64 @@ impl Manipulator {
                 .0;
             first.0 |= mode.0;
         }
-        self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
+        Some(first)
     }
 
-    /// The displacements `v` and `b` of a pose, or an error if the pose is not valid.
-    pub(crate) fn displacements(
-        &self,
-        pose: &[f64],
-    ) -> Result<(Displacement, Displacement), PoseError> {
-        self.check_pose(pose)?;
-        Ok((self.task.lower(pose), self.task.upper(&pose[self.task.lower_count..])))
+    /// Whether any mode reaches the pose of `all` within the limits. `used` is called with the number and the value
+    /// of the imaginary joints in all these modes.
+    #[doc(hidden)]
+    pub fn within_limits_in_any(&self, all: &AllModes, mut used: impl FnMut(usize, f64)) -> bool {
+        let mut reached = false;
+        for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
+            let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
+                let (lower, upper) = (&leg.lower, &leg.upper);
+                modes.map(|solution| {
+                    solution.and_then(Result::ok).filter(|solution| {
+                        lower.admits(&self.limits, &solution.lower)
+                            && upper.admits(&self.limits, &solution.upper)
+                    })
+                })
+            };
+            let legs = || self.legs.iter().zip(&completion.legs);
+            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
+                continue;
+            }
+            reached = true;
+            for leg in legs() {
+                let Some(imaginary) = leg.0.imaginary else { continue };
+                let joint = &self.imaginary[imaginary];
+                for solution in within(leg).iter().flatten() {
+                    used(imaginary, joint.value(solution.tau, joint.home));
+                }
+            }
+        }
+        reached
+    }
+
+    /// All coordinates of a pose in a mode, dependent ones too; angles within π of home.
+    ///
+    /// # Errors
+    /// The leg whose constraint has no solution.
+    pub(crate) fn completed(&self, pose: &[f64], mode: Mode) -> Result<Vec<f64>, Unreachable> {
+        let Some(dependent) = &self.dependent else { return Ok(pose.to_vec()) };
+        let mut all = self.task.home();
+        dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
+        dependent.complete(self, mode, &mut all)?;
+        Ok(all)
+    }
+
+    /// The independent coordinates among all of a pose.
+    pub(crate) fn independent_of(&self, all: &[f64]) -> Vec<f64> {
+        match &self.dependent {
+            None => all.to_vec(),
+            Some(dependent) => dependent.independent_of(self, all),
+        }
     }
 
     /// Returns an error for a pose with a wrong number of coordinates, or with one that is not a finite number.
     #[inline]
     pub(crate) fn check_pose(&self, pose: &[f64]) -> Result<(), PoseError> {
-        let coordinates = &self.task.coordinates;
+        let coordinates = self.task_coordinates();
         if pose.len() != coordinates.len() {
             return Err(PoseError::Length { given: pose.len(), expected: coordinates.len() });
         }
@@ -503,12 +656,54 @@ impl Manipulator {
         Ok(())
     }
 
-    /// Stores a pose and its displacements, or returns an error if the pose is not valid.
+    /// Stores a pose and its displacements, or returns an error if the pose is not valid. Returns `false` where
+    /// the dependent coordinates have no solution.
     #[inline]
-    fn displace(&self, pose: &[f64], solved: &mut SolvedPose) -> Result<(), PoseError> {
-        (solved.v, solved.b) = self.displacements(pose)?;
-        solved.pose.copy_from_slice(pose);
-        Ok(())
+    fn displace(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Solution,
+        revolutions: Revolutions,
+    ) -> Result<bool, PoseError> {
+        self.check_pose(pose)?;
+        if self.dependent.is_some() {
+            return Ok(self.displace_dependent(pose, mode, out, revolutions));
+        }
+        out.solved.pose.copy_from_slice(pose);
+        (out.solved.v, out.solved.b) = self.task.sections(pose);
+        Ok(true)
+    }
+
+    /// The same for a mechanism with dependent coordinates.
+    #[cold]
+    fn displace_dependent(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Solution,
+        revolutions: Revolutions,
+    ) -> bool {
+        let Some(dependent) = &self.dependent else { return true };
+        let all = &mut out.solved.pose;
+        if revolutions == Revolutions::NearHome {
+            all.iter_mut().zip(&self.task.coordinates).for_each(|(q, c)| *q = c.home);
+        }
+        dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
+        out.unreachable.clear();
+        out.unreachable.extend(dependent.complete(self, mode, all).err());
+        (out.solved.v, out.solved.b) = self.task.sections(all);
+        self.divide(out);
+        out.unreachable.is_empty()
+    }
+
+    /// Copies the independent and the dependent coordinates of the solved pose.
+    fn divide(&self, out: &mut Solution) {
+        let Some(dependent) = &self.dependent else { return };
+        let [independent, others] = &mut out.parts;
+        let all = &out.solved.pose;
+        independent.iter_mut().zip(&dependent.independent).for_each(|(q, &i)| *q = all[i]);
+        others.iter_mut().zip(&dependent.coordinates).for_each(|(q, &i)| *q = all[i]);
     }
 
     #[inline]
@@ -623,20 +818,38 @@ impl Revolutions {
     }
 }
 
-impl AllModes {
-    /// The legs that are out of reach in every mode.
-    pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        // The deficit reported is that of the leg's first combination.
+impl Completion {
+    /// The legs that no choice closes, with the deficit of the first one.
+    fn open_legs(&self) -> impl Iterator<Item = Unreachable> + '_ {
         let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
-        self.legs.iter().filter(move |leg| !closes(leg)).filter_map(|leg| leg[0]?.err())
+        let open = self.legs.iter().filter(move |leg| !closes(leg));
+        open.filter_map(|leg| leg.iter().flatten().find_map(|solution| solution.err()))
+    }
+}
+
+impl AllModes {
+    /// Whether any mode reaches the pose.
+    fn reached(&self) -> bool {
+        self.completions.iter().any(|c| c.missed.is_none() && c.open_legs().next().is_none())
+    }
+
+    /// The legs that are out of reach in every mode; empty where the pose is in reach.
+    pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
+        let missing = !self.reached();
+        let completed = self.completions.iter().find(|c| c.missed.is_none());
+        let missed = self.completions[0].missed.filter(|_| missing && completed.is_none());
+        let open = completed.filter(|_| missing).into_iter().flat_map(Completion::open_legs);
+        missed.into_iter().chain(open)
     }
 
     /// The modes in which the pose is in reach, all-plus first.
     pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
         let layout = &manipulator.modes;
         manipulator.modes().filter(move |&mode| {
-            let mut legs = self.legs.iter().enumerate();
-            legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
+            let completion = &self.completions[manipulator.completion(mode)];
+            let mut legs = completion.legs.iter().enumerate();
+            completion.missed.is_none()
+                && legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
         })
     }
 }

@@ -1,7 +1,8 @@
 //! One leg, split into two closed-form chains.
 
 use crate::chain::limits::Limits;
-use crate::chain::screws::{determinant_scale, screws};
+use crate::chain::partial::{PartialChain, completion};
+use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
 use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, LegSplit};
@@ -16,7 +17,7 @@ use nalgebra::{Unit, Vector3};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefusedLeg {
-    /// The numbers of freedoms in the leg's two sections do not fit the subspaces.
+    /// The leg's two sections have more freedoms than the subspaces, so that it can move with the platform held.
     #[error("{}", freedoms(*lower, *upper, *dim_lower, *dim_upper, *bridged))]
     Freedoms {
         /// The number of freedoms in its lower section.
@@ -40,7 +41,7 @@ pub enum RefusedLeg {
     },
 }
 
-/// What the numbers of freedoms in a leg are, and what they should be.
+/// What the numbers of freedoms in a leg are, and how many they may be.
 fn freedoms(
     lower: usize,
     upper: usize,
@@ -50,16 +51,18 @@ fn freedoms(
 ) -> String {
     let plural = if lower == 1 { "" } else { "s" };
     if dim_upper == 0 {
-        return format!("{lower} freedom{plural}, expected {dim_lower}, those of its subspace");
+        return format!(
+            "{lower} freedom{plural}, expected {dim_lower} at most, those of its subspace"
+        );
     }
     let expected = if bridged {
-        format!("{dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1)
+        format!("at most {dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1)
     } else {
-        format!("{dim_lower} and {dim_upper}")
+        format!("at most {dim_lower} and {dim_upper}")
     };
     format!(
-        "{lower} freedom{plural} in its lower section and {upper} in its upper one, expected {expected}, \
-         for closed-form inverse kinematics"
+        "{lower} freedom{plural} in its lower section and {upper} in its upper one, expected {expected}: \
+         it can move while the platform is held"
     )
 }
 
@@ -85,8 +88,11 @@ pub(crate) struct CompiledSection {
     pub coordinates: [Option<ChainCoordinate>; 3],
     /// Whether any of its coordinates has limits.
     pub limited: bool,
-    /// Whether any of its coordinates is actuated.
+    /// Whether any of its joints is held when the inputs are locked: it is actuated, or locked always.
     pub driven: bool,
+    /// The joints that move, where these are fewer than the subspace has dimensions; then the chain is completed
+    /// by locked joints.
+    pub partial: Option<PartialChain>,
 }
 
 /// A leg, split into two sections.
@@ -145,19 +151,47 @@ impl CompiledLeg {
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        CompileContext { task, actuated, limits, size }: CompileContext<'_>,
+        context: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
+        let task = context.task;
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
         let bridged = task.intersection.is_some();
-        let missing = usize::from(bridged);
-        let split_section = if (lower, upper + missing) == (dim_lower, dim_upper) {
-            Section::Upper
-        } else if (lower + missing, upper) == (dim_lower, dim_upper) {
-            Section::Lower
-        } else {
-            return Err(RefusedLeg::Freedoms { lower, upper, dim_lower, dim_upper, bridged });
+        let preferred = split_section(task, [lower, upper]).ok_or(RefusedLeg::Freedoms {
+            lower,
+            upper,
+            dim_lower,
+            dim_upper,
+            bridged,
+        })?;
+        let found = Self::split_in(preferred, leg, split, first, context);
+        // A section may contain the intersection motion itself, though it has few joints. Then the imaginary joint
+        // belongs to the other one.
+        let other = match preferred {
+            Section::Lower => Section::Upper,
+            Section::Upper => Section::Lower,
         };
+        let room = match other {
+            Section::Lower => lower < dim_lower,
+            Section::Upper => upper < dim_upper,
+        };
+        match found {
+            Err(error) if bridged && room => {
+                Self::split_in(other, leg, split, first, context).map_err(|_| error)
+            }
+            found => found,
+        }
+    }
+
+    /// The same for a given section that the imaginary joint belongs to.
+    fn split_in(
+        split_section: Section,
+        leg: &Leg,
+        split: &LegSplit,
+        first: usize,
+        CompileContext { task, actuated, limits, size }: CompileContext<'_>,
+    ) -> Result<Self, RefusedLeg> {
+        let bridged = task.intersection.is_some();
         let imaginary_joint = task.intersection.as_ref().map(|axis| match axis.point {
             Some(point) => ChainJoint::Screw { axis: axis.direction, point, pitch: 0.0 },
             None => ChainJoint::Slide { axis: axis.direction },
@@ -172,13 +206,25 @@ impl CompiledLeg {
                 let number = first + coordinate_number(leg, *freedom);
                 *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
             }
-            if section == split_section {
-                let at = if section == Section::Upper { 0 } else { joints.len() };
-                joints.splice(at..at, imaginary_joint);
-            }
             let refused = |error| RefusedLeg::Chain { section, error };
+            let bridge = imaginary_joint.filter(|_| section == split_section);
+            let bridge_at = if section == Section::Upper { 0 } else { joints.len() };
+            joints.splice(bridge_at..bridge_at, bridge);
+            // A section with too few freedoms is completed by locked joints, on the side of its other end.
+            let mut partial = None;
+            let mut locked = [false; 3];
+            if freedoms.len() + usize::from(bridge.is_some()) < subspace.dimension() {
+                let free: Result<Vec<_>, _> =
+                    joints.iter().map(|joint| screw(subspace, joint)).collect();
+                let added = completion(subspace, &free.map_err(refused)?, size);
+                let at = freedoms.len() + shift;
+                locked[at..at + added.len()].fill(true);
+                joints.splice(at..at, added);
+                partial = Some(locked);
+            }
             let chain = Chain::new(subspace, &joints).map_err(refused)?;
             let screws = screws(subspace, &joints).map_err(refused)?;
+            let partial = partial.map(|locked| PartialChain::new(subspace.kind, screws, locked));
             let own = || coordinates.iter().flatten();
             Ok(CompiledSection {
                 chain,
@@ -186,7 +232,8 @@ impl CompiledLeg {
                 scale: determinant_scale(subspace.kind, &screws, size),
                 coordinates,
                 limited: own().any(|c| limits[c.number].any()),
-                driven: own().any(|c| c.actuated.is_some()),
+                driven: partial.is_some() || own().any(|c| c.actuated.is_some()),
+                partial,
             })
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
@@ -246,7 +293,7 @@ impl CompiledLeg {
         b: &Displacement,
         branch: Branch,
     ) -> Result<JointDisplacement, ReachDeficit> {
-        let first = self.upper.chain.first(b, branch)?;
+        let first = self.upper.first(b, branch)?;
         Ok(if self.bridged { first } else { JointDisplacement::Value(0.0) })
     }
 
@@ -273,7 +320,7 @@ impl CompiledLeg {
                 Ok((lower, tau))
             }
             Section::Lower => {
-                let lower = self.lower.chain.inverse(v, branches.lower)?;
+                let lower = self.lower.inverse(v, branches.lower)?;
                 Ok((lower, self.step(&lower).inverse()))
             }
         }
@@ -292,24 +339,19 @@ impl CompiledLeg {
         let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
         match self.split_section {
             Section::Upper => {
-                let upper =
-                    self.upper.chain.inverse(b, branches.upper).map_err(of(Section::Upper))?;
+                let upper = self.upper.inverse(b, branches.upper).map_err(of(Section::Upper))?;
                 let tau = self.unwound(self.step(&upper), near);
                 let lower =
                     self.solve_lower(task, v, tau, branches.lower).map_err(of(Section::Lower))?;
                 Ok(LegSolution { lower, upper, tau })
             }
             Section::Lower => {
-                let lower =
-                    self.lower.chain.inverse(v, branches.lower).map_err(of(Section::Lower))?;
+                let lower = self.lower.inverse(v, branches.lower).map_err(of(Section::Lower))?;
                 // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
                 let step = self.unwound(self.step(&lower), -near);
                 let target = task.upper_intersection.before(b, step);
-                let upper = self
-                    .upper
-                    .chain
-                    .inverse(&target, branches.upper)
-                    .map_err(of(Section::Upper))?;
+                let upper =
+                    self.upper.inverse(&target, branches.upper).map_err(of(Section::Upper))?;
                 Ok(LegSolution { lower, upper, tau: step.inverse() })
             }
         }
@@ -345,11 +387,78 @@ impl CompiledLeg {
         tau: JointDisplacement,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        self.lower.chain.inverse(&task.lower_intersection.after(v, tau), branch)
+        self.lower.inverse(&task.lower_intersection.after(v, tau), branch)
+    }
+}
+
+/// The section that the imaginary joint of a leg with these numbers of freedoms belongs to; `None` if the leg has
+/// too many freedoms.
+///
+/// A leg with one freedom less than both subspaces together lacks it in one of its sections. One with fewer
+/// freedoms constrains the platform. Then the section that is taken modulo the intersection motion (see
+/// [`task`](crate::task)) has the imaginary joint, if there is room for it: its coordinates alone then tell the
+/// displacement of the imaginary joint, and the constraints of the other section follow.
+fn split_section(task: &Task, [lower, upper]: [usize; 2]) -> Option<Section> {
+    let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
+    if lower > dim_lower || upper > dim_upper {
+        return None;
+    }
+    match task.shared() {
+        None => Some(Section::Upper),
+        Some(_) if lower == dim_lower && upper == dim_upper => None,
+        Some(MotionType::Rotation) if lower < dim_lower => Some(Section::Lower),
+        Some(MotionType::Rotation) => Some(Section::Upper),
+        Some(MotionType::Translation) if upper < dim_upper => Some(Section::Upper),
+        Some(MotionType::Translation) => Some(Section::Lower),
     }
 }
 
 impl CompiledSection {
+    /// The joints' displacements that move the outer link by `target`: see [`Chain::inverse`]. A section that
+    /// constrains the platform has one solution, if `target` satisfies its constraints.
+    ///
+    /// # Errors
+    /// The reach deficit, where the target is out of reach.
+    #[inline(always)]
+    pub fn inverse(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        match &self.partial {
+            None => self.chain.inverse(target, branch),
+            Some(partial) => Ok(partial.inverse(target)),
+        }
+    }
+
+    /// The first joint's displacement alone: see [`Chain::first`].
+    ///
+    /// # Errors
+    /// The reach deficit, where the target is out of reach.
+    #[inline(always)]
+    fn first(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+    ) -> Result<JointDisplacement, ReachDeficit> {
+        match &self.partial {
+            None => self.chain.first(target, branch),
+            Some(partial) => Ok(partial.inverse(target)[0]),
+        }
+    }
+
+    /// Whether a target has two solutions.
+    pub fn has_choice(&self) -> bool {
+        self.partial.is_none() && self.chain.has_choice()
+    }
+
+    /// Whether a joint of the chain is held when the inputs are locked: it is actuated, or locked always.
+    #[inline]
+    pub fn is_held(&self, joint: usize) -> bool {
+        self.coordinates[joint].is_some_and(|joint| joint.actuated.is_some())
+            || self.partial.is_some_and(|partial| partial.locked()[joint])
+    }
+
     /// Whether the displacements of this section's chain are within the limits.
     #[inline]
     pub fn admits(&self, limits: &[Limits], displacements: &[JointDisplacement; 3]) -> bool {

@@ -74,10 +74,14 @@ impl Manipulator {
     /// The orientation at home is the identity, unless the task coordinates are `zeta xi psi`: then it is that
     /// of their values at home about the upper frame's axes.
     ///
+    /// Dependent coordinates are those of the home mode; [`Solution::displacement`](super::Solution::displacement)
+    /// gives the displacement in the mode that was solved.
+    ///
     /// # Errors
-    /// The pose has the wrong length, or a coordinate that is not a finite number.
+    /// The pose has the wrong length, or a coordinate that is not a finite number, or its dependent coordinates
+    /// have no solution.
     pub fn platform_pose(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
-        Ok(self.displacement(pose)? * self.home_placement())
+        Ok(self.platform_at(&self.displacement(pose)?))
     }
 
     /// The platform's displacement from home at a pose, `g = v · b`, in base coordinates.
@@ -86,7 +90,14 @@ impl Manipulator {
     /// As [`Manipulator::platform_pose`].
     pub fn displacement(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
         self.check_pose(pose)?;
-        Ok(self.task.displacement(pose))
+        if self.dependent.is_none() {
+            return Ok(self.task.displacement(pose));
+        }
+        let all = self.completed(pose, self.home_mode).map_err(|missed| PoseError::Constraint {
+            leg: self.mechanism.legs[missed.leg].name.clone(),
+            deficit: missed.deficit,
+        })?;
+        Ok(self.task.displacement(&all))
     }
 
     /// The task coordinates at which the platform has this pose: the inverse of
@@ -96,6 +107,11 @@ impl Manipulator {
     /// As [`Manipulator::locate`].
     pub fn locate_platform(&self, platform: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
         self.locate(&(platform * self.home_placement().inverse()))
+    }
+
+    /// The platform's pose in SE(3) for its displacement from home: see [`Manipulator::platform_pose`].
+    pub fn platform_at(&self, displacement: &Isometry3<f64>) -> Isometry3<f64> {
+        displacement * self.home_placement()
     }
 
     fn home_placement(&self) -> Isometry3<f64> {
@@ -109,6 +125,29 @@ impl Manipulator {
     /// # Errors
     /// The displacement is outside the motion `A · B`: by how much, in which direction, and the nearest pose.
     pub fn locate(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
+        let Some(dependent) = &self.dependent else { return self.locate_all(displacement) };
+        let all = self.locate_all(displacement).unwrap_or_else(|outside| outside.nearest);
+        let pose = self.independent_of(&all);
+        let length = self.characteristic_length();
+        // The mode in which the dependent coordinates come nearest.
+        let completed = (0..dependent.combinations())
+            .filter_map(|number| self.completed(&pose, dependent.mode(number)).ok());
+        let off = |all: &[f64]| self.miss(displacement, all, 1.0 / length).norm();
+        let nearest = completed.min_by(|a, b| off(a).total_cmp(&off(b)));
+        let nearest = nearest.unwrap_or_else(|| self.task.home());
+        if off(&nearest) < ON {
+            return Ok(pose);
+        }
+        let miss = self.miss(displacement, &nearest, 1.0);
+        Err(OutsideMotion {
+            nearest: self.independent_of(&nearest),
+            rotation: miss.fixed_rows::<3>(0).into(),
+            translation: miss.fixed_rows::<3>(3).into(),
+        })
+    }
+
+    /// The same with all task coordinates, as if they were independent.
+    fn locate_all(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
         let length = self.characteristic_length();
         let [v, b] = self.task.factors(displacement);
         let pose = self.task.pose(&v, &b);
@@ -144,7 +183,7 @@ impl Manipulator {
 
     /// The same pose with angles within π of home, except angles that count revolutions.
     fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
-        for (q, c) in pose.iter_mut().zip(self.task_coordinates()) {
+        for (q, c) in pose.iter_mut().zip(&self.task.coordinates) {
             if c.quantity == Quantity::Angle && !self.counts_turns(c.kind()) {
                 *q -= TAU * whole_turns(*q - c.home);
             }
@@ -155,7 +194,8 @@ impl Manipulator {
     /// A pose to start from: home, then angles by an additive recurrence, which covers them evenly.
     fn start(&self, number: u32) -> Vec<f64> {
         let n = f64::from(number);
-        self.task_coordinates()
+        self.task
+            .coordinates
             .iter()
             .enumerate()
             .map(|(i, c)| match c.quantity {
@@ -219,7 +259,7 @@ impl Manipulator {
     /// enough: the derivative affects only the convergence, not the solution.
     fn sensitivity(&self, target: &Isometry3<f64>, weight: f64, pose: &[f64]) -> DMatrix<f64> {
         let mut jacobian = DMatrix::zeros(6, pose.len());
-        for (i, c) in self.task_coordinates().iter().enumerate() {
+        for (i, c) in self.task.coordinates.iter().enumerate() {
             // The miss is linear in lengths: for them any step gives the derivative.
             let h =
                 1e-6 * if c.quantity == Quantity::Length { pose[i].abs().max(1.0) } else { 1.0 };

@@ -55,16 +55,23 @@ pub(super) struct ModeLayout {
 }
 
 /// The bits of a leg's choices; `None` where a section has a single solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 struct LegChoices {
+    /// The choices of dependent coordinates that follow from the leg's constraints.
+    pose: Vec<u32>,
     lower: Option<u32>,
     upper: Option<u32>,
     first: Section,
 }
 
 impl LegChoices {
-    /// The bits in the order of the mode's text, which is the order in which the sections are solved.
+    /// The bits in the order of the mode's text, which is the order in which they are solved.
     fn written(&self) -> impl Iterator<Item = u32> {
+        self.pose.iter().copied().chain(self.sections())
+    }
+
+    /// The bits of the two sections, in the order in which these are solved.
+    fn sections(&self) -> impl Iterator<Item = u32> + use<> {
         let order = match self.first {
             Section::Upper => [self.upper, self.lower],
             Section::Lower => [self.lower, self.upper],
@@ -74,14 +81,24 @@ impl LegChoices {
 }
 
 impl ModeLayout {
-    pub fn new(legs: &[CompiledLeg]) -> Self {
+    /// The layout for these legs, and for the choices of dependent coordinates, which belong to the legs with
+    /// the numbers `of_pose`.
+    pub fn new(legs: &[CompiledLeg], of_pose: &[usize]) -> Self {
         let mut count = 0;
-        let legs = legs
-            .iter()
-            .map(|leg| {
-                let mut choices = LegChoices { lower: None, upper: None, first: leg.split_section };
+        let legs = (legs.iter().enumerate())
+            .map(|(number, leg)| {
+                let pose = of_pose.iter().filter(|&&leg| leg == number).map(|_| {
+                    count += 1;
+                    count - 1
+                });
+                let mut choices = LegChoices {
+                    pose: pose.collect(),
+                    lower: None,
+                    upper: None,
+                    first: leg.split_section,
+                };
                 for section in leg.order() {
-                    if leg.section(section).chain.has_choice() {
+                    if leg.section(section).has_choice() {
                         let bit = match section {
                             Section::Lower => &mut choices.lower,
                             Section::Upper => &mut choices.upper,
@@ -112,11 +129,24 @@ impl ModeLayout {
         LegBranches { lower: branch(choices.lower), upper: branch(choices.upper) }
     }
 
-    /// The modes with every combination of one leg's choices, and plus for all other legs.
+    /// The bits of the dependent coordinates that follow from a leg's constraints.
+    pub fn pose_bits(&self, leg: usize) -> impl Iterator<Item = u32> + '_ {
+        self.legs[leg].pose.iter().copied()
+    }
+
+    /// The bit of a leg's section, if that has a choice.
+    pub fn section_bit(&self, leg: usize, section: Section) -> Option<u32> {
+        match section {
+            Section::Lower => self.legs[leg].lower,
+            Section::Upper => self.legs[leg].upper,
+        }
+    }
+
+    /// The modes with every combination of the choices of one leg's sections, and plus for everything else.
     pub fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
         let mut bits = [0; 2];
         let mut len = 0;
-        for bit in self.legs[leg].written() {
+        for bit in self.legs[leg].sections() {
             bits[len] = bit;
             len += 1;
         }
@@ -129,7 +159,7 @@ impl ModeLayout {
     #[inline]
     pub fn of_leg(&self, mode: Mode, leg: usize) -> usize {
         self.legs[leg]
-            .written()
+            .sections()
             .enumerate()
             .fold(0, |part, (i, bit)| part | ((mode.0 >> bit & 1) as usize) << i)
     }

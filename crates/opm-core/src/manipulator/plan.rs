@@ -146,11 +146,9 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
     screws && driven
 }
 
-/// The numbers of the actuated joints of a chain.
+/// The numbers of the joints of a chain that are actuated, or always locked.
 fn held(section: &CompiledSection) -> Vec<usize> {
-    let driven =
-        |joint: &usize| section.coordinates[*joint].is_some_and(|joint| joint.actuated.is_some());
-    (0..3).filter(driven).collect()
+    (0..3).filter(|&joint| section.is_held(joint)).collect()
 }
 
 /// The anchors from which `v` can be found, the simplest first.

@@ -78,7 +78,7 @@ impl Manipulator {
                 Section::Lower => None,
                 Section::Upper => {
                     let tau = if compiled.upper.limited {
-                        let admitted = compiled.upper.chain.inverse(b, branches.upper).ok();
+                        let admitted = compiled.upper.inverse(b, branches.upper).ok();
                         let admitted = admitted.filter(|displacements| {
                             compiled.upper.admits(&self.limits, displacements)
                         });
@@ -196,7 +196,6 @@ impl Manipulator {
                 .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, None) => leg
                 .lower
-                .chain
                 .inverse(v, branch.branches.lower)
                 .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, Some(b)) => {

@@ -153,7 +153,7 @@ impl Manipulator {
         // A translation far longer than the leg is linear along the row: it is largest at one of the ends.
         let beyond = |most: f64| {
             [span.from, span.to].into_iter().any(|first| {
-                let displacements = leg.lower.chain.inverse(&at(first), branch.branches.lower);
+                let displacements = leg.lower.inverse(&at(first), branch.branches.lower);
                 let last = leg.lower.chain.freedoms() - 1;
                 displacements.is_ok_and(|displacements| displacements[last].value().abs() > most)
             })

@@ -104,6 +104,11 @@ pub const EXAMPLES: &[Example] = &[
         description: "spherical 3-RRR with coaxial motors (Pollen Robotics): three rotations",
         text: include_str!("../../mechanisms/orbita.toml"),
     },
+    Example {
+        name: "five-bar",
+        description: "planar five-bar (dual-arm SCARA), one subspace: two translations, an angle that follows",
+        text: include_str!("../../mechanisms/five-bar.toml"),
+    },
 ];
 
 /// The example with this name, if there is one.

@@ -83,7 +83,7 @@ fn what_shares_a_joint_stays_together() {
                 continue;
             }
             reached += 1;
-            let platform = manipulator.task().displacement(&pose);
+            let platform = solution.displacement(&manipulator);
             let (joints, imaginary) = (&solution.joints, &solution.imaginary);
             skeleton.place(&Configuration { joints, imaginary, platform }, &mut placed).unwrap();
             let frames = absolute(&skeleton, &placed);

@@ -16,11 +16,10 @@ use nalgebra::DMatrix;
 const SHORT: f64 = 1e-6;
 
 /// Which joints of a leg's section are its inputs, which are held when the section is locked: the actuated
-/// joints, and the imaginary joint if the section takes it as an input.
+/// joints, those that are always locked, and the imaginary joint if the section takes it as an input.
 pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     let compiled = leg.section(section);
-    let mut inputs =
-        compiled.coordinates.map(|joint| joint.is_some_and(|joint| joint.actuated.is_some()));
+    let mut inputs = [0, 1, 2].map(|joint| compiled.is_held(joint));
     if let Some(joint) = leg.imaginary_joint() {
         inputs[joint] |= match (leg.split_section, section) {
             (Section::Upper, Section::Upper) => true,

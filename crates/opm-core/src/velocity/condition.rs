@@ -107,10 +107,17 @@ impl Manipulator {
                 push_row(&mut joints, next, n);
             }
         }
-        divide(&mut joints, &metric(jacobians, scale), n);
-        let values = singular_values(joints, n);
+        let metric = metric(jacobians, scale);
+        divide(&mut joints, &metric, n);
+        let free = n - jacobians.locked.nrows();
+        if free < n {
+            project(&mut joints, jacobians, &metric, n);
+        }
+        let mut values = singular_values(joints, n);
+        // The twists that constraining legs prevent have the value zero.
+        values[..n].sort_by(|a, b| b.total_cmp(a));
         let (mut largest, mut smallest, mut product) = (0.0_f64, f64::INFINITY, 1.0);
-        for &value in &values[..n] {
+        for &value in &values[..free] {
             largest = largest.max(value);
             smallest = smallest.min(value);
             product *= value;
@@ -123,6 +130,34 @@ impl Manipulator {
             return Conditioning::PARALLEL;
         }
         Conditioning { condition: largest / smallest, manipulability: 1.0 / product }
+    }
+}
+
+/// Removes the twists of the platform that its constraining legs prevent from a matrix whose columns are
+/// orthonormal components of the twist.
+fn project(matrix: &mut Square, jacobians: &Jacobians, metric: &Square, n: usize) {
+    let mut rows = Square::zeros();
+    let count = jacobians.locked.nrows();
+    for i in 0..count {
+        (0..n).for_each(|j| rows[(i, j)] = jacobians.locked[(i, j)]);
+    }
+    divide(&mut rows, metric, n);
+    for i in 0..count {
+        let mut row = rows.row(i).into_owned();
+        for known in 0..i {
+            let known = rows.row(known);
+            row -= known * row.dot(&known);
+        }
+        let length = row.norm();
+        if length > 0.0 {
+            row /= length;
+        }
+        rows.set_row(i, &row);
+        for j in 0..MOST {
+            let along = matrix.row(j).dot(&row);
+            let rest = matrix.row(j) - row * along;
+            matrix.set_row(j, &rest);
+        }
     }
 }
 

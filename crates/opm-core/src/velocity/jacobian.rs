@@ -1,6 +1,7 @@
 //! The Jacobians of the upper section, of the lower section, of the whole mechanism, and of the task
 //! coordinates.
 
+use super::dependent::solved;
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
@@ -61,12 +62,17 @@ pub struct Jacobians {
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
     /// twist. For the actuated joints of the lower section `q̇ = J_p [J_s upper; lower]`.
     pub joints: DMatrix<f64>,
-    /// The section twist from the rates of the task coordinates, a square matrix. It is singular where the
+    /// The section twist from the rates of all task coordinates, dependent ones too, a square matrix. It is singular where the
     /// coordinates are (Euler angles at `xi = 0`), for every mechanism.
     pub pose: DMatrix<f64>,
     /// The platform's twist `(ω; v)` from the section twist. `v` is the velocity of the platform's reference
     /// point. The axes are those of the base after the displacement `v` of the lower section.
     pub platform: Matrix6xX<f64>,
+    /// The rates of the joints that constraining legs lack, from the section twist: they are zero where the
+    /// platform moves as these legs let it. It has a row for each dependent coordinate.
+    pub locked: DMatrix<f64>,
+    /// The rates of all task coordinates from those of the independent ones, where some are dependent.
+    by_independent: Option<DMatrix<f64>>,
     /// The legs with joints that have no rates. The rows of these joints are zeros without a meaning.
     pub singular: Vec<SingularLeg>,
     /// The numbers of the legs that are split in their upper section: the rows of [`Jacobians::upper`].
@@ -152,7 +158,11 @@ impl Jacobians {
     /// the task coordinates: a row for each joint, a column for each task coordinate. The product is
     /// allocated.
     pub fn joints_by_pose(&self) -> DMatrix<f64> {
-        &self.joints * &self.pose
+        let by_all = &self.joints * &self.pose;
+        match &self.by_independent {
+            Some(rates) => by_all * rates,
+            None => by_all,
+        }
     }
 
     /// The components of the section twist, in the order of the columns: for each, the twists of the upper
@@ -196,6 +206,11 @@ impl Manipulator {
             joints: DMatrix::zeros(joints, n),
             pose: DMatrix::zeros(n, n),
             platform: Matrix6xX::zeros(n),
+            locked: DMatrix::zeros(self.dependent_coordinates().len(), n),
+            by_independent: self
+                .dependent
+                .as_ref()
+                .map(|dependent| DMatrix::zeros(n, dependent.independent.len())),
             singular: Vec::with_capacity(self.legs.len()),
             bridged,
             lower_rows,
@@ -235,6 +250,9 @@ impl Manipulator {
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
+        if !self.independent_columns(out) {
+            self.all_singular(&mut out.singular);
+        }
         Ok(out.singular.is_empty())
     }
 
@@ -290,6 +308,23 @@ impl Manipulator {
             }
         };
         let (n, bridges, joints) = (n_upper + n_lower, out.bridged.len(), out.joints.nrows());
+        if let Some(dependent) = &self.dependent {
+            for (row, (_, section, joint)) in
+                dependent.locked(&self.legs).enumerate().filter(|(_, (leg, ..))| *leg == number)
+            {
+                let (own, start, differential) = match section {
+                    Section::Upper => (&upper_twists, 0, upper),
+                    Section::Lower => (&moved.lower, n_upper, lower),
+                };
+                let other = section != leg.split_section;
+                let by_along = if other { differential.rate(joint, &carried) } else { 0.0 };
+                let mut rates = along.map(|rate| by_along * rate);
+                for (i, twist) in own.iter().enumerate() {
+                    rates[start + i] += differential.rate(joint, twist);
+                }
+                (0..n).for_each(|i| out.locked[(row, i)] = rates[i]);
+            }
+        }
         let rows = out.lower.nrows();
         for (section, compiled, differential) in
             [(Section::Upper, &leg.upper, upper), (Section::Lower, &leg.lower, lower)]
@@ -329,6 +364,38 @@ impl Manipulator {
                 }
             }
         }
+    }
+
+    /// Computes the rates of the dependent coordinates for a unit rate of each independent one. Returns `false`
+    /// where they are not determined.
+    fn independent_columns(&self, out: &mut Jacobians) -> bool {
+        let (Some(dependent), Some(columns)) = (&self.dependent, &mut out.by_independent) else {
+            return true;
+        };
+        columns.fill(0.0);
+        let count = dependent.coordinates.len();
+        // The rates of the locked joints by a coordinate.
+        let rates = |coordinate: usize| -> [f64; 6] {
+            let column = out.pose.column(coordinate);
+            std::array::from_fn(|row| {
+                if row < count { out.locked.row(row).transpose().dot(&column) } else { 0.0 }
+            })
+        };
+        let mut matrix = [[0.0; 6]; 6];
+        for (column, &coordinate) in dependent.coordinates.iter().enumerate() {
+            let rates = rates(coordinate);
+            (0..count).for_each(|row| matrix[row][column] = rates[row]);
+        }
+        let units = self.dependent_units();
+        for (column, &coordinate) in dependent.independent.iter().enumerate() {
+            columns[(coordinate, column)] = 1.0;
+            let right = rates(coordinate).map(|rate| -rate);
+            let Some(found) = solved(matrix, right, &units[..count]) else { return false };
+            for (&coordinate, rate) in dependent.coordinates.iter().zip(found) {
+                columns[(coordinate, column)] = rate;
+            }
+        }
+        true
     }
 
     /// Computes the section twist for a unit rate of each task coordinate.

@@ -27,13 +27,14 @@ pub(crate) struct Differential {
 impl Differential {
     /// The differential of a section, whose joints have these displacements. For a spherical joint, `vector`
     /// gives its rotation vector from home in base coordinates, by the number of its first coordinate; full
-    /// revolutions count.
+    /// revolutions count. `length` is the characteristic length, metres.
     #[inline]
     pub fn new(
         kind: SubspaceKind,
         section: &CompiledSection,
         displacements: &[JointDisplacement; 3],
         vector: impl FnOnce(usize) -> LocalTwist,
+        length: f64,
     ) -> Self {
         if let Chain::Ball(ball) = &section.chain {
             let first = section.coordinates[0].map_or(0, |coordinate| coordinate.number);
@@ -52,9 +53,14 @@ impl Differential {
                 ball: Some(vector),
             };
         }
-        let screws = Screws::new(kind, &section.screws, displacements);
+        let mut screws = Screws::new(kind, &section.screws, displacements);
+        let mut scale = section.scale;
+        if let Some(partial) = &section.partial {
+            // Locked joints do not move: any screws will do that are independent of the others here.
+            scale = partial.complete(&mut screws.moved, length);
+        }
         let (crosses, determinant) = screws.reciprocal();
-        let measure = determinant / section.scale;
+        let measure = determinant / scale;
         let reciprocal = if measure.abs() < SINGULAR {
             [LocalTwist::zeros(); 3]
         } else {

@@ -118,6 +118,13 @@ pub enum RequestError {
         /// The names of the task coordinates.
         coordinates: Vec<String>,
     },
+    /// The kind is of one section alone, but coordinates of one section depend on those of the other.
+    Dependent {
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The names of the dependent coordinates.
+        dependent: Vec<String>,
+    },
     /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
@@ -200,7 +207,9 @@ impl RequestError {
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
-            Self::NoImaginaryJoints { .. } | Self::OneSection { .. } => RequestOption::Kind,
+            Self::NoImaginaryJoints { .. } | Self::OneSection { .. } | Self::Dependent { .. } => {
+                RequestOption::Kind
+            }
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
             Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
@@ -250,6 +259,11 @@ impl RequestError {
                 "{kind}: all legs of this mechanism move in one subspace, whose coordinates {} are not \
                  divided into places and orientations; use grid, with one value for each coordinate to hold",
                 coordinates.join(" ")
+            ),
+            Self::Dependent { kind, dependent } => format!(
+                "{kind}: the sections of this mechanism have no workspaces of their own, because its legs tie its \
+                 coordinates together (dependent: {}); use grid",
+                dependent.join(", ")
             ),
             Self::NotOfPoses { kind } => format!(
                 "with {}: only poses have a condition number; ask for it of grid, \

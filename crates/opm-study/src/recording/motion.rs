@@ -110,7 +110,7 @@ impl<'a> MotionRecorder<'a> {
         let (joints, imaginary) = (&solution.joints(), &solution.imaginary());
         let posture = if sample.reached {
             let frames = if self.recorder.shows(now) {
-                let platform = manipulator.task().displacement(&instant.pose);
+                let platform = solution.displacement(manipulator);
                 self.scene.frames(&skeleton::Configuration { joints, imaginary, platform })
             } else {
                 &[]

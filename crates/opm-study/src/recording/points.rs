@@ -5,6 +5,7 @@ use crate::error::StudyError;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
+use opm_core::nalgebra::Point3;
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
 use opm_workspace::{ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
@@ -74,10 +75,7 @@ impl<'a> Cloud<'a> {
 
     /// The position of a pose in the cloud.
     pub fn place(&self, pose: &[f64]) -> [f64; 3] {
-        let tip = || {
-            let manipulator = self.manipulator();
-            manipulator.task().displacement(pose) * manipulator.mechanism().platform
-        };
+        let tip = || tip(self.manipulator(), self.workspace.modes, pose);
         self.shown.axes.each_ref().map(|named| match named.column {
             Column::Coordinate(number) => pose[number],
             Column::Tip(i) => tip()[i],
@@ -321,9 +319,10 @@ impl<'a> Points<'a> {
         for column in self.columns {
             row.push(match (*column, &self.joints) {
                 (Column::Coordinate(number), _) => pose[number],
-                (Column::Tip(i), _) => tip.get_or_insert_with(|| {
-                    manipulator.task().displacement(pose) * manipulator.mechanism().platform
-                })[i],
+                (Column::Tip(i), _) => {
+                    let modes = self.cloud.workspace.modes;
+                    tip.get_or_insert_with(|| self::tip(manipulator, modes, pose))[i]
+                }
                 (Column::Imaginary(number), Joints::One(drives)) => drives.imaginary()[number],
                 (Column::Actuated(number), Joints::One(drives)) => drives.actuated()[number],
                 (Column::Imaginary(number), Joints::Any(buffers)) => buffers.1.imaginary()[number],
@@ -355,4 +354,26 @@ impl<'a> Points<'a> {
         self.pack();
         self.wrong.take().map_or_else(|| Ok(std::mem::take(&mut self.portions)), Err)
     }
+}
+
+/// The platform's reference point at a pose in reach. Where some coordinates depend on those of the pose, it is the
+/// one of the first mode that reaches the pose within the limits.
+fn tip(manipulator: &Manipulator, modes: Modes, pose: &[f64]) -> Point3<f64> {
+    let reference = manipulator.mechanism().platform;
+    if manipulator.dependent_coordinates().is_empty() {
+        return manipulator.task().displacement(pose) * reference;
+    }
+    let mut at = manipulator.solution();
+    match modes {
+        Modes::One(mode) => {
+            let _ = manipulator.inverse(pose, mode, &mut at);
+        }
+        Modes::Any => {
+            let mut all = manipulator.all_modes();
+            if let Ok(Some(all)) = manipulator.inverse_all(pose, &mut all) {
+                let _ = manipulator.solution_within_limits(all, &mut at);
+            }
+        }
+    }
+    at.displacement(manipulator) * reference
 }

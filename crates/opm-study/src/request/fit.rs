@@ -26,7 +26,7 @@ fn resolution(kind: WorkspaceKind, [lower, upper]: [usize; 2]) -> Option<Resolut
 
 /// The grid for a kind of workspace, made from the grid that is fitted to its poses.
 pub fn fit(kind: WorkspaceKind, manipulator: &Manipulator, poses: Grid) -> Grid {
-    let lower = manipulator.task().lower_count;
+    let lower = manipulator.lower_coordinates();
     let upper = poses.axes().len() - lower;
     let Some(resolution) = resolution(kind, [lower, upper]) else { return poses };
     let axes = poses.axes().iter().zip(poses.coordinates()).enumerate();

@@ -115,6 +115,16 @@ pub enum DomainError {
     /// The upper section is asked for, but all legs move in one subspace.
     #[error("the mechanism has no upper section: all its legs move in one subspace")]
     NoUpperSection,
+    /// Some task coordinates follow from the others.
+    #[error(
+        "there are no bounds for a mechanism whose legs tie its coordinates together (dependent here: {}); a grid \
+         of its workspace can be counted",
+        dependent.join(", ")
+    )]
+    Dependent {
+        /// The names of the dependent coordinates.
+        dependent: Vec<&'static str>,
+    },
     /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
@@ -196,6 +206,11 @@ impl Domain {
         sections: Sections,
         given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
+        let dependent = manipulator.dependent_coordinates();
+        if !dependent.is_empty() {
+            let dependent = dependent.iter().map(|c| c.name).collect();
+            return Err(DomainError::Dependent { dependent });
+        }
         let mut axes = axes(manipulator, sections);
         if axes.is_empty() {
             return Err(DomainError::NoUpperSection);
@@ -348,7 +363,7 @@ impl Domain {
 /// The coordinates of what is measured, each at its home value.
 fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
     let cuts = manipulator.intersection_joints();
-    let lower = manipulator.task().lower_count;
+    let lower = manipulator.lower_coordinates();
     let kind = |number: usize, kind: Option<CoordinateKind>, home: f64| match kind {
         // In a domain of the lower section the values of the imaginary joints follow its coordinates.
         None => Kind::Imaginary(cuts[number - lower].clone()),

@@ -46,6 +46,8 @@ pub enum SheetKind {
     Regions,
     /// Some leg has several branches, or one that is no region: branches are decided one by one.
     Branches,
+    /// Some task coordinates follow from those of the grid: poses are decided one by one.
+    Dependent,
 }
 
 /// The lengths of rows, in the units in which they are clipped.
@@ -153,6 +155,10 @@ impl<'a> Sheet<'a> {
         let upper = &mut self.others[lower.saturating_sub(1)..];
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
+        if !manipulator.dependent_coordinates().is_empty() {
+            self.kind = SheetKind::Dependent;
+            return;
+        }
         let mode = sweep.modes.one();
         let b = match sweep.grid.sections() {
             Sections::Lower => None,
@@ -191,6 +197,9 @@ impl<'a> Sheet<'a> {
         if axes.len() > 2 {
             fill(&axes[2..], self.number, &mut first[2..axes.len()]);
             self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
+        }
+        if self.kind == SheetKind::Dependent {
+            return;
         }
         let v = sweep.manipulator.task().lower(&first[..axes.len()]);
         let (scale, last) = (self.scale.step.recip(), (axes[0].count - 1) as f64);

@@ -5,9 +5,10 @@ use super::known_range::KnownRanges;
 use super::row::Row;
 use super::runs::{self, Run};
 use super::sheet::{Sheet, SheetKind, SliceBranch};
-use super::{Count, Hits, Sweep};
+use super::{Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Axis, Sections};
+use opm_core::manipulator::{AllModes, Solution};
 use pulp::Arch;
 use std::ops::Range;
 
@@ -22,6 +23,7 @@ pub struct Worker<'a> {
     row: Row,
     hits: HitPoses,
     limit: Option<LimitedRow<'a>>,
+    one: OnePose,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
 }
@@ -47,6 +49,13 @@ struct HitPoses {
     values: Vec<f64>,
     /// The first coordinates of the reachable ones.
     hits: Vec<f64>,
+}
+
+/// A pose of a mechanism with dependent coordinates, and buffers for its solutions.
+struct OnePose {
+    pose: Vec<f64>,
+    all: AllModes,
+    solution: Solution,
 }
 
 /// Poses of a row that are held against the limit on the condition number.
@@ -121,6 +130,11 @@ impl<'a> Worker<'a> {
             row: Row::default(),
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
             limit: sweep.limit.map(limited),
+            one: OnePose {
+                pose: pose(),
+                all: manipulator.all_modes(),
+                solution: manipulator.solution(),
+            },
             known: KnownRanges::new(manipulator.legs()),
         }
     }
@@ -149,6 +163,12 @@ impl<'a> Worker<'a> {
         let sweep = self.sweep;
         if sweep.grid.sections() == Sections::Upper {
             self.take_slice(found, hit);
+            return;
+        }
+        if self.sheet.kind == SheetKind::Dependent {
+            for number in numbers {
+                found.reachable += self.decide_poses(number, window, found, hit);
+            }
             return;
         }
         self.clipping.clip(&self.sheet, &numbers, window);
@@ -208,13 +228,66 @@ impl<'a> Worker<'a> {
         } else {
             self.use_branches(i, doubt, found);
         }
-        if count > 0
-            && let Some(hit) = hit
-        {
-            let first = self.hits.of(&grid.axes()[0], window, &self.row.reached);
+        self.hand_over(number, window, hit);
+        count
+    }
+
+    /// Hands over the reachable poses of row `number` of the sheet, if there are any.
+    fn hand_over(&mut self, number: u64, window: Run, hit: &mut Visitor<'_>) {
+        if self.row.reached.is_empty() {
+            return;
+        }
+        if let Some(hit) = hit {
+            let first = self.hits.of(&self.sweep.grid.axes()[0], window, &self.row.reached);
             let (slice, row) = (self.sheet.slice(), self.sheet.first_row + number);
             hit(&Hits { slice, row, runs: &self.row.reached, first, others: &self.sheet.others });
         }
+    }
+
+    /// Decides the poses of row `number` of the sheet one by one. Returns how many of them are reachable.
+    fn decide_poses(
+        &mut self,
+        number: u64,
+        window: Run,
+        found: &mut Count,
+        hit: &mut Visitor<'_>,
+    ) -> u64 {
+        let axes = self.sweep.grid.axes();
+        if self.sweep.grid.lower() > 1 {
+            self.sheet.others[0] = axes[1].value(number);
+        }
+        self.row.take(std::iter::once(window));
+        let count = if self.limit.is_some() {
+            self.limit_row(hit.is_none(), found)
+        } else {
+            let (manipulator, ranges) = (self.sweep.manipulator, hit.is_none());
+            let modes = self.sweep.modes;
+            let OnePose { pose, all, solution } = &mut self.one;
+            pose[1..].copy_from_slice(&self.sheet.others);
+            self.row.retain(|number| {
+                pose[0] = axes[0].value(number);
+                let mut used = |imaginary: usize, value: f64| {
+                    if ranges {
+                        found.widen(imaginary, value);
+                    }
+                };
+                match modes {
+                    Modes::One(mode) => match manipulator.inverse(pose, mode, solution) {
+                        Ok(Some(solution)) if solution.within_limits() => {
+                            let values = solution.imaginary().iter().enumerate();
+                            values.for_each(|(imaginary, &value)| used(imaginary, value));
+                            true
+                        }
+                        Ok(_) | Err(_) => false,
+                    },
+                    Modes::Any => match manipulator.inverse_all(pose, all) {
+                        Ok(Some(all)) => manipulator.within_limits_in_any(all, used),
+                        Ok(None) | Err(_) => false,
+                    },
+                }
+            })
+        };
+        self.hand_over(number, window, hit);
         count
     }
 

@@ -1,0 +1,581 @@
+//! Dependent coordinates: those that a mechanism's constraining legs determine.
+//!
+//! A leg with fewer freedoms than the motion `A · B` constrains the platform: each freedom that it lacks is one
+//! equation on the displacement of one of its sections ([`Condition`]). So some of the task coordinates are
+//! *independent*, and the others follow from them, one after the other:
+//!
+//! 1. First the section that is taken modulo the intersection motion (see [`task`](crate::task)). Its
+//!    coordinates, and the legs that are split in it, then tell the displacement of the imaginary joints.
+//! 2. Then the other section. The constraint of a leg with its imaginary joint in the first one is a condition
+//!    on `exp(-I τ) · b`, or on `v · exp(I τ)`, with τ known.
+//!
+//! In one coordinate, with the others known, a condition is `c₀ + c₁ cos t + c₂ sin t` for an angle, and a
+//! polynomial of degree two at most for a length: three of its values determine it. It has two zeros, at which
+//! it rises (the plus branch) and falls (minus), or one. A section with one joint that moves has a one-parameter
+//! motion: one of its coordinates tells the joint, and the joint the others ([`one_joint`]).
+//!
+//! Further legs may impose constraints that the platform obeys already. They are only checked.
+
+mod one_joint;
+mod zeros;
+
+use super::leg::{CompiledLeg, Section};
+use super::mode::ModeLayout;
+use super::{Manipulator, Mode, Unreachable};
+use crate::chain::ReachDeficit;
+use crate::chain::condition::Condition;
+use crate::group::{Displacement, JointDisplacement, MotionType, SubspaceKind};
+use crate::numeric::Quantity;
+use crate::numeric::angle::whole_turns;
+use crate::task::{CoordinateKind, Task};
+use one_joint::OneJoint;
+use std::f64::consts::TAU;
+use zeros::Function;
+
+/// The coordinate that follows from a condition is the first, in the order of preference, in which the
+/// condition has at least this share of its largest slope at home.
+const STEEP: f64 = 0.3;
+
+/// A slope below this counts as zero; lengths are over the size.
+const LEVEL: f64 = 1e-9;
+
+/// A constraint of a further leg counts as obeyed if it is missed by less than this, in radians or shares of
+/// the size.
+const OBEYED: f64 = 1e-9;
+
+/// Why the constraining legs of a mechanism have no closed form.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConstraintError {
+    /// The constraint of a leg does not determine any coordinate at home.
+    #[error(
+        "leg {leg} constrains its {section} section, but at home no coordinate follows from that constraint"
+    )]
+    Singular {
+        /// The leg's name.
+        leg: String,
+        /// The section that is constrained.
+        section: Section,
+    },
+    /// The constraints of several legs differ, or those of one have no closed form in this order.
+    #[error(
+        "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
+         N = {mobility}, expected {determined}, with one constraining leg for each section, or several that \
+         constrain it in the same way",
+        legs.join(", ")
+    )]
+    Several {
+        /// The names of the constraining legs.
+        legs: Vec<String>,
+        /// The mobility of the mechanism, `N`.
+        mobility: usize,
+        /// The mobility that one constraining leg for each section would leave.
+        determined: usize,
+    },
+}
+
+impl ConstraintError {
+    /// The name of the first leg that it is about.
+    pub fn leg(&self) -> Option<&str> {
+        match self {
+            Self::Singular { leg, .. } => Some(leg),
+            Self::Several { legs, .. } => legs.first().map(String::as_str),
+        }
+    }
+}
+
+/// The coordinates that follow from the others, and how.
+#[derive(Clone, Debug)]
+pub(crate) struct Dependent {
+    /// The numbers of the independent coordinates among all task coordinates.
+    pub independent: Vec<usize>,
+    /// The numbers of the dependent ones.
+    pub coordinates: Vec<usize>,
+    steps: Vec<Step>,
+    /// Constraints that are not used by a step.
+    checks: Vec<Constraint>,
+    /// The bits of a [`Mode`] on which the dependent coordinates depend.
+    bits: Vec<u32>,
+    /// The size of the mechanism, metres.
+    size: f64,
+}
+
+/// One step of the solution.
+#[derive(Clone, Debug)]
+struct Step {
+    solution: Closed,
+    /// The bit of its choice in a [`Mode`], if it has two solutions.
+    bit: Option<u32>,
+}
+
+/// How dependent coordinates of one section follow from the others.
+#[derive(Clone, Debug)]
+enum Closed {
+    /// They keep their values at home: the leg's section can only move along the intersection motion.
+    Constant { leg: usize, section: Section, coordinates: Vec<usize> },
+    /// One coordinate follows from a condition.
+    Condition { constraint: Constraint, coordinate: usize, quantity: Quantity },
+    /// They follow from the one joint that moves.
+    Joint(OneJoint),
+}
+
+/// A condition on a section of a leg.
+#[derive(Clone, Copy, Debug)]
+struct Constraint {
+    leg: usize,
+    section: Section,
+    condition: Condition,
+}
+
+impl Dependent {
+    /// The dependent coordinates of a mechanism with these legs and this mobility, or `None` if all coordinates are
+    /// independent. Lengths are compared with `size`, metres.
+    ///
+    /// # Errors
+    /// The first leg whose constraint has no closed form.
+    pub fn new(
+        task: &Task,
+        legs: &[CompiledLeg],
+        names: &[&str],
+        mobility: usize,
+        size: f64,
+    ) -> Result<Option<Self>, ConstraintError> {
+        let mut steps: Vec<Closed> = Vec::new();
+        let mut checks = Vec::new();
+        for section in order(task) {
+            let mut constraining: Vec<usize> = (0..legs.len())
+                .filter(|&leg| legs[leg].section(section).partial.is_some())
+                .collect();
+            // The leg with the most constraints; the others can only repeat them.
+            let locked = |leg: &usize| constraints(legs, *leg, section).count();
+            constraining.sort_by_key(|leg| std::cmp::Reverse(locked(leg)));
+            let Some((&leg, further)) = constraining.split_first() else { continue };
+            let step = closed(task, legs, leg, section, size)
+                .ok_or_else(|| ConstraintError::Singular { leg: names[leg].to_owned(), section })?;
+            steps.push(step);
+            checks.extend(further.iter().flat_map(|&leg| constraints(legs, leg, section)));
+        }
+        if steps.is_empty() {
+            return Ok(None);
+        }
+        let mut coordinates: Vec<usize> = steps.iter().flat_map(Closed::coordinates).collect();
+        coordinates.sort_unstable();
+        let all = 0..task.coordinates.len();
+        let independent = all.filter(|i| !coordinates.contains(i)).collect();
+        let steps =
+            steps.into_iter().map(|solution| Step { solution, bit: None }).collect::<Vec<_>>();
+        let count = task.coordinates.len();
+        let determined = count - coordinates.len();
+        if determined != mobility {
+            let constrains = |leg: &usize| {
+                [&legs[*leg].lower, &legs[*leg].upper].iter().any(|s| s.partial.is_some())
+            };
+            let legs = (0..legs.len()).filter(constrains).map(|leg| names[leg].to_owned());
+            let legs = legs.collect();
+            return Err(ConstraintError::Several { legs, mobility, determined });
+        }
+        Ok(Some(Self { independent, coordinates, steps, checks, bits: Vec::new(), size }))
+    }
+
+    /// For each two-valued choice of the steps, the leg that it belongs to.
+    pub fn choices(&self) -> impl Iterator<Item = usize> + '_ {
+        self.steps.iter().filter(|step| step.solution.has_choice()).map(|step| step.solution.leg())
+    }
+
+    /// Takes the bits of the choices from a layout that was made for them.
+    pub(super) fn set_bits(&mut self, task: &Task, layout: &ModeLayout, legs: &[CompiledLeg]) {
+        let mut given = vec![0; legs.len()];
+        for step in &mut self.steps {
+            if step.solution.has_choice() {
+                let leg = step.solution.leg();
+                step.bit = layout.pose_bits(leg).nth(given[leg]);
+                given[leg] += 1;
+            }
+        }
+        let mut bits: Vec<u32> = self.steps.iter().filter_map(|step| step.bit).collect();
+        let used = self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()));
+        let checked = self.checks.iter().map(|check| (check.leg, check.section));
+        for (leg, section) in used.chain(checked) {
+            if follows(task, &legs[leg], section) {
+                bits.extend(layout.section_bit(leg, legs[leg].split_section));
+            }
+        }
+        bits.sort_unstable();
+        bits.dedup();
+        self.bits = bits;
+    }
+
+    /// The number of combinations of choices on which the dependent coordinates depend.
+    pub fn combinations(&self) -> usize {
+        1 << self.bits.len()
+    }
+
+    /// The mode with one of these combinations, and plus for all other choices.
+    pub fn mode(&self, combination: usize) -> Mode {
+        let bits = self.bits.iter().enumerate();
+        Mode(bits.fold(0, |mode, (i, bit)| mode | (combination as u64 >> i & 1) << bit))
+    }
+
+    /// The number of the combination that a mode has.
+    pub fn combination(&self, mode: Mode) -> usize {
+        let bits = self.bits.iter().enumerate();
+        bits.fold(0, |number, (i, bit)| number | ((mode.0 >> bit & 1) as usize) << i)
+    }
+
+    /// All choices on which the dependent coordinates depend, as the minus signs of a mode.
+    pub fn mask(&self) -> Mode {
+        self.mode(self.combinations() - 1)
+    }
+
+    /// The modes with every combination of the steps' own choices, and plus for all others.
+    pub fn step_modes(&self) -> impl Iterator<Item = Mode> + '_ {
+        let bits: Vec<u32> = self.steps.iter().filter_map(|step| step.bit).collect();
+        (0..1u64 << bits.len()).map(move |combination| {
+            let bits = bits.iter().enumerate();
+            Mode(bits.fold(0, |mode, (i, bit)| mode | (combination >> i & 1) << bit))
+        })
+    }
+
+    /// Computes the dependent coordinates of a pose, whose independent ones are given, in a mode. Angles, and
+    /// coordinates that nothing determines, are those nearest to what `pose` holds.
+    ///
+    /// # Errors
+    /// The leg whose constraint no value of the dependent coordinates satisfies.
+    pub fn complete(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        pose: &mut [f64],
+    ) -> Result<(), Unreachable> {
+        for step in &self.steps {
+            let branch = step.bit.is_some_and(|bit| mode.0 >> bit & 1 == 1);
+            let sign = if branch { -1.0 } else { 1.0 };
+            let (leg, section) = (step.solution.leg(), step.solution.section());
+            let missed = |deficit| Unreachable { leg, section, deficit };
+            match &step.solution {
+                Closed::Constant { coordinates, .. } => {
+                    for &coordinate in coordinates {
+                        pose[coordinate] = manipulator.task().coordinates[coordinate].home;
+                    }
+                }
+                Closed::Condition { constraint, coordinate, .. } => {
+                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
+                    let task = manipulator.task();
+                    let target =
+                        |pose: &[f64]| target_of(task, &manipulator.legs[leg], section, tau, pose);
+                    let held = pose[*coordinate];
+                    let function = constraint.function(task, target, *coordinate, pose, self.size);
+                    pose[*coordinate] = function
+                        .zero(sign, held)
+                        .map_err(|value| missed(constraint.condition.deficit(value)))?;
+                }
+                Closed::Joint(joint) => {
+                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
+                    joint.solve(manipulator, tau, sign, pose).map_err(missed)?;
+                }
+            }
+        }
+        for check in &self.checks {
+            let Constraint { leg, section, condition } = *check;
+            let tau = manipulator.tau_before(leg, section, pose, mode)?;
+            let legs = &manipulator.legs;
+            let target = target_of(manipulator.task(), &legs[leg], section, tau, pose);
+            let value = condition.value(&target);
+            let deficit = condition.deficit(value);
+            let unit = if deficit.quantity == Quantity::Length { self.size } else { 1.0 };
+            if deficit.excess > OBEYED * unit {
+                return Err(Unreachable { leg, section, deficit });
+            }
+        }
+        Ok(())
+    }
+
+    /// The independent coordinates among all of a pose.
+    pub fn independent_of(&self, manipulator: &Manipulator, all: &[f64]) -> Vec<f64> {
+        let mut pose = all.to_vec();
+        for step in &self.steps {
+            if let Closed::Joint(joint) = &step.solution {
+                joint.resolve_pole(manipulator, &mut pose);
+            }
+        }
+        self.independent.iter().map(|&i| pose[i]).collect()
+    }
+
+    /// The constraints that only repeat others, as the legs and sections that they belong to.
+    pub fn checked(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
+        self.checks.iter().map(|check| (check.leg, check.section))
+    }
+
+    /// The legs and sections whose constraints determine the dependent coordinates.
+    pub fn constraining(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
+        self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()))
+    }
+
+    /// The leg, the section and the numbers of the locked joints of each step, which are as many as it has
+    /// dependent coordinates.
+    pub fn locked<'a>(
+        &'a self,
+        legs: &'a [CompiledLeg],
+    ) -> impl Iterator<Item = (usize, Section, usize)> + 'a {
+        self.constraining().flat_map(|(leg, section)| {
+            let partial = legs[leg].section(section).partial;
+            let joints = partial.into_iter().flat_map(|partial| partial.locked_joints());
+            joints.map(move |joint| (leg, section, joint))
+        })
+    }
+}
+
+/// The sections in the order in which their dependent coordinates are found: first the one that is taken modulo
+/// the intersection motion.
+fn order(task: &Task) -> [Section; 2] {
+    match task.shared() {
+        Some(MotionType::Rotation) | None => [Section::Lower, Section::Upper],
+        Some(MotionType::Translation) => [Section::Upper, Section::Lower],
+    }
+}
+
+/// The constraints of a leg's section.
+fn constraints(
+    legs: &[CompiledLeg],
+    leg: usize,
+    section: Section,
+) -> impl Iterator<Item = Constraint> + use<> {
+    let compiled = legs[leg].section(section);
+    let (chain, partial) = (compiled.chain, compiled.partial);
+    let locked = partial.into_iter().flat_map(|partial| partial.locked_joints());
+    locked.filter_map(move |joint| {
+        let condition = Condition::new(&chain, joint, JointDisplacement::Value(0.0))?;
+        Some(Constraint { leg, section, condition })
+    })
+}
+
+/// The numbers of a section's coordinates.
+fn coordinates_of(task: &Task, section: Section) -> Vec<usize> {
+    match section {
+        Section::Lower => (0..task.lower_count).collect(),
+        Section::Upper => (task.lower_count..task.coordinates.len()).collect(),
+    }
+}
+
+/// Whether the displacement τ of a leg's imaginary joint, which the other section tells, matters to this one. It
+/// does not where the section is the first to be solved: then it contains the intersection motion itself.
+fn follows(task: &Task, leg: &CompiledLeg, section: Section) -> bool {
+    leg.bridge().is_some_and(|bridge| bridge != section) && order(task)[0] != section
+}
+
+/// How the constraints of a leg's section determine coordinates; `None` if they determine none at home.
+fn closed(
+    task: &Task,
+    legs: &[CompiledLeg],
+    leg: usize,
+    section: Section,
+    size: f64,
+) -> Option<Closed> {
+    let (compiled, subspace) = match section {
+        Section::Lower => (&legs[leg].lower, &task.lower),
+        Section::Upper => (&legs[leg].upper, &task.upper),
+    };
+    let partial = compiled.partial?;
+    let coordinates = coordinates_of(task, section);
+    let bridge = legs[leg].imaginary_joint().filter(|_| legs[leg].split_section == section);
+    let modulo = task.shared().is_some() && order(task)[0] == section;
+    let (first, second) = partial.free();
+    match (partial.locked_joints().count(), second) {
+        _ if modulo && second.is_none() && first == bridge => {
+            Some(Closed::Constant { leg, section, coordinates })
+        }
+        // The imaginary joint rotates about the axis of the first Euler angle, and does not change the others.
+        (1, Some(second))
+            if subspace.kind == SubspaceKind::Spherical && bridge.is_some() && !modulo =>
+        {
+            let screw = compiled.screws[second];
+            Some(Closed::Joint(OneJoint::last_angle(task, leg, section, screw)))
+        }
+        (1, _) => {
+            let constraint = constraints(legs, leg, section).next()?;
+            // At home τ is zero.
+            let tau = JointDisplacement::Value(0.0);
+            let home = task.home();
+            let slope = |&coordinate: &usize| {
+                let unit = match task.coordinates[coordinate].quantity {
+                    Quantity::Angle => 1.0,
+                    Quantity::Length => size,
+                };
+                let target = |pose: &[f64]| target_of(task, &legs[leg], section, tau, pose);
+                let mut pose = home.clone();
+                let function = constraint.function(task, target, coordinate, &mut pose, size);
+                (function.slope(home[coordinate]) * unit).abs() / constraint.unit(size)
+            };
+            let mut preferred = coordinates;
+            preferred
+                .sort_by_key(|&i| (preference(task.coordinates[i].kind()), std::cmp::Reverse(i)));
+            let steepest = preferred.iter().map(slope).fold(0.0, f64::max);
+            if steepest < LEVEL {
+                return None;
+            }
+            let coordinate = preferred.into_iter().find(|i| slope(i) >= STEEP * steepest)?;
+            let quantity = task.coordinates[coordinate].quantity;
+            Some(Closed::Condition { constraint, coordinate, quantity })
+        }
+        _ => OneJoint::new(task, leg, section, first.map(|joint| compiled.screws[joint]))
+            .map(Closed::Joint),
+    }
+}
+
+/// The order in which coordinates are made dependent: angles before lengths.
+fn preference(kind: CoordinateKind) -> u8 {
+    match kind {
+        CoordinateKind::Zeta | CoordinateKind::Theta | CoordinateKind::Phi => 0,
+        CoordinateKind::Psi | CoordinateKind::Nu => 1,
+        CoordinateKind::Xi | CoordinateKind::Mu => 2,
+        CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Z | CoordinateKind::W => 3,
+    }
+}
+
+impl Closed {
+    fn leg(&self) -> usize {
+        match self {
+            Self::Constant { leg, .. } => *leg,
+            Self::Condition { constraint, .. } => constraint.leg,
+            Self::Joint(joint) => joint.leg,
+        }
+    }
+
+    fn section(&self) -> Section {
+        match self {
+            Self::Constant { section, .. } => *section,
+            Self::Condition { constraint, .. } => constraint.section,
+            Self::Joint(joint) => joint.section,
+        }
+    }
+
+    /// The coordinates that it determines.
+    fn coordinates(&self) -> Vec<usize> {
+        match self {
+            Self::Constant { coordinates, .. } => coordinates.clone(),
+            Self::Condition { coordinate, .. } => vec![*coordinate],
+            Self::Joint(joint) => joint.coordinates.clone(),
+        }
+    }
+
+    fn has_choice(&self) -> bool {
+        match self {
+            Self::Constant { .. } => false,
+            Self::Condition { constraint, quantity, .. } => constraint.has_choice(*quantity),
+            Self::Joint(joint) => joint.has_choice(),
+        }
+    }
+}
+
+impl Constraint {
+    /// The unit of the condition's value.
+    fn unit(&self, size: f64) -> f64 {
+        match self.condition {
+            Condition::Circle { .. } => size * size,
+            Condition::Line { .. } | Condition::CarriedLine { .. } | Condition::Flat { .. } => size,
+            Condition::Heading { .. } | Condition::Cone { .. } => 1.0,
+        }
+    }
+
+    /// Whether two values of a coordinate satisfy the condition.
+    fn has_choice(&self, quantity: Quantity) -> bool {
+        match self.condition {
+            Condition::Circle { .. } => true,
+            Condition::Line { .. } | Condition::CarriedLine { .. } | Condition::Cone { .. } => {
+                quantity == Quantity::Angle
+            }
+            // The opposite heading is no solution.
+            Condition::Heading { .. } | Condition::Flat { .. } => false,
+        }
+    }
+
+    /// The value of the condition as a function of one coordinate, with the others as in `pose`. `target` gives
+    /// the displacement that the condition is on.
+    fn function(
+        &self,
+        task: &Task,
+        target: impl Fn(&[f64]) -> Displacement,
+        coordinate: usize,
+        pose: &mut [f64],
+        size: f64,
+    ) -> Function {
+        let held = pose[coordinate];
+        let mut value = |t: f64| {
+            pose[coordinate] = t;
+            self.condition.value(&target(pose))
+        };
+        let home = task.coordinates[coordinate].home;
+        // On a cylinder angles are counted, and the condition is linear in them.
+        let counted = matches!(self.condition, Condition::Flat { .. });
+        let function = match task.coordinates[coordinate].quantity {
+            Quantity::Angle if !counted => Function::wave(home, self.unit(size), &mut value),
+            Quantity::Angle => Function::polynomial(home, 1.0, self.unit(size), &mut value),
+            Quantity::Length => Function::polynomial(home, size, self.unit(size), &mut value),
+        };
+        pose[coordinate] = held;
+        function
+    }
+}
+
+/// What a section's chain has to reach at a pose: the section's displacement, after that of the imaginary joint
+/// if it belongs to the other section, where its displacement along the intersection motion is `tau`.
+fn target_of(
+    task: &Task,
+    leg: &CompiledLeg,
+    section: Section,
+    tau: JointDisplacement,
+    pose: &[f64],
+) -> Displacement {
+    let shifted = follows(task, leg, section);
+    match section {
+        Section::Lower => {
+            let v = task.lower(pose);
+            if shifted { task.lower_intersection.after(&v, tau) } else { v }
+        }
+        Section::Upper => {
+            let b = task.upper(&pose[task.lower_count..]);
+            // exp(-I τ) · b
+            if shifted { task.upper_intersection.before(&b, tau.inverse()) } else { b }
+        }
+    }
+}
+
+impl Manipulator {
+    /// The displacement τ of a leg along the intersection motion, where that follows from the section other than
+    /// this one; zero otherwise.
+    ///
+    /// # Errors
+    /// The other section is out of reach.
+    fn tau_before(
+        &self,
+        number: usize,
+        section: Section,
+        pose: &[f64],
+        mode: Mode,
+    ) -> Result<JointDisplacement, Unreachable> {
+        let leg = &self.legs[number];
+        if !follows(self.task(), leg, section) {
+            return Ok(JointDisplacement::Value(0.0));
+        }
+        let bridge = leg.split_section;
+        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: bridge, deficit };
+        let (task, branches) = (self.task(), self.branches(mode, number));
+        match bridge {
+            Section::Lower => {
+                let v = task.lower(pose);
+                let displacements = leg.lower.inverse(&v, branches.lower).map_err(missed)?;
+                Ok(leg.unwound(leg.step(&displacements), 0.0).inverse())
+            }
+            Section::Upper => {
+                let b = task.upper(&pose[task.lower_count..]);
+                let displacements = leg.upper.inverse(&b, branches.upper).map_err(missed)?;
+                Ok(leg.unwound(leg.step(&displacements), 0.0))
+            }
+        }
+    }
+}
+
+/// The angle plus full revolutions, within π of `reference`.
+fn near(angle: f64, reference: f64) -> f64 {
+    angle - TAU * whole_turns(angle - reference)
+}

@@ -1,0 +1,308 @@
+//! A section with one joint that moves, so that its motion has one parameter: the joint's displacement `q`. One
+//! coordinate of the section tells `q`, and `q` the other coordinates.
+//!
+//! Of a rotation about an axis `s` the second Euler angle tells `q`: the third direction makes the angle `ξ` with
+//! itself before. Where the platform's home orientation is the identity that is
+//! `sin(ξ/2) = ρ sin(q/2)`, with `ρ` the sine of the angle between `s` and the third direction.
+
+use super::near;
+use crate::chain::{REACH_TOLERANCE, ReachDeficit};
+use crate::group::{
+    Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
+    linear, rotation_about,
+};
+use crate::manipulator::Manipulator;
+use crate::manipulator::leg::Section;
+use crate::numeric::Quantity;
+use crate::numeric::angle::unit;
+use crate::task::Task;
+use nalgebra::{Complex, Matrix3};
+
+/// An axis whose angle with the third direction has a sine below this is along that direction.
+const ALONG: f64 = 1e-9;
+
+/// How a section's coordinates follow from its one joint.
+#[derive(Clone, Debug)]
+pub(super) struct OneJoint {
+    pub leg: usize,
+    pub section: Section,
+    /// The numbers of the dependent coordinates.
+    pub coordinates: Vec<usize>,
+    /// The number of the section's first coordinate.
+    first: usize,
+    motion: Motion,
+}
+
+/// The motion of the section.
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    /// It does not move.
+    None,
+    /// A rotation in a plane; the third coordinate tells the joint.
+    Turn(LocalTwist),
+    /// A translation; this coordinate of the section tells the joint.
+    Slide(LocalTwist, usize),
+    /// A rotation about the third direction, told by the first Euler angle.
+    Third,
+    /// A rotation about an axis, told by the second Euler angle.
+    Axis(LocalTwist),
+    /// Any rotation about the third direction, after a rotation about this axis that is told by the second
+    /// Euler angle. The third Euler angle follows.
+    LastAngle(LocalTwist),
+}
+
+impl OneJoint {
+    /// The motion of a section with the screw `free`, or of one without joints. `None` where its coordinates do
+    /// not tell the joint.
+    pub fn new(
+        task: &Task,
+        leg: usize,
+        section: Section,
+        free: Option<LocalTwist>,
+    ) -> Option<Self> {
+        let (subspace, first) = of(task, section);
+        let count = subspace.dimension();
+        let (motion, given) = match (subspace.kind, free) {
+            (_, None) => (Motion::None, None),
+            (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (Motion::Turn(s), Some(2)),
+            (SubspaceKind::Planar, Some(s)) => {
+                let longer = usize::from(s.z.abs() > s.y.abs());
+                (Motion::Slide(s, longer), Some(longer))
+            }
+            (SubspaceKind::Spherical, Some(s)) if s.x.hypot(s.y) < ALONG => {
+                (Motion::Third, Some(0))
+            }
+            (SubspaceKind::Spherical, Some(s)) => (Motion::Axis(s), Some(1)),
+            // With one joint, these have one constraint.
+            (
+                SubspaceKind::Identity
+                | SubspaceKind::Cylindrical
+                | SubspaceKind::TranslationalPlane,
+                Some(_),
+            ) => return None,
+        };
+        let coordinates = (0..count).filter(|i| Some(*i) != given).map(|i| first + i).collect();
+        Some(Self { leg, section, coordinates, first, motion })
+    }
+
+    /// A rotation about the third direction, and one about the axis `s`.
+    pub fn last_angle(task: &Task, leg: usize, section: Section, s: LocalTwist) -> Self {
+        let (_, first) = of(task, section);
+        let motion = Motion::LastAngle(s);
+        Self { leg, section, coordinates: vec![first + 2], first, motion }
+    }
+
+    /// Whether two displacements of the joint belong to a value of the coordinate that tells it.
+    pub fn has_choice(&self) -> bool {
+        matches!(self.motion, Motion::Axis(_) | Motion::LastAngle(_))
+    }
+
+    /// Gives the first Euler angle the whole rotation about the third direction where the section makes no other.
+    /// At home the Euler angles may be singular, so that the first and the third share that rotation.
+    pub fn resolve_pole(&self, manipulator: &Manipulator, pose: &mut [f64]) {
+        if !matches!(self.motion, Motion::Third) {
+            return;
+        }
+        let task = manipulator.task();
+        let (v, b) = task.sections(pose);
+        let displacement = if self.section == Section::Lower { v } else { b };
+        let home = |i: usize| task.coordinates[self.first + i].home;
+        pose[self.first] = near(of_displacement(&displacement, home)[0], home(0));
+    }
+
+    /// Computes the dependent coordinates of a pose, where the leg's displacement along the intersection motion
+    /// is `tau` if that belongs to the other section.
+    ///
+    /// # Errors
+    /// By how much the coordinate that tells the joint is out of its range.
+    pub fn solve(
+        &self,
+        manipulator: &Manipulator,
+        tau: JointDisplacement,
+        sign: f64,
+        pose: &mut [f64],
+    ) -> Result<(), ReachDeficit> {
+        let task = manipulator.task();
+        let home = |i: usize| task.coordinates[self.first + i].home;
+        let from_home = |i: usize| pose[self.first + i] - home(i);
+        // g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
+        let subspace = of(task, self.section).0;
+        let shifted = |motion: Displacement| {
+            let leg = &manipulator.legs[self.leg];
+            match self.section {
+                _ if leg.bridge().is_none_or(|bridge| bridge == self.section) => motion,
+                Section::Lower => task.lower_intersection.after(&motion, tau.inverse()),
+                Section::Upper => task.upper_intersection.before(&motion, tau),
+            }
+        };
+        let still = || shifted(subspace.kind.identity());
+        let found: [f64; 3] = match self.motion {
+            Motion::None => of_displacement(&still(), home),
+            Motion::Turn(s) => {
+                let rotation = unit(from_home(2)) * still().planar().rotation.conj();
+                let q = if s.x < 0.0 { rotation.conj() } else { rotation };
+                of_displacement(
+                    &shifted(
+                        PlanarDisplacement::along_screw(&s, JointDisplacement::Direction(q)).into(),
+                    ),
+                    home,
+                )
+            }
+            Motion::Slide(s, given) => {
+                let at = |q: f64| {
+                    let along = linear(&s) * q;
+                    shifted(PlanarDisplacement::translation(along).into())
+                };
+                let part = |z: Complex<f64>| if given == 0 { z.re } else { z.im };
+                let [start, end] = [0.0, 1.0].map(|q| part(at(q).planar().translation));
+                let rate = end - start;
+                if rate.abs() < ALONG {
+                    return Err(ReachDeficit::length((from_home(given) - start).abs()));
+                }
+                of_displacement(&at((from_home(given) - start) / rate), home)
+            }
+            Motion::Third => {
+                for i in [1, 2] {
+                    pose[self.first + i] = home(i);
+                }
+                return Ok(());
+            }
+            Motion::Axis(s) | Motion::LastAngle(s) => {
+                let xi = pose[self.first + 1];
+                let mut found = match task.home_orientation_inverse() {
+                    None => from_identity(&s, xi, sign)?,
+                    Some(inverse) => from_orientation(&s, &inverse.transpose(), xi, sign)?,
+                };
+                found[0] += match still() {
+                    Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
+                    _ => 0.0,
+                };
+                found
+            }
+        };
+        for &coordinate in &self.coordinates {
+            let value = found[coordinate - self.first];
+            let c = &task.coordinates[coordinate];
+            pose[coordinate] = match c.quantity {
+                Quantity::Angle if subspace.kind != SubspaceKind::Cylindrical => {
+                    near(value, pose[coordinate])
+                }
+                _ => value,
+            };
+        }
+        Ok(())
+    }
+}
+
+/// A section's subspace, and the number of its first coordinate.
+fn of(task: &Task, section: Section) -> (&Subspace, usize) {
+    match section {
+        Section::Lower => (&task.lower, 0),
+        Section::Upper => (&task.upper, task.lower_count),
+    }
+}
+
+/// The coordinates of a displacement of a section that has all coordinates of its subspace. A rotation about a
+/// centre is one about the third direction.
+fn of_displacement(g: &Displacement, home: impl Fn(usize) -> f64) -> [f64; 3] {
+    match g {
+        Displacement::Identity(_) => [0.0; 3],
+        Displacement::Planar(g) => {
+            [home(0) + g.translation.re, home(1) + g.translation.im, home(2) + g.rotation.arg()]
+        }
+        Displacement::Spherical(r) => [home(0) + r[(1, 0)].atan2(r[(0, 0)]), home(1), home(2)],
+        Displacement::Cylindrical(g) => [home(0) + g.angle, home(1) + g.advance, 0.0],
+        Displacement::Translational(t) => [home(0) + t.re, home(1) + t.im, 0.0],
+    }
+}
+
+/// The Euler angles of the rotation about `s` from the identity whose second angle is `xi`. They are continuous
+/// through `xi = 0`, where the half angles keep their directions.
+fn from_identity(s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDeficit> {
+    let rho = s.x.hypot(s.y);
+    let reduced = near(xi, 0.0);
+    let half = (0.5 * reduced).sin() / rho;
+    if half.abs() > 1.0 + REACH_TOLERANCE {
+        return Err(ReachDeficit::angle(reduced.abs() - 2.0 * rho.min(1.0).asin()));
+    }
+    let sin = half.clamp(-1.0, 1.0);
+    let cos = (1.0 - sin * sin).sqrt();
+    // The rotation is by ±q, with these the sine and the cosine of q/2. Its third column and its third row,
+    // over 2 sin(q/2), are regular.
+    let sin = sign * sin;
+    let column = [s.x * s.z * sin + s.y * cos, s.y * s.z * sin - s.x * cos];
+    let row = [s.x * s.z * sin - s.y * cos, s.y * s.z * sin + s.x * cos];
+    Ok([(sign * column[1]).atan2(sign * column[0]), xi, (sign * row[1]).atan2(-sign * row[0])])
+}
+
+/// The Euler angles of the rotation about `s` of the orientation `home` whose second angle is `xi`.
+fn from_orientation(
+    s: &LocalTwist,
+    home: &Matrix3<f64>,
+    xi: f64,
+    sign: f64,
+) -> Result<[f64; 3], ReachDeficit> {
+    let third = home.column(2).into_owned();
+    // cos ξ = c₀ + c₁ cos q + c₂ sin q
+    let c0 = s.z * s.dot(&third);
+    let z = Complex::new(third.z - c0, s.x * third.y - s.y * third.x);
+    let amplitude = z.norm();
+    let part = xi.cos() - c0;
+    if part.abs() > amplitude + REACH_TOLERANCE {
+        let nearest = (c0 + amplitude.copysign(part)).clamp(-1.0, 1.0).acos();
+        return Err(ReachDeficit::angle((near(xi, 0.0).abs() - nearest).abs()));
+    }
+    let upper = if near(xi, 0.0) < 0.0 { -1.0 } else { 1.0 };
+    let height = ((amplitude - part) * (amplitude + part)).max(0.0).sqrt();
+    let turn = z * Complex::new(part, sign * upper * height);
+    let r = rotation_about(s, turn / turn.norm()) * home;
+    Ok([
+        (upper * r[(1, 2)]).atan2(upper * r[(0, 2)]),
+        xi,
+        (upper * r[(2, 1)]).atan2(-upper * r[(2, 0)]),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::task::euler;
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    /// Rounding of a product of a few rotations.
+    const ROUNDING: f64 = 1e-12;
+
+    /// Whether a matrix is a rotation about `s`, and near to the identity where it is given.
+    fn keeps(r: &Matrix3<f64>, s: &Vector3<f64>) -> f64 {
+        (r * s - s).norm()
+    }
+
+    proptest! {
+        /// The Euler angles are those of a rotation about the axis.
+        #[test]
+        fn the_axis_is_kept(
+            x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -1.0..1.0_f64, share in -0.99..0.99_f64,
+            turn in -3.0..3.0_f64, tilt in 0.3..2.5_f64, roll in -3.0..3.0_f64,
+        ) {
+            let s = Vector3::new(x, y, z);
+            prop_assume!(s.norm() > 0.1 && x.hypot(y) > 0.1 * s.norm());
+            let s = s.normalize();
+            for sign in [-1.0, 1.0] {
+                let xi = share * 2.0 * s.x.hypot(s.y).asin();
+                let [zeta, xi, psi] = from_identity(&s, xi, sign).unwrap();
+                prop_assert!(keeps(&euler(zeta, xi, psi), &s) < ROUNDING);
+
+                let home = euler(turn, tilt, roll);
+                let r = rotation_about(&s, unit(2.0 * share)) * home;
+                let xi = r[(2, 2)].acos();
+                prop_assume!(xi.sin() > 1e-3);
+                for xi in [xi, -xi] {
+                    let [zeta, xi, psi] = from_orientation(&s, &home, xi, sign).unwrap();
+                    let found = euler(zeta, xi, psi) * home.transpose();
+                    prop_assert!(keeps(&found, &s) < 1e3 * ROUNDING, "{}", keeps(&found, &s));
+                }
+            }
+        }
+    }
+}
