@@ -6,7 +6,16 @@ use fastrand::Rng;
 use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Kind, Options, PAIRS, constrained, mechanism};
+
+/// A mechanism of a pair: one without constraining legs, and one with each kind of them.
+fn manipulators(rng: &mut Rng, pair: [Kind; 2], options: Options) -> Vec<Manipulator> {
+    let free = std::iter::once(mechanism(rng, pair, options)).collect::<Vec<_>>();
+    let lacks = [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
+    let tied = lacks.into_iter().filter_map(|lacks| constrained(rng, pair, lacks, false, options));
+    let all = free.into_iter().chain(tied.collect::<Vec<_>>());
+    all.map(|(mechanism, d)| Manipulator::with_decomposition(mechanism, d).unwrap()).collect()
+}
 
 #[test]
 fn inverse_kinematics_does_not_allocate() {
@@ -17,27 +26,27 @@ fn inverse_kinematics_does_not_allocate() {
     for pair in PAIRS {
         for limited in [0.0, 0.5] {
             let options = Options { limited, balls: true };
-            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            let mut solution = manipulator.solution();
-            let mut drives = manipulator.actuated_joints();
-            let mut all = manipulator.all_modes();
-            let mode = manipulator.home_mode();
-            for _ in 0..50 {
-                let mut pose = manipulator.home_pose();
-                pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
-                let info = measure(|| {
-                    reached += u32::from(
-                        manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some(),
-                    );
-                    manipulator.inverse_near(&pose, mode, &mut solution).unwrap();
-                    manipulator.inverse_actuated(&pose, mode, &mut drives).unwrap();
-                    manipulator.inverse_all(&pose, &mut all).unwrap();
-                    for mode in all.modes(&manipulator) {
-                        manipulator.solution_in_mode(&all, mode, &mut solution);
-                    }
-                });
-                assert_eq!(info.count_total, 0, "{pair:?}");
+            for manipulator in manipulators(&mut rng, pair, options) {
+                let mut solution = manipulator.solution();
+                let mut drives = manipulator.actuated_joints();
+                let mut all = manipulator.all_modes();
+                let mode = manipulator.home_mode();
+                for _ in 0..50 {
+                    let mut pose = manipulator.home_pose();
+                    pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
+                    let info = measure(|| {
+                        reached += u32::from(
+                            manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some(),
+                        );
+                        manipulator.inverse_near(&pose, mode, &mut solution).unwrap();
+                        manipulator.inverse_actuated(&pose, mode, &mut drives).unwrap();
+                        manipulator.inverse_all(&pose, &mut all).unwrap();
+                        for mode in all.modes(&manipulator) {
+                            manipulator.solution_in_mode(&all, mode, &mut solution);
+                        }
+                    });
+                    assert_eq!(info.count_total, 0, "{pair:?}");
+                }
             }
         }
     }
@@ -51,27 +60,28 @@ fn velocities_do_not_allocate() {
     for pair in PAIRS {
         for balls in [false, true] {
             let options = Options { limited: 0.0, balls };
-            let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            let mode = manipulator.home_mode();
-            let (mut solution, mut motion) = (manipulator.solution(), manipulator.joint_motion());
-            let (mut jacobians, length) =
-                (manipulator.jacobians(), manipulator.characteristic_length());
-            let mut singularities = manipulator.singularities();
-            let rates: Vec<f64> = manipulator.home_pose().iter().map(|_| rng.f64()).collect();
-            for _ in 0..50 {
-                let mut pose = manipulator.home_pose();
-                pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
-                let info = measure(|| {
-                    if manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some() {
-                        manipulator.velocity(&solution, &rates, &rates, &mut motion).unwrap();
-                        manipulator.differentiate(&solution, &mut jacobians).unwrap();
-                        manipulator.conditioning(&jacobians, length);
-                        manipulator.measure_singularities(&jacobians, &mut singularities);
-                        moved += 1;
-                    }
-                });
-                assert_eq!(info.count_total, 0, "{pair:?}");
+            for manipulator in manipulators(&mut rng, pair, options) {
+                let mode = manipulator.home_mode();
+                let (mut solution, mut motion) =
+                    (manipulator.solution(), manipulator.joint_motion());
+                let (mut jacobians, length) =
+                    (manipulator.jacobians(), manipulator.characteristic_length());
+                let mut singularities = manipulator.singularities();
+                let rates: Vec<f64> = manipulator.home_pose().iter().map(|_| rng.f64()).collect();
+                for _ in 0..50 {
+                    let mut pose = manipulator.home_pose();
+                    pose.iter_mut().for_each(|q| *q += 0.5 * (rng.f64() - 0.5));
+                    let info = measure(|| {
+                        if manipulator.inverse(&pose, mode, &mut solution).unwrap().is_some() {
+                            manipulator.velocity(&solution, &rates, &rates, &mut motion).unwrap();
+                            manipulator.differentiate(&solution, &mut jacobians).unwrap();
+                            manipulator.conditioning(&jacobians, length);
+                            manipulator.measure_singularities(&jacobians, &mut singularities);
+                            moved += 1;
+                        }
+                    });
+                    assert_eq!(info.count_total, 0, "{pair:?}");
+                }
             }
         }
     }

@@ -248,8 +248,7 @@ impl Dependent {
         pose: &mut [f64],
     ) -> Result<(), Unreachable> {
         for step in &self.steps {
-            let branch = step.bit.is_some_and(|bit| mode.0 >> bit & 1 == 1);
-            let sign = if branch { -1.0 } else { 1.0 };
+            let sign = step.sign(mode);
             let (leg, section) = (step.solution.leg(), step.solution.section());
             let missed = |deficit| Unreachable { leg, section, deficit };
             match &step.solution {
@@ -290,12 +289,13 @@ impl Dependent {
         Ok(())
     }
 
-    /// The independent coordinates among all of a pose.
+    /// The independent coordinates among all of a pose. Of the two triples of Euler angles of an orientation it takes
+    /// the one in the branch at home.
     pub fn independent_of(&self, manipulator: &Manipulator, all: &[f64]) -> Vec<f64> {
         let mut pose = all.to_vec();
         for step in &self.steps {
             if let Closed::Joint(joint) = &step.solution {
-                joint.resolve_pole(manipulator, &mut pose);
+                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), &mut pose);
             }
         }
         self.independent.iter().map(|&i| pose[i]).collect()
@@ -429,6 +429,13 @@ fn preference(kind: CoordinateKind) -> u8 {
         CoordinateKind::Psi | CoordinateKind::Nu => 1,
         CoordinateKind::Xi | CoordinateKind::Mu => 2,
         CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Z | CoordinateKind::W => 3,
+    }
+}
+
+impl Step {
+    /// The sign of its choice in a mode.
+    fn sign(&self, mode: Mode) -> f64 {
+        if self.bit.is_some_and(|bit| mode.0 >> bit & 1 == 1) { -1.0 } else { 1.0 }
     }
 }
 

@@ -237,6 +237,9 @@ pub struct ActuatedJoints {
     actuated: Vec<f64>,
     imaginary: Vec<f64>,
     within_limits: bool,
+    /// All coordinates of the pose, where some are dependent.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    all: Vec<f64>,
 }
 
 impl ActuatedJoints {
@@ -320,6 +323,7 @@ impl Manipulator {
             actuated: vec![0.0; self.actuated.len()],
             imaginary: vec![0.0; self.imaginary.len()],
             within_limits: false,
+            all: vec![0.0; self.dependent.as_ref().map_or(0, |_| self.task.coordinates.len())],
         }
     }
 
@@ -441,10 +445,15 @@ impl Manipulator {
         self.check_pose(pose)?;
         let (v, b) = match &self.dependent {
             None => self.task.sections(pose),
-            Some(_) => match self.completed(pose, mode) {
-                Ok(pose) => self.task.sections(&pose),
-                Err(_) => return Ok(None),
-            },
+            Some(dependent) => {
+                let all = &mut buffer.all;
+                all.iter_mut().zip(&self.task.coordinates).for_each(|(q, c)| *q = c.home);
+                dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
+                if dependent.complete(self, mode, all).is_err() {
+                    return Ok(None);
+                }
+                self.task.sections(all)
+            }
         };
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {

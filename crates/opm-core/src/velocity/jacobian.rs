@@ -378,7 +378,8 @@ impl Manipulator {
         let rates = |coordinate: usize| -> [f64; 6] {
             let column = out.pose.column(coordinate);
             std::array::from_fn(|row| {
-                if row < count { out.locked.row(row).transpose().dot(&column) } else { 0.0 }
+                let terms = column.iter().enumerate().map(|(i, by)| out.locked[(row, i)] * by);
+                if row < count { terms.sum() } else { 0.0 }
             })
         };
         let mut matrix = [[0.0; 6]; 6];

@@ -17,6 +17,7 @@ use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
 use crate::task::Task;
 use nalgebra::{Complex, Matrix3};
+use std::f64::consts::PI;
 
 /// An axis whose angle with the third direction has a sine below this is along that direction.
 const ALONG: f64 = 1e-9;
@@ -97,17 +98,31 @@ impl OneJoint {
         matches!(self.motion, Motion::Axis(_) | Motion::LastAngle(_))
     }
 
-    /// Gives the first Euler angle the whole rotation about the third direction where the section makes no other.
-    /// At home the Euler angles may be singular, so that the first and the third share that rotation.
-    pub fn resolve_pole(&self, manipulator: &Manipulator, pose: &mut [f64]) {
-        if !matches!(self.motion, Motion::Third) {
-            return;
-        }
+    /// Chooses among the Euler angles of an orientation. Where the section only rotates about the third direction,
+    /// the first angle gets the whole rotation: at home the angles may be singular, so that the first and the third
+    /// share it. Elsewhere there are two triples, and the one is chosen that belongs to the branch `sign`.
+    pub fn choose_angles(&self, manipulator: &Manipulator, sign: f64, pose: &mut [f64]) {
         let task = manipulator.task();
-        let (v, b) = task.sections(pose);
-        let displacement = if self.section == Section::Lower { v } else { b };
         let home = |i: usize| task.coordinates[self.first + i].home;
-        pose[self.first] = near(of_displacement(&displacement, home)[0], home(0));
+        match self.motion {
+            Motion::None | Motion::Turn(_) | Motion::Slide(..) => {}
+            Motion::Third => {
+                let (v, b) = task.sections(pose);
+                let displacement = if self.section == Section::Lower { v } else { b };
+                pose[self.first] = near(of_displacement(&displacement, home)[0], home(0));
+            }
+            Motion::Axis(s) | Motion::LastAngle(s) => {
+                let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[self.first + i]);
+                let other = [near(zeta + PI, home(0)), -xi, near(psi + PI, home(2))];
+                let off = |[_, xi, psi]: [f64; 3]| {
+                    let found = angles(task, &s, xi, sign);
+                    found.map_or(f64::INFINITY, |found| near(found[2] - psi, 0.0).abs())
+                };
+                if off(other) < off([zeta, xi, psi]) {
+                    pose[self.first..self.first + 3].copy_from_slice(&other);
+                }
+            }
+        }
     }
 
     /// Computes the dependent coordinates of a pose, where the leg's displacement along the intersection motion
@@ -169,10 +184,7 @@ impl OneJoint {
             }
             Motion::Axis(s) | Motion::LastAngle(s) => {
                 let xi = pose[self.first + 1];
-                let mut found = match task.home_orientation_inverse() {
-                    None => from_identity(&s, xi, sign)?,
-                    Some(inverse) => from_orientation(&s, &inverse.transpose(), xi, sign)?,
-                };
+                let mut found = angles(task, &s, xi, sign)?;
                 found[0] += match still() {
                     Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
                     _ => 0.0,
@@ -213,6 +225,14 @@ fn of_displacement(g: &Displacement, home: impl Fn(usize) -> f64) -> [f64; 3] {
         Displacement::Spherical(r) => [home(0) + r[(1, 0)].atan2(r[(0, 0)]), home(1), home(2)],
         Displacement::Cylindrical(g) => [home(0) + g.angle, home(1) + g.advance, 0.0],
         Displacement::Translational(t) => [home(0) + t.re, home(1) + t.im, 0.0],
+    }
+}
+
+/// The Euler angles of the platform after the rotation about `s` from home whose second angle is `xi`.
+fn angles(task: &Task, s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDeficit> {
+    match task.home_orientation_inverse() {
+        None => from_identity(s, xi, sign),
+        Some(inverse) => from_orientation(s, &inverse.transpose(), xi, sign),
     }
 }
 
