@@ -23,6 +23,9 @@ def draw():
         "translational-helical-3dof", "translational-helical-workspace.png", panels="slices",
         x="-450mm:450mm:451", y="-500mm:620mm:561", phi="0:600deg:6",
     )  # fmt: skip
+    workspace(
+        "five-bar", "gallery-five-bar.png", panels="slices", x="-270mm:270mm:541", y="50mm:420mm:371"
+    )
 
 
 def motion(mechanism, name, picture):

@@ -280,6 +280,17 @@ impl Manipulator {
             .collect()
     }
 
+    /// The coordinates that follow from those of the pose, because a leg with few freedoms ties them together; none in most
+    /// mechanisms. :meth:`dependent` gives their values.
+    #[getter]
+    fn dependent_coordinates(&self) -> Vec<TaskCoordinate> {
+        let coordinates = self.inner.dependent_coordinates().iter();
+        let unit = |quantity: Quantity| quantity.unit().to_owned();
+        coordinates
+            .map(|c| TaskCoordinate { name: c.name.into(), home: c.home, unit: unit(c.quantity) })
+            .collect()
+    }
+
     /// Names of all joint coordinates: the columns of joint values.
     #[getter]
     fn joints(&self) -> Vec<String> {

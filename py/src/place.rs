@@ -6,7 +6,7 @@ use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
-use opm_core::manipulator::OutsideMotion;
+use opm_core::manipulator::{OutsideMotion, PoseError};
 use opm_core::numeric::rotation;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -46,6 +46,8 @@ impl Manipulator {
     /// ----------
     /// poses : (n, d) array_like
     ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// mode : str
+    ///     The working mode, or ``"home"``: dependent coordinates depend on it.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
@@ -53,25 +55,67 @@ impl Manipulator {
     /// -------
     /// (n, 4, 4) ndarray
     ///     Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
-    ///     position, metres.
-    #[pyo3(signature = (poses, *, threads = None))]
+    ///     position, metres. NaN where dependent coordinates have no solution.
+    #[pyo3(signature = (poses, *, mode = "home", threads = None))]
     fn transform<'py>(
         &self,
         py: Python<'py>,
         poses: &Bound<'py, PyAny>,
+        mode: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
-        let none = || ();
+        let (mode, none) = (self.mode(mode)?, || ());
         let tables = Tables::fill(py, poses.count, [16], threads, none, |(), row, [out]| {
-            let pose = poses.row(row);
-            let place = self.inner.platform_pose(pose);
-            let place = place.map_err(|error| format!("pose {row}: {error}"))?.to_homogeneous();
-            out.copy_from_slice(place.transpose().as_slice());
+            match self.inner.displacement_in(poses.row(row), mode) {
+                Ok(displacement) => {
+                    let place = self.inner.platform_at(&displacement).to_homogeneous();
+                    out.copy_from_slice(place.transpose().as_slice());
+                }
+                Err(PoseError::Constraint { .. }) => {}
+                Err(error) => return Err(format!("pose {row}: {error}")),
+            }
             Ok([true; 2])
         })?;
         tables.table(0).reshape([poses.count, 4, 4])
+    }
+
+    /// The dependent coordinates of each pose.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// mode : str
+    ///     The working mode, or ``"home"``.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, c) ndarray
+    ///     One column for each of ``dependent_coordinates``; metres and radians. NaN where they have no solution.
+    #[pyo3(signature = (poses, *, mode = "home", threads = None))]
+    fn dependent<'py>(
+        &self,
+        py: Python<'py>,
+        poses: &Bound<'py, PyAny>,
+        mode: &str,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
+        let (mode, none) = (self.mode(mode)?, || ());
+        let widths = [self.inner.dependent_coordinates().len()];
+        let tables = Tables::fill(py, poses.count, widths, threads, none, |(), row, [out]| {
+            let found = self.inner.dependent_values(poses.row(row), mode);
+            if let Some(found) = found.map_err(|error| format!("pose {row}: {error}"))? {
+                out.copy_from_slice(&found);
+            }
+            Ok([true; 2])
+        })?;
+        Ok(tables.table(0))
     }
 
     /// The poses at which the platform has the given displacements: the inverse of :meth:`transform`.

@@ -403,3 +403,24 @@ fn a_recording_holds_the_snapped_mechanism() {
     let whole = opm(&[&["workspace", &file, "--format", "json"][..], &grid].concat()).json();
     assert_eq!(merged["reachable"], whole["reachable"]);
 }
+
+#[test]
+fn a_constraining_leg_is_named() {
+    let found = opm(&["decompose", "five-bar", "--format", "json"]).json();
+    let names = |key: &str| -> Vec<String> {
+        let list = found[key].as_array().unwrap().iter();
+        list.map(|c| c["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(names("task_coordinates"), ["x", "y"]);
+    assert_eq!(names("dependent_coordinates"), ["theta"]);
+    let run = opm(&["decompose", "five-bar"]);
+    let told = "right has too few freedoms to follow every motion: a pose is given by x y, and theta \
+                follows from it.";
+    assert!(run.text().contains(told), "{}", run.stdout);
+    for (args, told) in
+        [(["measure", "five-bar"], "dependent here: theta"), (["velocity", "five-bar"], "theta")]
+    {
+        let run = opm(&args);
+        assert!(run.stdout.contains(told) || run.stderr.contains(told), "{args:?}: {}", run.stderr);
+    }
+}

@@ -212,3 +212,31 @@ fn text_is_in_the_units_of_the_file() {
     let imaginary = text.lines().find(|line| line.contains("imaginary")).expect("joint S");
     assert!(imaginary.contains("10.000  mm"), "20 mm/rad over 0.5 rad: {imaginary}");
 }
+
+/// The arm of a five-bar ties the forearm's angle to the place of the hand.
+#[test]
+fn dependent_coordinates_are_given_and_checked() {
+    let found = ik(&["five-bar", "--pose", "x=20mm,y=300mm"]);
+    assert_eq!(keys(&found["pose"]), ["x", "y", "theta"]);
+    let theta = number(&found["pose"]["theta"]);
+    assert_eq!(number(&found["solutions"][0]["dependent"]["theta"]), theta);
+    // The transform is the forearm's: the hand, and its rotation from home.
+    let [w, z] = [0, 3].map(|i| number(&found["transform"]["quaternion"][i]));
+    assert!((2.0 * z.atan2(w) - theta).abs() < EXACT);
+    let given = format!("x=20mm,y=300mm,theta={theta}rad");
+    assert_eq!(ik(&["five-bar", "--pose", &given])["pose"], found["pose"]);
+    // With all modes, those that have the value are left.
+    let all = ik(&["five-bar", "--all-modes", "--pose", "x=20mm,y=300mm"]);
+    assert_eq!(all["solutions"].as_array().unwrap().len(), 4);
+    let some = ik(&["five-bar", "--all-modes", "--pose", &given]);
+    assert_eq!(some["solutions"].as_array().unwrap().len(), 2);
+    let wrong = ["ik", "five-bar", "--pose", "x=20mm,y=300mm,theta=3deg"];
+    opm(&wrong).fails_with_one_line(2, &["--pose", "theta is given as 3 deg", "1.38854 deg"]);
+    let wrong = [&wrong[..], &["--all-modes"]].concat();
+    opm(&wrong).fails_with_one_line(2, &["other values in all 4 working modes"]);
+    let far = ik(&["five-bar", "--pose", "y=500mm"]);
+    assert_eq!(
+        (&far["reachable"], &far["unreachable"][0]["leg"]),
+        (&false.into(), &"right".into())
+    );
+}

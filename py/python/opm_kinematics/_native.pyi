@@ -424,6 +424,11 @@ class Manipulator:
     def task_coordinates(self) -> list[TaskCoordinate]:
         """The coordinates of the pose: the columns of poses."""
     @property
+    def dependent_coordinates(self) -> list[TaskCoordinate]:
+        """The coordinates that follow from those of the pose, because a leg with few freedoms ties them together; none in most
+        mechanisms. :meth:`dependent` gives their values.
+        """
+    @property
     def joints(self) -> list[str]:
         """Names of all joint coordinates: the columns of joint values."""
     @property
@@ -603,13 +608,17 @@ class Manipulator:
         OpmError
             The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
         """
-    def transform(self, poses: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
+    def transform(
+        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+    ) -> NDArray[np.float64]:
         """The displacement of the platform at each pose, in SE(3): its reference point and its orientation, in base coordinates.
 
         Parameters
         ----------
         poses : (n, d) array_like
             One row for each pose, one column for each task coordinate; metres and radians.
+        mode : str
+            The working mode, or ``"home"``: dependent coordinates depend on it.
         threads : int, optional
             1 to 1024; the result does not depend on it. One for each processor if not given.
 
@@ -617,7 +626,26 @@ class Manipulator:
         -------
         (n, 4, 4) ndarray
             Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
-            position, metres.
+            position, metres. NaN where dependent coordinates have no solution.
+        """
+    def dependent(
+        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+    ) -> NDArray[np.float64]:
+        """The dependent coordinates of each pose.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            One row for each pose, one column for each task coordinate; metres and radians.
+        mode : str
+            The working mode, or ``"home"``.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        (n, c) ndarray
+            One column for each of ``dependent_coordinates``; metres and radians. NaN where they have no solution.
         """
     def locate(self, transforms: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
         """The poses at which the platform has the given displacements: the inverse of :meth:`transform`.

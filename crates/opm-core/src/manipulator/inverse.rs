@@ -630,6 +630,34 @@ impl Manipulator {
         reached
     }
 
+    /// The dependent coordinates of a pose in a mode, in the order of [`Manipulator::dependent_coordinates`], radians
+    /// and metres, angles within π of home; `None` where they have no solution. Other legs may be out of reach.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// // The place of the hand tells the angle of the right forearm.
+    /// let manipulator = Manipulator::example("five-bar")?;
+    /// let pose = manipulator.pose([("x", 0.02), ("y", 0.3)])?;
+    /// let found = manipulator.dependent_values(&pose, manipulator.home_mode())?;
+    /// assert!((found.expect("in reach")[0].to_degrees() - 1.3885).abs() < 1e-4);
+    /// assert_eq!(manipulator.dependent_values(&[0.0, 0.5], manipulator.home_mode())?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn dependent_values(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+    ) -> Result<Option<Vec<f64>>, PoseError> {
+        self.check_pose(pose)?;
+        let Some(dependent) = &self.dependent else { return Ok(Some(Vec::new())) };
+        let found = self.completed(pose, mode).ok();
+        Ok(found.map(|all| dependent.coordinates.iter().map(|&i| all[i]).collect()))
+    }
+
     /// All coordinates of a pose in a mode, dependent ones too; angles within π of home.
     ///
     /// # Errors

@@ -4,7 +4,7 @@
 //! the nearest pose is found by least squares: damped Gauss-Newton (Levenberg and Marquardt) on the rotation vector and the
 //! reference point's position.
 
-use super::{Manipulator, PoseError};
+use super::{Manipulator, Mode, PoseError};
 use crate::numeric::Quantity;
 use crate::numeric::angle::whole_turns;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
@@ -89,11 +89,19 @@ impl Manipulator {
     /// # Errors
     /// As [`Manipulator::platform_pose`].
     pub fn displacement(&self, pose: &[f64]) -> Result<Isometry3<f64>, PoseError> {
+        self.displacement_in(pose, self.home_mode)
+    }
+
+    /// The same in a working mode, on which dependent coordinates depend.
+    ///
+    /// # Errors
+    /// As [`Manipulator::platform_pose`].
+    pub fn displacement_in(&self, pose: &[f64], mode: Mode) -> Result<Isometry3<f64>, PoseError> {
         self.check_pose(pose)?;
         if self.dependent.is_none() {
             return Ok(self.task.displacement(pose));
         }
-        let all = self.completed(pose, self.home_mode).map_err(|missed| PoseError::Constraint {
+        let all = self.completed(pose, mode).map_err(|missed| PoseError::Constraint {
             leg: self.mechanism.legs[missed.leg].name.clone(),
             deficit: missed.deficit,
         })?;
