@@ -117,11 +117,10 @@ pub(super) fn solved(mut m: Square, mut right: [f64; MOST], units: &[f64]) -> Op
         }
         m.swap(k, pivot);
         right.swap(k, pivot);
+        let pivot = m[k];
         for i in (0..n).filter(|&i| i != k) {
-            let factor = m[i][k] / m[k][k];
-            for j in k..n {
-                m[i][j] -= factor * m[k][j];
-            }
+            let factor = m[i][k] / pivot[k];
+            m[i].iter_mut().zip(&pivot).for_each(|(entry, above)| *entry -= factor * above);
             right[i] -= factor * right[k];
         }
     }
