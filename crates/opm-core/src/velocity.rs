@@ -253,12 +253,18 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let Some([rates, accelerations]) = self.all_rates(at, [rates, accelerations], out) else {
-            self.all_singular(&mut out.singular);
-            return Ok(false);
+        let twists = match &self.dependent {
+            None => self.section_twists(&at.solved.pose, rates, accelerations),
+            Some(dependent) => {
+                let all = self.all_rates(dependent, at, [rates, accelerations], out);
+                let Some([rates, accelerations]) = all else {
+                    self.all_singular(&mut out.singular);
+                    return Ok(false);
+                };
+                let n = self.task().coordinates.len();
+                self.section_twists(&at.solved.pose, &rates[..n], &accelerations[..n])
+            }
         };
-        let n = self.task().coordinates.len();
-        let twists = self.section_twists(&at.solved.pose, &rates[..n], &accelerations[..n]);
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);

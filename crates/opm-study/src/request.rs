@@ -259,13 +259,13 @@ fn check_kind(
 ) -> Result<(), RequestError> {
     let coordinates = manipulator.task_coordinates();
     let dependent = manipulator.dependent_coordinates();
+    let lower = manipulator.lower_coordinates();
     let alone = kind.sections() != Sections::Whole || kind == WorkspaceKind::Imaginary;
-    if alone && !dependent.is_empty() {
+    if (alone || (kind.needs_two_sections() && lower == 0)) && !dependent.is_empty() {
         let dependent = dependent.iter().map(|c| c.name.to_owned()).collect();
         return Err(RequestError::Dependent { kind, dependent });
     }
-    let lower = manipulator.lower_coordinates();
-    if kind.needs_two_sections() && (lower == 0 || lower == coordinates.len()) {
+    if kind.needs_two_sections() && lower == coordinates.len() {
         let coordinates = coordinates.iter().map(|c| c.name.to_owned()).collect();
         return Err(RequestError::OneSection { kind, coordinates });
     }

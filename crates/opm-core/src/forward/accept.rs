@@ -73,8 +73,9 @@ impl Search<'_> {
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
         let all = m.task().pose(v, b);
-        let pose = m.independent_of(&all);
-        if m.check_pose(&pose).is_err() {
+        let independent = m.dependent.as_ref().map(|d| d.independent_of(m, &all));
+        let pose = independent.as_deref().unwrap_or(&all);
+        if m.check_pose(pose).is_err() {
             return;
         }
         let (v, b) = m.task().sections(&all);
@@ -99,9 +100,11 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
-            if let Some(mode) = self.completed_in(mode, &pose, &target) {
+            if independent.is_none() {
+                self.accept(pose, mode, &target);
+            } else if let Some(mode) = self.completed_in(mode, pose, &target) {
                 self.solution.take_pose(m, &all);
-                self.accept(&pose, mode, &target);
+                self.accept(pose, mode, &target);
             }
         }
     }

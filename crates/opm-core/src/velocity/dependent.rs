@@ -5,7 +5,7 @@
 //! That is one equation for each dependent coordinate. The same holds for accelerations.
 
 use super::{JointMotion, SINGULAR, SingularCause, SingularLeg};
-use crate::manipulator::{Manipulator, Section, Solution};
+use crate::manipulator::{Dependent, Manipulator, Section, Solution};
 use crate::numeric::Quantity;
 
 /// The largest number of task coordinates.
@@ -22,17 +22,12 @@ impl Manipulator {
     /// dependent ones to `out`. `None` where the dependent ones are not determined.
     pub(super) fn all_rates(
         &self,
+        dependent: &Dependent,
         at: &Solution,
         given: [&[f64]; 2],
         out: &mut JointMotion,
     ) -> Option<AllRates> {
         let mut all = [[0.0; MOST]; 2];
-        let Some(dependent) = &self.dependent else {
-            for (all, given) in all.iter_mut().zip(given) {
-                all[..given.len()].copy_from_slice(given);
-            }
-            return Some(all);
-        };
         for (all, given) in all.iter_mut().zip(given) {
             dependent.independent.iter().zip(given).for_each(|(&i, rate)| all[i] = *rate);
         }
@@ -43,12 +38,12 @@ impl Manipulator {
         for (column, &i) in dependent.coordinates.iter().enumerate() {
             let mut unit = still;
             unit[i] = 1.0;
-            let [rates, _] = self.locked_motion(at, [&unit[..n], &still[..n]]);
+            let [rates, _] = self.locked_motion(dependent, at, [&unit[..n], &still[..n]]);
             (0..MOST).for_each(|row| matrix[row][column] = rates[row]);
         }
         let units = self.dependent_units();
         for part in 0..2 {
-            let moved = self.locked_motion(at, [&all[0][..n], &all[1][..n]])[part];
+            let moved = self.locked_motion(dependent, at, [&all[0][..n], &all[1][..n]])[part];
             let found =
                 solved(matrix, moved.map(|rate| -rate), &units[..dependent.coordinates.len()])?;
             for (&i, rate) in dependent.coordinates.iter().zip(found) {
@@ -76,9 +71,8 @@ impl Manipulator {
     }
 
     /// The rates and accelerations of the locked joints, for those of all task coordinates.
-    fn locked_motion(&self, at: &Solution, given: [&[f64]; 2]) -> AllRates {
+    fn locked_motion(&self, dependent: &Dependent, at: &Solution, given: [&[f64]; 2]) -> AllRates {
         let mut found = [[0.0; MOST]; 2];
-        let Some(dependent) = &self.dependent else { return found };
         let twists = self.section_twists(&at.solved.pose, given[0], given[1]);
         for (row, (leg, section, joint)) in dependent.locked(&self.legs).enumerate().take(MOST) {
             let differential = self.leg_differential(at, leg);
@@ -101,6 +95,29 @@ impl Manipulator {
             cause: SingularCause::Serial,
         }));
     }
+}
+
+/// The determinant of a system of equations, whose unknowns have these units.
+pub(super) fn determinant(mut m: Square, units: &[f64]) -> f64 {
+    let n = units.len();
+    let mut product: f64 = units.iter().product();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs())).unwrap_or(k);
+        if m[pivot][k] == 0.0 {
+            return 0.0;
+        }
+        if pivot != k {
+            m.swap(k, pivot);
+            product = -product;
+        }
+        let pivot = m[k];
+        product *= pivot[k];
+        for row in &mut m[k + 1..n] {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(&pivot).for_each(|(entry, above)| *entry -= factor * above);
+        }
+    }
+    product
 }
 
 /// The solution of a system of equations, by elimination with pivoting. `units` are those of the unknowns; there

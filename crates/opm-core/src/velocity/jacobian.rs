@@ -1,7 +1,7 @@
 //! The Jacobians of the upper section, of the lower section, of the whole mechanism, and of the task
 //! coordinates.
 
-use super::dependent::solved;
+use super::dependent::{determinant, solved};
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
@@ -73,6 +73,9 @@ pub struct Jacobians {
     pub locked: DMatrix<f64>,
     /// The rates of all task coordinates from those of the independent ones, where some are dependent.
     by_independent: Option<DMatrix<f64>>,
+    /// The determinant of the locked joints' rates by the dependent coordinates, dimensionless; one where there are
+    /// none. It is zero where these do not follow from the others.
+    pub(super) dependence: f64,
     /// The legs with joints that have no rates. The rows of these joints are zeros without a meaning.
     pub singular: Vec<SingularLeg>,
     /// The numbers of the legs that are split in their upper section: the rows of [`Jacobians::upper`].
@@ -211,6 +214,7 @@ impl Manipulator {
                 .dependent
                 .as_ref()
                 .map(|dependent| DMatrix::zeros(n, dependent.independent.len())),
+            dependence: 1.0,
             singular: Vec::with_capacity(self.legs.len()),
             bridged,
             lower_rows,
@@ -388,6 +392,7 @@ impl Manipulator {
             (0..count).for_each(|row| matrix[row][column] = rates[row]);
         }
         let units = self.dependent_units();
+        out.dependence = determinant(matrix, &units[..count]);
         for (column, &coordinate) in dependent.independent.iter().enumerate() {
             columns[(coordinate, column)] = 1.0;
             let right = rates(coordinate).map(|rate| -rate);

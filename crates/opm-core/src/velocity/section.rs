@@ -4,6 +4,7 @@ use super::rotation_vector::RotationVector;
 use super::screws::Screws;
 use super::{SINGULAR, SingularCause};
 use crate::chain::Chain;
+use crate::chain::partial::PartialChain;
 use crate::group::{JointDisplacement, LocalTwist, SubspaceKind};
 use crate::manipulator::CompiledSection;
 use nalgebra::Matrix3;
@@ -53,12 +54,31 @@ impl Differential {
                 ball: Some(vector),
             };
         }
-        let mut screws = Screws::new(kind, &section.screws, displacements);
-        let mut scale = section.scale;
         if let Some(partial) = &section.partial {
-            // Locked joints do not move: any screws will do that are independent of the others here.
-            scale = partial.complete(&mut screws.moved, length);
+            return Self::of_partial(kind, section, partial, displacements, length);
         }
+        let screws = Screws::new(kind, &section.screws, displacements);
+        Self::of_screws(screws, section.scale)
+    }
+
+    /// The differential of a section that constrains the platform. Locked joints do not move: any screws will do
+    /// that are independent of the others here.
+    #[cold]
+    fn of_partial(
+        kind: SubspaceKind,
+        section: &CompiledSection,
+        partial: &PartialChain,
+        displacements: &[JointDisplacement; 3],
+        length: f64,
+    ) -> Self {
+        let mut screws = Screws::new(kind, &section.screws, displacements);
+        let scale = partial.complete(&mut screws.moved, length);
+        Self::of_screws(screws, scale)
+    }
+
+    /// The differential for displaced screws, whose determinant has the unit `scale`.
+    #[inline]
+    fn of_screws(screws: Screws, scale: f64) -> Self {
         let (crosses, determinant) = screws.reciprocal();
         let measure = determinant / scale;
         let reciprocal = if measure.abs() < SINGULAR {

@@ -85,7 +85,8 @@ pub struct Singularities {
     /// The serial measures of every leg, the lower section's first.
     pub legs: Vec<[f64; 2]>,
     /// The determinant of [`Jacobians::pose`], which is zero where the *task coordinates* are singular
-    /// (`sin xi` for Euler angles, `cos nu` for a tilt). The mechanism is not singular there.
+    /// (`sin xi` for Euler angles, `cos nu` for a tilt), or where dependent ones do not follow from the others (an arm
+    /// of a five-bar is stretched). The mechanism is not singular there.
     pub coordinates: f64,
     /// The closure of both sections with the inputs locked. It has a row for each input, those of the lower
     /// section first. The columns are the rates along the intersection motion, then the components of the lower section's
@@ -203,7 +204,7 @@ impl Manipulator {
         out.lower = Measures { serial: lower, parallel: lower_parallel };
         out.upper = Measures { serial: upper, parallel: upper_parallel };
         out.whole = Measures { serial: lower * upper, parallel: whole_parallel };
-        out.coordinates = coordinates.unwrap_or(0.0);
+        out.coordinates = coordinates.unwrap_or(0.0) * jacobians.dependence;
     }
 
     /// The leg whose section has the smallest serial measure: the cause of a serial singularity, or the leg
