@@ -236,6 +236,8 @@ struct Rows<'a, W: Write> {
     solution: Solution,
     /// Imaginary joints, then actuated joints; empty if the pose is out of reach.
     cells: Vec<Option<f64>>,
+    /// Dependent coordinates; empty if they have no solution.
+    dependent: Vec<Option<f64>>,
     reachable: u64,
     within_limits: u64,
 }
@@ -244,6 +246,7 @@ impl<'a, W: Write> Rows<'a, W> {
     fn new(manipulator: &'a Manipulator, mut writer: csv::Writer<W>) -> Result<Self, Stop> {
         let coordinates = manipulator.coordinates();
         let header: Vec<&str> = (manipulator.task_coordinates().iter().map(|c| c.name))
+            .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
             .chain(["reachable", "within_limits", "mode"])
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
             .chain(manipulator.actuated().iter().map(|&i| &*coordinates[i].name))
@@ -256,6 +259,7 @@ impl<'a, W: Write> Rows<'a, W> {
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
             cells: Vec::new(),
+            dependent: Vec::new(),
             reachable: 0,
             within_limits: 0,
         })
@@ -279,6 +283,8 @@ impl<'a, W: Write> Rows<'a, W> {
                 fill(&mut self.cells, joints.copied(), reachable);
                 self.reachable += u64::from(reachable);
                 self.within_limits += u64::from(within);
+                let dependent = manipulator.dependent_values(pose, mode).ok().flatten();
+                self.depend(dependent.as_deref());
                 self.write(pose, reachable, within, &manipulator.format_mode(mode))
             }
             Modes::All => {
@@ -288,6 +294,7 @@ impl<'a, W: Write> Rows<'a, W> {
                 if !reachable {
                     let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
                     fill(&mut self.cells, joints.copied(), false);
+                    self.depend(None);
                     return self.write(pose, false, false, "");
                 }
                 let mut any_within = false;
@@ -299,6 +306,8 @@ impl<'a, W: Write> Rows<'a, W> {
                     let actuated = manipulator.actuated().iter().map(|&i| solution.joints()[i]);
                     let joints = solution.imaginary().iter().copied().chain(actuated);
                     fill(&mut self.cells, joints, true);
+                    self.dependent.clear();
+                    self.dependent.extend(solution.dependent().iter().map(|&value| Some(value)));
                     let within = solution.within_limits();
                     any_within |= within;
                     self.write(pose, true, within, &manipulator.format_mode(mode))?;
@@ -309,6 +318,13 @@ impl<'a, W: Write> Rows<'a, W> {
         }
     }
 
+    /// Takes the values of the dependent coordinates, if they have some.
+    fn depend(&mut self, values: Option<&[f64]>) {
+        let count = self.manipulator.dependent_coordinates().len();
+        self.dependent.clear();
+        self.dependent.extend((0..count).map(|i| values.map(|values| values[i])));
+    }
+
     fn write(
         &mut self,
         pose: &[f64],
@@ -316,7 +332,8 @@ impl<'a, W: Write> Rows<'a, W> {
         within_limits: bool,
         mode: &str,
     ) -> Result<(), Stop> {
-        let row = (pose, u8::from(reachable), u8::from(within_limits), mode, &*self.cells);
+        let (reachable, within_limits) = (u8::from(reachable), u8::from(within_limits));
+        let row = (pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
         Ok(self.writer.serialize(row)?)
     }
 }

@@ -239,7 +239,10 @@ impl<'a> Answer<'a> {
             let values = self.at.dependent().iter().zip(&self.motion.dependent_rates);
             for (c, (&value, &rate)) in dependent.iter().zip(values) {
                 let symbol = units.symbol(c.quantity);
-                let [value, rate] = [value, rate].map(|v| text::number(v, c.quantity, units));
+                let [value, rate] = [value, rate].map(|v| match v.is_nan() {
+                    true => "-".to_owned(),
+                    false => text::number(v, c.quantity, units),
+                });
                 table.row([c.name, &value, symbol, &rate, &format!("{symbol}/s")]);
             }
             let _ = writeln!(text, "{table}");

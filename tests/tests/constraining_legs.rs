@@ -3,7 +3,7 @@
 //! place, and every displacement that the constraining leg makes is found.
 
 use fastrand::Rng;
-use nalgebra::DVector;
+use nalgebra::{DVector, Isometry3};
 use opm_core::decomposition::check_actuators;
 use opm_core::decomposition::mobility::mobility;
 use opm_core::forward::RESIDUAL;
@@ -13,7 +13,7 @@ use opm_tests::by_inverse::by_inverse;
 use opm_tests::differences::derivatives;
 use opm_tests::random::{Kind, Options, PAIRS, constrained};
 use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// The bound on closure, as a share of the size of the mechanism and of its joint values.
 const CLOSURE: f64 = 1e-9;
@@ -378,4 +378,89 @@ fn sweeps_agree_with_the_inverse() {
     }
     println!("{reached} of {poses} poses");
     assert!(reached > poses / 20);
+}
+
+/// Home is home: joints and platform stay where the file puts them, and the platform's place there is located. In
+/// spheres the Euler angles are singular at home.
+#[test]
+fn home_is_where_the_joints_are() {
+    let mut rng = Rng::with_seed(145);
+    let mut homes = 0;
+    for pair in PAIRS {
+        for lacks in LACKS {
+            for round in 0..6 {
+                let Some((mechanism, decomposition)) =
+                    constrained(&mut rng, pair, lacks, false, options(round))
+                else {
+                    continue;
+                };
+                let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+                let mut solution = m.solution();
+                let home = m.home_pose();
+                let at = m.inverse(&home, m.home_mode(), &mut solution).unwrap();
+                let at = at.unwrap_or_else(|| panic!("{pair:?} {lacks:?}: home is out of reach"));
+                for (c, q) in m.coordinates().iter().zip(at.joints()) {
+                    assert!((c.home - q).abs() < 1e-6, "{pair:?} {lacks:?} {}: {q}", c.name);
+                }
+                for (c, q) in m.dependent_coordinates().iter().zip(at.dependent()) {
+                    assert!((c.home - q).abs() < 1e-9, "{pair:?} {lacks:?} {}: {q}", c.name);
+                }
+                let identity = Isometry3::identity();
+                let off = at.displacement(&m).to_homogeneous() - identity.to_homogeneous();
+                assert!(off.amax() < 1e-9, "{pair:?} {lacks:?}: {off}");
+                let found = m.locate(&identity);
+                assert!(found.is_ok(), "{pair:?} {lacks:?}: {found:?}");
+                homes += 1;
+            }
+        }
+    }
+    assert!(homes > 400, "{homes}");
+}
+
+/// One revolute joint that is level: the tilt is its angle, up to half a turn to either side, where the Euler angles
+/// are singular again.
+#[test]
+fn a_level_axis_turns_by_half_a_turn() {
+    let axis = |name: &str, axis: [f64; 3]| {
+        format!(
+            "{{ name = \"{name}\", type = \"revolute\", axis = {axis:?}, point = [0, 0, 0] }},\n"
+        )
+    };
+    let text = format!(
+        "format = 1\nname = \"level\"\nunits = {{ length = \"m\", angle = \"rad\" }}\n\
+         [platform]\npoint = [0, 0, 0]\n[[leg]]\nname = \"one\"\njoints = [\n{}]\n\
+         [[leg]]\nname = \"three\"\njoints = [\n{}{}{}]\n",
+        axis("A", [1.0, 0.0, 0.0]).replace(" },", ", actuated = true },"),
+        axis("B", [0.0, 0.0, 1.0]),
+        axis("C", [0.0, 1.0, 0.0]),
+        axis("D", [1.0, 0.0, 0.0]),
+    );
+    let m = Manipulator::read(&text).unwrap();
+    assert_eq!(m.task_coordinates()[0].name, "xi");
+    let mut solution = m.solution();
+    for step in -8..=8 {
+        for nearly in [0.0, 1e-9, -1e-9, 1e-8] {
+            let xi = PI * f64::from(step) / 8.0 + nearly;
+            if xi.abs() > PI {
+                continue;
+            }
+            let mut all = m.all_modes();
+            m.inverse_all(&[xi], &mut all).unwrap();
+            for mode in all.modes(&m) {
+                let at = m.solution_in_mode(&all, mode, &mut solution).unwrap();
+                assert!((at.joints()[0].abs() - xi.abs()).abs() < 1e-6, "{xi}: {:?}", at.joints());
+                let target = at.displacement(&m).to_homogeneous();
+                let mut joints = at.joints();
+                for leg in &m.mechanism().legs {
+                    let (own, rest) = joints.split_at(leg.coordinates().count());
+                    joints = rest;
+                    let off = leg.displacement(own).unwrap().to_homogeneous() - target;
+                    assert!(off.amax() < 1e-7, "{xi} {}: {off}", leg.name);
+                }
+            }
+            // The joint's own displacement is always found.
+            let leg = &m.mechanism().legs[0];
+            assert!(m.locate(&leg.displacement(&[xi]).unwrap()).is_ok(), "{xi}");
+        }
+    }
 }

@@ -137,6 +137,8 @@ pub struct Manipulator {
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
     home_mode: Mode,
+    /// All task coordinates at home, dependent ones too.
+    home: Vec<f64>,
     length: f64,
     /// The order in which forward kinematics solve the sections, or why they have no closed form.
     pub(crate) plan: Result<Plan, NoClosedForm>,
@@ -333,6 +335,28 @@ impl Manipulator {
         modes.min_by(|&a, &b| displaced(a).total_cmp(&displaced(b))).unwrap_or(of_legs)
     }
 
+    /// Takes the values at home of the dependent coordinates that follow there. Where Euler angles are singular at
+    /// home, the first one makes up for the third.
+    fn complete_home(&mut self) {
+        let Some(dependent) = &self.dependent else { return };
+        let (coordinates, independent) = (&dependent.coordinates, &dependent.independent);
+        let Ok(mut all) = self.completed(&self.home_pose(), self.home_mode) else { return };
+        let kind = |i: usize| self.task.coordinates[i].kind();
+        if let Some(&zeta) = independent.iter().find(|&&i| kind(i) == CoordinateKind::Zeta) {
+            let (v, b) = self.task.sections(&all);
+            let displacement = if zeta < self.task.lower_count { v } else { b };
+            let r = displacement.spherical();
+            all[zeta] -= r[(1, 0)].atan2(r[(0, 0)]);
+        }
+        for (coordinate, &i) in self.dependent_coordinates.iter_mut().zip(coordinates) {
+            coordinate.home = all[i];
+        }
+        for (coordinate, &i) in self.independent.iter_mut().zip(independent) {
+            coordinate.home = all[i];
+        }
+        self.home = all;
+    }
+
     /// How far two displacements of the platform are apart, in radians or shares of the size.
     pub(crate) fn apart(&self, one: &Isometry3<f64>, other: &Isometry3<f64>) -> f64 {
         let reference = self.mechanism.platform;
@@ -429,19 +453,12 @@ impl Compiled {
             imaginary,
             modes,
             home_mode: Mode::default(),
+            home: Vec::new(),
             length,
         };
+        manipulator.home = manipulator.task.home();
         manipulator.home_mode = manipulator.mode_at_home();
-        // Where Euler angles are singular at home, those that follow may differ from the ones that are given.
-        let home = manipulator.home_pose();
-        if let (Some(d), Ok(all)) =
-            (&manipulator.dependent, manipulator.completed(&home, manipulator.home_mode))
-        {
-            for (coordinate, &i) in manipulator.dependent_coordinates.iter_mut().zip(&d.coordinates)
-            {
-                coordinate.home = all[i];
-            }
-        }
+        manipulator.complete_home();
         manipulator
     }
 }

@@ -169,7 +169,7 @@ pub struct JointMotion {
     /// The acceleration of every imaginary joint, in the same order; rad/s² or m/s².
     pub imaginary_accelerations: Vec<f64>,
     /// The rate of every dependent coordinate, in the order of [`Manipulator::dependent_coordinates`]; rad/s and
-    /// m/s.
+    /// m/s. NaN where they do not follow from the other rates; then no joint has a rate.
     pub dependent_rates: Vec<f64>,
     /// The acceleration of every dependent coordinate, in the same order; rad/s² and m/s².
     pub dependent_accelerations: Vec<f64>,
@@ -259,6 +259,8 @@ impl Manipulator {
                 let all = self.all_rates(dependent, at, [rates, accelerations], out);
                 let Some([rates, accelerations]) = all else {
                     self.all_singular(&mut out.singular);
+                    out.dependent_rates.fill(f64::NAN);
+                    out.dependent_accelerations.fill(f64::NAN);
                     return Ok(false);
                 };
                 let n = self.task().coordinates.len();

@@ -102,8 +102,10 @@ impl Search<'_> {
             }
             if independent.is_none() {
                 self.accept(pose, mode, &target);
-            } else if let Some(mode) = self.completed_in(mode, pose, &target) {
-                self.solution.take_pose(m, &all);
+            } else if let Some(mode) = self.completed_in(mode, pose, &target)
+                && let Ok(completed) = m.completed(pose, mode)
+            {
+                self.solution.take_pose(m, &completed);
                 self.accept(pose, mode, &target);
             }
         }

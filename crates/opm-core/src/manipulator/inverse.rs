@@ -307,7 +307,9 @@ impl Manipulator {
             imaginary: self.imaginary.iter().map(|joint| joint.home).collect(),
             taus: vec![0.0; self.legs.len()],
             parts: match &self.dependent {
-                Some(d) => [self.home_pose(), vec![0.0; d.coordinates.len()]],
+                Some(d) => {
+                    [self.home_pose(), d.coordinates.iter().map(|&i| self.home[i]).collect()]
+                }
                 None => [Vec::new(), Vec::new()],
             },
             solved: self.solved_at_home(),
@@ -341,7 +343,7 @@ impl Manipulator {
     }
 
     fn solved_at_home(&self) -> SolvedPose {
-        let pose = self.task.home();
+        let pose = self.home.clone();
         let (v, b) = self.task.sections(&pose);
         SolvedPose { pose, v, b }
     }
@@ -447,7 +449,7 @@ impl Manipulator {
             None => self.task.sections(pose),
             Some(dependent) => {
                 let all = &mut buffer.all;
-                all.iter_mut().zip(&self.task.coordinates).for_each(|(q, c)| *q = c.home);
+                all.copy_from_slice(&self.home);
                 dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
                 if dependent.complete(self, mode, all).is_err() {
                     return Ok(None);
@@ -502,9 +504,7 @@ impl Manipulator {
                 None => solved.pose.copy_from_slice(pose),
                 Some(dependent) => {
                     (mask, chosen) = (dependent.mask(), dependent.mode(number));
-                    for (value, coordinate) in solved.pose.iter_mut().zip(&self.task.coordinates) {
-                        *value = coordinate.home;
-                    }
+                    solved.pose.copy_from_slice(&self.home);
                     dependent.independent.iter().zip(pose).for_each(|(&i, q)| solved.pose[i] = *q);
                     *missed = dependent.complete(self, chosen, &mut solved.pose).err();
                 }
@@ -664,7 +664,7 @@ impl Manipulator {
     /// The leg whose constraint has no solution.
     pub(crate) fn completed(&self, pose: &[f64], mode: Mode) -> Result<Vec<f64>, Unreachable> {
         let Some(dependent) = &self.dependent else { return Ok(pose.to_vec()) };
-        let mut all = self.task.home();
+        let mut all = self.home.clone();
         dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
         dependent.complete(self, mode, &mut all)?;
         Ok(all)
@@ -724,7 +724,7 @@ impl Manipulator {
         let Some(dependent) = &self.dependent else { return true };
         let all = &mut out.solved.pose;
         if revolutions == Revolutions::NearHome {
-            all.iter_mut().zip(&self.task.coordinates).for_each(|(q, c)| *q = c.home);
+            all.copy_from_slice(&self.home);
         }
         dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
         out.unreachable.clear();

@@ -158,8 +158,9 @@ struct Moved {
 
 impl Jacobians {
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], for unit rates of
-    /// the task coordinates: a row for each joint, a column for each task coordinate. The product is
-    /// allocated.
+    /// the task coordinates: a row for each joint, a column for each task coordinate. They are NaN where dependent
+    /// coordinates do not follow from the others ([`Singularities::coordinates`](super::Singularities::coordinates)
+    /// is zero). The product is allocated.
     pub fn joints_by_pose(&self) -> DMatrix<f64> {
         let by_all = &self.joints * &self.pose;
         match &self.by_independent {
@@ -254,9 +255,7 @@ impl Manipulator {
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
-        if !self.independent_columns(out) {
-            self.all_singular(&mut out.singular);
-        }
+        self.independent_columns(out);
         Ok(out.singular.is_empty())
     }
 
@@ -370,11 +369,11 @@ impl Manipulator {
         }
     }
 
-    /// Computes the rates of the dependent coordinates for a unit rate of each independent one. Returns `false`
-    /// where they are not determined.
-    fn independent_columns(&self, out: &mut Jacobians) -> bool {
+    /// Computes the rates of the dependent coordinates for a unit rate of each independent one, NaN where they are
+    /// not determined.
+    fn independent_columns(&self, out: &mut Jacobians) {
         let (Some(dependent), Some(columns)) = (&self.dependent, &mut out.by_independent) else {
-            return true;
+            return;
         };
         columns.fill(0.0);
         let count = dependent.coordinates.len();
@@ -396,12 +395,14 @@ impl Manipulator {
         for (column, &coordinate) in dependent.independent.iter().enumerate() {
             columns[(coordinate, column)] = 1.0;
             let right = rates(coordinate).map(|rate| -rate);
-            let Some(found) = solved(matrix, right, &units[..count]) else { return false };
+            let Some(found) = solved(matrix, right, &units[..count]) else {
+                columns.fill(f64::NAN);
+                return;
+            };
             for (&coordinate, rate) in dependent.coordinates.iter().zip(found) {
                 columns[(coordinate, column)] = rate;
             }
         }
-        true
     }
 
     /// Computes the section twist for a unit rate of each task coordinate.

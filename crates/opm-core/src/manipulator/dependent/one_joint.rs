@@ -22,6 +22,9 @@ use std::f64::consts::PI;
 /// An axis whose angle with the third direction has a sine below this is along that direction.
 const ALONG: f64 = 1e-9;
 
+/// Stands for a cosine of zero, whose products with the components of an axis have directions.
+const LEAST: f64 = 1e-150;
+
 /// How a section's coordinates follow from its one joint.
 #[derive(Clone, Debug)]
 pub(super) struct OneJoint {
@@ -118,9 +121,12 @@ impl OneJoint {
                     let found = angles(task, &s, xi, sign);
                     found.map_or(f64::INFINITY, |found| near(found[2] - psi, 0.0).abs())
                 };
-                if off(other) < off([zeta, xi, psi]) {
-                    pose[self.first..self.first + 3].copy_from_slice(&other);
-                }
+                let [zeta, xi, psi] =
+                    if off(other) < off([zeta, xi, psi]) { other } else { [zeta, xi, psi] };
+                // Near their singularity only the sum of the two angles is known, or their difference.
+                let follows = angles(task, &s, xi, sign).map_or(psi, |found| near(found[2], psi));
+                let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
+                pose[self.first..self.first + 3].copy_from_slice(&[zeta + rest, xi, follows]);
             }
         }
     }
@@ -246,7 +252,9 @@ fn from_identity(s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDe
         return Err(ReachDeficit::angle(reduced.abs() - 2.0 * rho.min(1.0).asin()));
     }
     let sin = half.clamp(-1.0, 1.0);
-    let cos = (1.0 - sin * sin).sqrt();
+    // A rotation by half a turn about a level axis is where the tilt is half a turn, too. The directions are those of
+    // its limit.
+    let cos = ((1.0 - sin) * (1.0 + sin)).sqrt().max(LEAST);
     // The rotation is by ±q, with these the sine and the cosine of q/2. Its third column and its third row,
     // over 2 sin(q/2), are regular.
     let sin = sign * sin;
