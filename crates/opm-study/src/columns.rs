@@ -191,6 +191,11 @@ pub struct PointColumns {
     pub(crate) scalars_chosen: bool,
 }
 
+/// The axis of a cloud that has fewer coordinates.
+fn no_axis() -> NamedColumn {
+    NamedColumn::new(NO_AXIS, Column::Zero)
+}
+
 impl PointColumns {
     /// The values of poses of a grid; defaults suit the grid.
     pub fn of_poses(choice: PointChoice, grid: &Grid) -> Self {
@@ -202,9 +207,9 @@ impl PointColumns {
         let axes = choice.axes.unwrap_or_else(|| {
             if let [a, b] = varying[..] {
                 let flat = (0..grid.axes().len()).rfind(|number| !several(number));
-                return [axis(a), axis(b), axis(flat.unwrap_or(tallest))];
+                return [axis(a), axis(b), flat.map_or_else(no_axis, axis)];
             }
-            // Varying coordinates come first. Every pair of subspaces has at least three coordinates.
+            // Varying coordinates come first.
             let fixed = (0..grid.axes().len()).filter(|number| !several(number));
             let mut order: Vec<usize> = varying.iter().copied().chain(fixed).collect();
             // The coordinates of the place are horizontal, and the coordinate of `tallest` is vertical.
@@ -212,7 +217,7 @@ impl PointColumns {
                 order.retain(|&number| number != tallest);
                 order.insert(2, tallest);
             }
-            [axis(order[0]), axis(order[1]), axis(order[2])]
+            [0, 1, 2].map(|i| order.get(i).map_or_else(no_axis, |&number| axis(number)))
         });
         let scalars_chosen = choice.scalars.is_some();
         let scalars = choice.scalars.unwrap_or_else(|| {
@@ -237,10 +242,9 @@ impl PointColumns {
             true => imaginary().collect(),
             false => order.iter().map(|&i| axis(i)).collect(),
         };
-        let axes = choice.axes.unwrap_or_else(|| {
-            let flat = || NamedColumn::new(NO_AXIS, Column::Zero);
-            [0, 1, 2].map(|i| shown.get(i).cloned().unwrap_or_else(flat))
-        });
+        let axes = choice
+            .axes
+            .unwrap_or_else(|| [0, 1, 2].map(|i| shown.get(i).cloned().unwrap_or_else(no_axis)));
         let color = choice.color.unwrap_or_else(|| match kind.is_of_places() {
             true => NamedColumn::new(SHARE, Column::Share),
             false => axis(varying.get(2).or(varying.last()).copied().unwrap_or(0)),

@@ -79,11 +79,11 @@ impl<'a> Cloud<'a> {
         self.shown.axes.each_ref().map(|named| match named.column {
             Column::Coordinate(number) => pose[number],
             Column::Tip(i) => tip()[i],
+            Column::Zero => 0.0,
             Column::Imaginary(_)
             | Column::Actuated(_)
             | Column::InverseCondition
-            | Column::Share
-            | Column::Zero => unreachable!("axes are task coordinates, or the platform's point"),
+            | Column::Share => unreachable!("axes are task coordinates, or the platform's point"),
         })
     }
 
@@ -342,9 +342,8 @@ impl<'a> Points<'a> {
                 ) => {
                     unreachable!("Points::new has buffers for what columns ask for")
                 }
-                (Column::Share | Column::Zero, _) => {
-                    unreachable!("poses have no share of orientations, and three coordinates")
-                }
+                (Column::Zero, _) => 0.0,
+                (Column::Share, _) => unreachable!("poses have no share of orientations"),
             });
         }
     }
