@@ -54,6 +54,8 @@ def placed(rotations):
 def test_poses_of_half_and_quarter_turns_come_back(manipulator):
     for step in (np.pi / 2, np.pi, np.pi / 4, 2 * np.pi):
         transforms = manipulator.transform(quarters(manipulator, 3000, step))
+        # Dependent coordinates have no solution at some poses.
+        transforms = transforms[np.isfinite(transforms).all(axis=(1, 2))]
         back = manipulator.transform(manipulator.locate(transforms))
         np.testing.assert_allclose(back, transforms, atol=ROUNDING)
         nearest = manipulator.nearest(transforms)
