@@ -181,9 +181,10 @@ impl<'a> Way<'a> {
         if dependent.is_empty() {
             return String::new();
         }
-        let mut legs: Vec<&str> =
-            manipulator.constraining_legs().map(|(leg, _)| self.legs[leg].name).collect();
-        legs.dedup();
+        let mut numbers: Vec<usize> = manipulator.constraining_legs().map(|(leg, _)| leg).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let legs: Vec<&str> = numbers.into_iter().map(|leg| self.legs[leg].name).collect();
         let verb = if legs.len() == 1 { "has" } else { "have" };
         format!(
             "{} {verb} too few freedoms to follow every motion: a pose is given by {}, and {} {} from it.\n",

@@ -8,12 +8,12 @@ use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
-use opm_core::Quantity;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::MechanismFile;
+use opm_core::task;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -50,6 +50,12 @@ pub struct TaskCoordinate {
     home: f64,
     /// ``"m"`` or ``"rad"``.
     unit: String,
+}
+
+impl TaskCoordinate {
+    fn of(c: &task::TaskCoordinate) -> Self {
+        Self { name: c.name.into(), home: c.home, unit: c.quantity.unit().to_owned() }
+    }
 }
 
 #[pymethods]
@@ -273,22 +279,14 @@ impl Manipulator {
     /// The coordinates of the pose: the columns of poses.
     #[getter]
     fn task_coordinates(&self) -> Vec<TaskCoordinate> {
-        let coordinates = self.inner.task_coordinates().iter();
-        let unit = |quantity: Quantity| quantity.unit().to_owned();
-        coordinates
-            .map(|c| TaskCoordinate { name: c.name.into(), home: c.home, unit: unit(c.quantity) })
-            .collect()
+        self.inner.task_coordinates().iter().map(TaskCoordinate::of).collect()
     }
 
     /// The coordinates that follow from those of the pose, because a leg with few freedoms ties them together; none in most
     /// mechanisms. :meth:`dependent` gives their values.
     #[getter]
     fn dependent_coordinates(&self) -> Vec<TaskCoordinate> {
-        let coordinates = self.inner.dependent_coordinates().iter();
-        let unit = |quantity: Quantity| quantity.unit().to_owned();
-        coordinates
-            .map(|c| TaskCoordinate { name: c.name.into(), home: c.home, unit: unit(c.quantity) })
-            .collect()
+        self.inner.dependent_coordinates().iter().map(TaskCoordinate::of).collect()
     }
 
     /// Names of all joint coordinates: the columns of joint values.

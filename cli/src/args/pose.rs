@@ -8,7 +8,8 @@ use std::path::PathBuf;
 
 /// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
 ///
-/// A task coordinate that is not given has its home value; `opm decompose` lists the coordinates. A pose
+/// A task coordinate that is not given has its home value; `opm decompose` lists the coordinates. One that
+/// depends on the others is only compared with the value that follows. A pose
 /// out of reach is an answer (exit status 0): it names the legs that do not reach, and by how much.
 ///
 /// --transform takes the platform's pose in SE(3) instead: the position of its reference point and the
@@ -17,7 +18,7 @@ use std::path::PathBuf;
 /// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
 ///
 /// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians.
-/// CSV out: all task coordinates, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
+/// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\

@@ -214,11 +214,26 @@ fn text_is_in_the_units_of_the_file() {
 }
 
 /// The arm of a five-bar ties the forearm's angle to the place of the hand.
+/// The angle by which the five-bar's right forearm has turned from home, by the law of cosines; millimetres.
+fn right_forearm(x: f64, y: f64) -> f64 {
+    let (shoulder, upper, fore) = (160.0, 138.0_f64, 307.0_f64);
+    let away = (x - shoulder).hypot(y);
+    let at_shoulder = (upper * upper + away * away - fore * fore) / (2.0 * upper * away);
+    let arm = y.atan2(x - shoulder) - at_shoulder.acos();
+    let home = 60_f64.to_radians();
+    let elbow = |arm: f64| [shoulder + upper * arm.cos(), upper * arm.sin()];
+    let ([ex, ey], [hx, hy]) = (elbow(arm), elbow(home));
+    // At home the hand is above the middle between the shoulders.
+    let hand = hy + (fore * fore - hx * hx).sqrt();
+    (y - ey).atan2(x - ex) - (hand - hy).atan2(-hx)
+}
+
 #[test]
 fn dependent_coordinates_are_given_and_checked() {
     let found = ik(&["five-bar", "--pose", "x=20mm,y=300mm"]);
     assert_eq!(keys(&found["pose"]), ["x", "y", "theta"]);
     let theta = number(&found["pose"]["theta"]);
+    assert!((theta - right_forearm(20.0, 300.0)).abs() < EXACT);
     assert_eq!(number(&found["solutions"][0]["dependent"]["theta"]), theta);
     // The transform is the forearm's: the hand, and its rotation from home.
     let [w, z] = [0, 3].map(|i| number(&found["transform"]["quaternion"][i]));
@@ -231,7 +246,8 @@ fn dependent_coordinates_are_given_and_checked() {
     let some = ik(&["five-bar", "--all-modes", "--pose", &given]);
     assert_eq!(some["solutions"].as_array().unwrap().len(), 2);
     let wrong = ["ik", "five-bar", "--pose", "x=20mm,y=300mm,theta=3deg"];
-    opm(&wrong).fails_with_one_line(2, &["--pose", "theta is given as 3 deg", "1.38854 deg"]);
+    let follows = format!("{:.5} deg", theta.to_degrees());
+    opm(&wrong).fails_with_one_line(2, &["--pose", "theta is given as 3 deg", &follows]);
     let wrong = [&wrong[..], &["--all-modes"]].concat();
     opm(&wrong).fails_with_one_line(2, &["other values in all 4 working modes"]);
     let far = ik(&["five-bar", "--pose", "y=500mm"]);

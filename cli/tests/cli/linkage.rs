@@ -55,8 +55,8 @@ fn home_is_one_of_the_branches() {
     assert!(linkage(&[]).text().contains("home is in - +"));
 }
 
-/// The law of cosines on both sides of each four-bar's diagonal, with the arcs that the file states
-/// and the angle at the imaginary joint, which is 100 degrees at home in the one and 80 in the other.
+/// The spherical law of cosines gives the same diagonal from either side of each four-bar, with the arcs that the
+/// file states. At home the angle at the imaginary joint is 100 degrees in one four-bar and 80 in the other.
 #[test]
 fn a_turn_keeps_the_arcs_that_the_file_states() {
     let run = linkage(&["--sweep", "--count", "73"]);

@@ -217,8 +217,8 @@ pub enum Chain {
 }
 
 impl Chain {
-    /// The closed form of joints given at home in base coordinates, base first, inside `subspace`.
-    /// The joints are projected exactly into the subspace; what they deviate from it by is dropped.
+    /// The closed form of a chain in `subspace`. Its joints are in the order from the base, as they are at home, in
+    /// base coordinates. What they deviate from the subspace by is dropped.
     ///
     /// # Errors
     /// A wrong number of joints for the subspace, or joints that are dependent everywhere.

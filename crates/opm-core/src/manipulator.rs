@@ -11,6 +11,7 @@
 //! In both cases the two sections have as many freedoms as their subspace, and each is one
 //! [`Chain`](crate::chain::Chain).
 
+mod all_modes;
 mod batch;
 mod closure;
 mod dependent;
@@ -24,10 +25,11 @@ mod reach;
 mod read;
 mod transitions;
 
+pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
-pub use inverse::{ActuatedJoints, AllModes, LARGEST, PoseError, Solution, Unreachable};
+pub use inverse::{ActuatedJoints, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
 pub use locate::OutsideMotion;
@@ -257,12 +259,6 @@ impl Manipulator {
     /// square of the distances of the joint axes at home from the point nearest to all of them, and of their
     /// pitches. It does not depend on where the mechanism stands, and is proportional to its size.
     pub fn characteristic_length(&self) -> f64 {
-        self.length
-    }
-
-    /// The characteristic length.
-    #[inline]
-    pub(crate) fn size(&self) -> f64 {
         self.length
     }
 

@@ -358,26 +358,14 @@ impl Manipulator {
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
         let (leg, solved) = (&self.legs[number], &at.legs[number]);
-        let task = self.task();
+        let (task, length) = (self.task(), self.characteristic_length());
         let coordinates = self.coordinates();
         let vector = |first: usize| {
             Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
         };
         LegDifferential {
-            lower: Differential::new(
-                task.lower.kind,
-                &leg.lower,
-                &solved.lower,
-                vector,
-                self.size(),
-            ),
-            upper: Differential::new(
-                task.upper.kind,
-                &leg.upper,
-                &solved.upper,
-                vector,
-                self.size(),
-            ),
+            lower: Differential::new(task.lower.kind, &leg.lower, &solved.lower, vector, length),
+            upper: Differential::new(task.upper.kind, &leg.upper, &solved.upper, vector, length),
         }
     }
 

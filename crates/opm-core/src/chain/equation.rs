@@ -1,6 +1,8 @@
 //! Functions of one number, and the intervals in which they are too near to zero for their sign to be
 //! certain.
 
+use super::REACH_TOLERANCE;
+use super::condition::VERGE;
 use crate::group::JointDisplacement;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
@@ -12,7 +14,7 @@ const CONSTANT: f64 = 1e-12;
 /// A function of `t` that has its zeros in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Equation {
-    /// `c₀ + c₁ t + c₂ t²`, `c₂` not negative.
+    /// `c₀ + c₁ t + c₂ t²`; `c₂` is not negative where [`Equation::roots`] or [`Equation::zeros`] are asked for.
     Polynomial([f64; 3]),
     /// `c₀ + c₁ cos t + c₂ sin t`.
     Harmonic([f64; 3]),
@@ -80,6 +82,57 @@ impl Equation {
             Self::Periodic(..) => {
                 panic!("a function with a period of its own has no list of zeros")
             }
+        }
+    }
+
+    /// The zero at which the function rises (`sign` is `1.0`) or falls (`-1.0`), the only zero if there is one, and
+    /// `None` where it is zero everywhere. Its values count as zero below [`REACH_TOLERANCE`] times `unit`: there the
+    /// two zeros meet.
+    ///
+    /// # Errors
+    /// The value nearest to zero, if there is no zero.
+    ///
+    /// # Panics
+    /// If the function has a period other than 2π.
+    pub(crate) fn zero(&self, sign: f64, unit: f64) -> Result<Option<f64>, f64> {
+        let constant =
+            |c0: f64| if c0.abs() <= REACH_TOLERANCE * unit { Ok(None) } else { Err(c0) };
+        match *self {
+            Self::Harmonic([c0, c1, c2]) => {
+                let amplitude = c1.hypot(c2);
+                if amplitude <= VERGE * unit {
+                    return constant(c0);
+                }
+                if c0.abs() > amplitude + REACH_TOLERANCE * unit {
+                    return Err(c0 - amplitude.copysign(c0));
+                }
+                // c₀ + r cos(t - phase) rises before its crest.
+                let phase = c2.atan2(c1);
+                let height = ((amplitude - c0) * (amplitude + c0)).max(0.0).sqrt();
+                Ok(Some(phase - sign * height.atan2(-c0)))
+            }
+            Self::Polynomial([c0, c1, c2]) if c2.abs() <= VERGE * c1.abs().max(unit) => {
+                if c1.abs() <= VERGE * unit { constant(c0) } else { Ok(Some(-c0 / c1)) }
+            }
+            Self::Polynomial([c0, c1, c2]) => {
+                // The slope at a zero is the root of this, with the sign of the branch.
+                let square = c1 * c1 - 4.0 * c2 * c0;
+                if square < -REACH_TOLERANCE * unit * unit {
+                    return Err(c0 - 0.25 * c1 * c1 / c2);
+                }
+                Ok(Some((sign * square.max(0.0).sqrt() - c1) / (2.0 * c2)))
+            }
+            Self::Periodic(..) => {
+                panic!("a function with a period of its own has more than two zeros")
+            }
+        }
+    }
+
+    /// The slope at `t = 0`.
+    pub(crate) fn slope_at_zero(&self) -> f64 {
+        match *self {
+            Self::Polynomial([_, c1, _]) | Self::Periodic([_, c1], _) => c1,
+            Self::Harmonic([_, _, c2]) => c2,
         }
     }
 
@@ -195,6 +248,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// On its branch the function rises or falls through zero; beyond its range, the nearest value is told.
+    #[test]
+    fn the_sign_of_the_slope_tells_two_zeros_apart() {
+        for equation in [
+            Equation::Polynomial([-1.0, 0.5, 2.0]),
+            Equation::Polynomial([1.0, 0.5, -2.0]),
+            Equation::Harmonic([0.3, -1.0, 0.4]),
+        ] {
+            for sign in [1.0, -1.0] {
+                let zero = equation.zero(sign, 1.0).unwrap().unwrap();
+                assert!(at(&equation, zero).abs() < 1e-15, "{equation:?}: {zero}");
+                assert!(sign * (at(&equation, zero + 1e-3) - at(&equation, zero - 1e-3)) > 0.0);
+            }
+        }
+        let touching = Equation::Harmonic([-1.0, 1.0, 0.0]);
+        assert_eq!(touching.zero(1.0, 1.0), touching.zero(-1.0, 1.0));
+        assert_eq!(Equation::Harmonic([1.5, 1.0, 0.0]).zero(1.0, 1.0), Err(0.5));
+        assert_eq!(Equation::Polynomial([2.0, 2.0, 1.0]).zero(1.0, 1.0), Err(1.0));
+        assert_eq!(Equation::Polynomial([3.0, -2.0, 0.0]).zero(-1.0, 1.0), Ok(Some(1.5)));
+        assert_eq!(Equation::Polynomial([0.0; 3]).zero(1.0, 1.0), Ok(None));
+        assert_eq!(Equation::Harmonic([0.2, 0.0, 0.0]).zero(1.0, 1.0), Err(0.2));
     }
 
     /// A joint that a dead point does not depend on gives a constant, up to rounding.

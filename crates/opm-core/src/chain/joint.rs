@@ -7,7 +7,7 @@ use super::{ChainError, DEGENERATE};
 use crate::group::Subspace;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 
-/// A joint to build a chain from, at home in base coordinates.
+/// A joint of a chain, as it is at home, in base coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChainJoint {
     /// Rotation about the line through `point` along `axis`, with an advance of `pitch` metres per radian.
@@ -33,12 +33,8 @@ pub(super) fn each<T, const N: usize>(
     joints: &[ChainJoint; N],
     of: impl Fn(&ChainJoint) -> Result<T, ChainError>,
 ) -> Result<[T; N], ChainError> {
-    let mut error = None;
-    let found = joints.each_ref().map(|joint| of(joint).map_err(|e| error.get_or_insert(e)).ok());
-    match error {
-        Some(error) => Err(error),
-        None => Ok(found.map(|joint| joint.expect("there is no error"))),
-    }
+    let found: Vec<T> = joints.iter().map(of).collect::<Result<_, _>>()?;
+    Ok(found.try_into().unwrap_or_else(|_| unreachable!("there is one for each joint")))
 }
 
 pub(super) fn planar_joint(

@@ -8,6 +8,7 @@
 //! is like any other.
 
 use super::ChainJoint;
+use super::condition::dot;
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
     linear, quarter, rotation_about,
@@ -170,10 +171,6 @@ fn about(axis: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> Complex
 /// The displacement of a revolute joint in a plane, for a rotation counter-clockwise in the plane's frame.
 fn turned(s: &LocalTwist, rotation: Complex<f64>) -> JointDisplacement {
     JointDisplacement::Direction(if s.x < 0.0 { rotation.conj() } else { rotation })
-}
-
-fn dot(a: Complex<f64>, b: Complex<f64>) -> f64 {
-    a.re * b.re + a.im * b.im
 }
 
 /// The direction of a slider in a translational plane.

@@ -6,10 +6,10 @@ use super::{ChainError, ChainJoint};
 use crate::group::{LocalTwist, Subspace, SubspaceKind, angular_and_linear, linear, quarter};
 use nalgebra::Vector3;
 
-/// The screws of a chain's joints at home in their subspace's own frame, base first: `(ω, vx, vy)` in a
-/// plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane. Screws with
-/// fewer components are padded with zeros, and a chain of fewer joints gets unit vectors as further screws:
-/// then the three screws are always a square matrix, whose determinant is that of the chain.
+/// The screws of a chain's joints at home, in the order from the base, in the frame of their subspace:
+/// `(ω, vx, vy)` in a plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane.
+/// Screws with fewer components end in zeros, and a chain of fewer joints gets unit vectors as further screws: so
+/// the three screws are always a square matrix, whose determinant is that of the chain.
 ///
 /// # Errors
 /// A joint that is not in the subspace, or a wrong number of joints.

@@ -7,7 +7,7 @@ use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::{
-    ChainCoordinate, CompiledSection, LegSolution, Manipulator, Mode, Section, Solution,
+    ChainCoordinate, CompiledSection, Dependent, LegSolution, Manipulator, Mode, Section, Solution,
     Unreachable,
 };
 use crate::numeric::Quantity;
@@ -100,33 +100,34 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
-            if independent.is_none() {
-                self.accept(pose, mode, &target);
-            } else if let Some(mode) = self.completed_in(mode, pose, &target)
-                && let Ok(completed) = m.completed(pose, mode)
-            {
-                self.solution.take_pose(m, &completed);
-                self.accept(pose, mode, &target);
+            match &m.dependent {
+                None => self.accept(pose, mode, &target),
+                Some(dependent) => self.accept_completed(dependent, pose, mode, &target),
             }
         }
     }
 
-    /// A mode of the legs with the choices of dependent coordinates that give a displacement; `None` if none do.
-    fn completed_in(&mut self, legs: Mode, pose: &[f64], target: &Isometry3<f64>) -> Option<Mode> {
+    /// Accepts an assembly with the choices of dependent coordinates that give the displacement `target`, if there
+    /// are any; `legs` has the choices of the legs.
+    fn accept_completed(
+        &mut self,
+        dependent: &Dependent,
+        pose: &[f64],
+        legs: Mode,
+        target: &Isometry3<f64>,
+    ) {
         let m = self.manipulator;
-        let Some(dependent) = &m.dependent else { return Some(legs) };
-        let off = |mode: Mode| {
-            let completed = m.completed(pose, mode);
-            completed.map_or(f64::INFINITY, |all| m.apart(&m.task().displacement(&all), target))
-        };
         let modes = dependent.step_modes().map(|steps| legs.with(steps));
-        let (mode, error) =
-            modes.map(|mode| (mode, off(mode))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let completed = modes.filter_map(|mode| Some((mode, m.completed(pose, mode).ok()?)));
+        let off = |all: &[f64]| m.apart(&m.task().displacement(all), target);
+        let errors = completed.map(|(mode, all)| (off(&all), mode, all));
+        let Some((error, mode, all)) = errors.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
         if error > APART {
             self.reject(error);
-            return None;
+            return;
         }
-        Some(mode)
+        self.solution.take_pose(m, &all);
+        self.accept(pose, mode, target);
     }
 
     /// Notes by how much the joints of a rejected candidate are off.

@@ -16,21 +16,19 @@
 //!
 //! Further legs may impose constraints that the platform obeys already. They are only checked.
 
+mod complete;
+mod constraint;
 mod one_joint;
 mod zeros;
 
+use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::ModeLayout;
-use super::{Manipulator, Mode, Unreachable};
-use crate::chain::ReachDeficit;
-use crate::chain::condition::Condition;
-use crate::group::{Displacement, JointDisplacement, MotionType, SubspaceKind};
+use crate::group::{JointDisplacement, SubspaceKind};
 use crate::numeric::Quantity;
-use crate::numeric::angle::whole_turns;
 use crate::task::{CoordinateKind, Task};
+use constraint::{Constraint, constraints, follows, order, target_of};
 use one_joint::OneJoint;
-use std::f64::consts::TAU;
-use zeros::Function;
 
 /// The coordinate that follows from a condition is the first, in the order of preference, in which the
 /// condition has at least this share of its largest slope at home.
@@ -117,14 +115,6 @@ enum Closed {
     Condition { constraint: Constraint, coordinate: usize, quantity: Quantity },
     /// They follow from the one joint that moves.
     Joint(OneJoint),
-}
-
-/// A condition on a section of a leg.
-#[derive(Clone, Copy, Debug)]
-struct Constraint {
-    leg: usize,
-    section: Section,
-    condition: Condition,
 }
 
 impl Dependent {
@@ -236,71 +226,6 @@ impl Dependent {
         })
     }
 
-    /// Computes the dependent coordinates of a pose, whose independent ones are given, in a mode. Angles, and
-    /// coordinates that nothing determines, are those nearest to what `pose` holds.
-    ///
-    /// # Errors
-    /// The leg whose constraint no value of the dependent coordinates satisfies.
-    pub fn complete(
-        &self,
-        manipulator: &Manipulator,
-        mode: Mode,
-        pose: &mut [f64],
-    ) -> Result<(), Unreachable> {
-        for step in &self.steps {
-            let sign = step.sign(mode);
-            let (leg, section) = (step.solution.leg(), step.solution.section());
-            let missed = |deficit| Unreachable { leg, section, deficit };
-            match &step.solution {
-                Closed::Constant { coordinates, .. } => {
-                    for &coordinate in coordinates {
-                        pose[coordinate] = manipulator.task().coordinates[coordinate].home;
-                    }
-                }
-                Closed::Condition { constraint, coordinate, .. } => {
-                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
-                    let task = manipulator.task();
-                    let target =
-                        |pose: &[f64]| target_of(task, &manipulator.legs[leg], section, tau, pose);
-                    let held = pose[*coordinate];
-                    let function = constraint.function(task, target, *coordinate, pose, self.size);
-                    pose[*coordinate] = function
-                        .zero(sign, held)
-                        .map_err(|value| missed(constraint.condition.deficit(value)))?;
-                }
-                Closed::Joint(joint) => {
-                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
-                    joint.solve(manipulator, tau, sign, pose).map_err(missed)?;
-                }
-            }
-        }
-        for check in &self.checks {
-            let Constraint { leg, section, condition } = *check;
-            let tau = manipulator.tau_before(leg, section, pose, mode)?;
-            let legs = &manipulator.legs;
-            let target = target_of(manipulator.task(), &legs[leg], section, tau, pose);
-            let value = condition.value(&target);
-            let deficit = condition.deficit(value);
-            let unit = if deficit.quantity == Quantity::Length { self.size } else { 1.0 };
-            if deficit.excess > OBEYED * unit {
-                return Err(Unreachable { leg, section, deficit });
-            }
-        }
-        Ok(())
-    }
-
-    /// The independent coordinates among all of a pose. Of the two triples of Euler angles of an orientation it takes
-    /// the one in the branch at home.
-    pub fn independent_of(&self, manipulator: &Manipulator, all: &[f64]) -> Vec<f64> {
-        let mut pose = all.to_vec();
-        for step in &self.steps {
-            if let Closed::Joint(joint) = &step.solution {
-                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), &mut pose);
-            }
-        }
-        self.independent.iter().map(|&i| pose[i]).collect()
-    }
-
     /// The constraints that only repeat others, as the legs and sections that they belong to.
     pub fn checked(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
         self.checks.iter().map(|check| (check.leg, check.section))
@@ -325,42 +250,12 @@ impl Dependent {
     }
 }
 
-/// The sections in the order in which their dependent coordinates are found: first the one that is taken modulo
-/// the intersection motion.
-fn order(task: &Task) -> [Section; 2] {
-    match task.shared() {
-        Some(MotionType::Rotation) | None => [Section::Lower, Section::Upper],
-        Some(MotionType::Translation) => [Section::Upper, Section::Lower],
-    }
-}
-
-/// The constraints of a leg's section.
-fn constraints(
-    legs: &[CompiledLeg],
-    leg: usize,
-    section: Section,
-) -> impl Iterator<Item = Constraint> + use<> {
-    let compiled = legs[leg].section(section);
-    let (chain, partial) = (compiled.chain, compiled.partial);
-    let locked = partial.into_iter().flat_map(|partial| partial.locked_joints());
-    locked.filter_map(move |joint| {
-        let condition = Condition::new(&chain, joint, JointDisplacement::Value(0.0))?;
-        Some(Constraint { leg, section, condition })
-    })
-}
-
 /// The numbers of a section's coordinates.
 fn coordinates_of(task: &Task, section: Section) -> Vec<usize> {
     match section {
         Section::Lower => (0..task.lower_count).collect(),
         Section::Upper => (task.lower_count..task.coordinates.len()).collect(),
     }
-}
-
-/// Whether the displacement τ of a leg's imaginary joint, which the other section tells, matters to this one. It
-/// does not where the section is the first to be solved: then it contains the intersection motion itself.
-fn follows(task: &Task, leg: &CompiledLeg, section: Section) -> bool {
-    leg.bridge().is_some_and(|bridge| bridge != section) && order(task)[0] != section
 }
 
 /// How the constraints of a leg's section determine coordinates; `None` if they determine none at home.
@@ -404,7 +299,7 @@ fn closed(
                 let target = |pose: &[f64]| target_of(task, &legs[leg], section, tau, pose);
                 let mut pose = home.clone();
                 let function = constraint.function(task, target, coordinate, &mut pose, size);
-                (function.slope(home[coordinate]) * unit).abs() / constraint.unit(size)
+                (function.slope() * unit).abs() / constraint.unit(size)
             };
             let mut preferred = coordinates;
             preferred
@@ -472,117 +367,4 @@ impl Closed {
             Self::Joint(joint) => joint.has_choice(),
         }
     }
-}
-
-impl Constraint {
-    /// The unit of the condition's value.
-    fn unit(&self, size: f64) -> f64 {
-        match self.condition {
-            Condition::Circle { .. } => size * size,
-            Condition::Line { .. } | Condition::CarriedLine { .. } | Condition::Flat { .. } => size,
-            Condition::Heading { .. } | Condition::Cone { .. } => 1.0,
-        }
-    }
-
-    /// Whether two values of a coordinate satisfy the condition.
-    fn has_choice(&self, quantity: Quantity) -> bool {
-        match self.condition {
-            Condition::Circle { .. } => true,
-            Condition::Line { .. } | Condition::CarriedLine { .. } | Condition::Cone { .. } => {
-                quantity == Quantity::Angle
-            }
-            // The opposite heading is no solution.
-            Condition::Heading { .. } | Condition::Flat { .. } => false,
-        }
-    }
-
-    /// The value of the condition as a function of one coordinate, with the others as in `pose`. `target` gives
-    /// the displacement that the condition is on.
-    fn function(
-        &self,
-        task: &Task,
-        target: impl Fn(&[f64]) -> Displacement,
-        coordinate: usize,
-        pose: &mut [f64],
-        size: f64,
-    ) -> Function {
-        let held = pose[coordinate];
-        let mut value = |t: f64| {
-            pose[coordinate] = t;
-            self.condition.value(&target(pose))
-        };
-        let home = task.coordinates[coordinate].home;
-        // On a cylinder angles are counted, and the condition is linear in them.
-        let counted = matches!(self.condition, Condition::Flat { .. });
-        let function = match task.coordinates[coordinate].quantity {
-            Quantity::Angle if !counted => Function::wave(home, self.unit(size), &mut value),
-            Quantity::Angle => Function::polynomial(home, 1.0, self.unit(size), &mut value),
-            Quantity::Length => Function::polynomial(home, size, self.unit(size), &mut value),
-        };
-        pose[coordinate] = held;
-        function
-    }
-}
-
-/// What a section's chain has to reach at a pose: the section's displacement, after that of the imaginary joint
-/// if it belongs to the other section, where its displacement along the intersection motion is `tau`.
-fn target_of(
-    task: &Task,
-    leg: &CompiledLeg,
-    section: Section,
-    tau: JointDisplacement,
-    pose: &[f64],
-) -> Displacement {
-    let shifted = follows(task, leg, section);
-    match section {
-        Section::Lower => {
-            let v = task.lower(pose);
-            if shifted { task.lower_intersection.after(&v, tau) } else { v }
-        }
-        Section::Upper => {
-            let b = task.upper(&pose[task.lower_count..]);
-            // exp(-I τ) · b
-            if shifted { task.upper_intersection.before(&b, tau.inverse()) } else { b }
-        }
-    }
-}
-
-impl Manipulator {
-    /// The displacement τ of a leg along the intersection motion, where that follows from the section other than
-    /// this one; zero otherwise.
-    ///
-    /// # Errors
-    /// The other section is out of reach.
-    fn tau_before(
-        &self,
-        number: usize,
-        section: Section,
-        pose: &[f64],
-        mode: Mode,
-    ) -> Result<JointDisplacement, Unreachable> {
-        let leg = &self.legs[number];
-        if !follows(self.task(), leg, section) {
-            return Ok(JointDisplacement::Value(0.0));
-        }
-        let bridge = leg.split_section;
-        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: bridge, deficit };
-        let (task, branches) = (self.task(), self.branches(mode, number));
-        match bridge {
-            Section::Lower => {
-                let v = task.lower(pose);
-                let displacements = leg.lower.inverse(&v, branches.lower).map_err(missed)?;
-                Ok(leg.unwound(leg.step(&displacements), 0.0).inverse())
-            }
-            Section::Upper => {
-                let b = task.upper(&pose[task.lower_count..]);
-                let displacements = leg.upper.inverse(&b, branches.upper).map_err(missed)?;
-                Ok(leg.unwound(leg.step(&displacements), 0.0))
-            }
-        }
-    }
-}
-
-/// The angle plus full revolutions, within π of `reference`.
-fn near(angle: f64, reference: f64) -> f64 {
-    angle - TAU * whole_turns(angle - reference)
 }

@@ -5,8 +5,8 @@
 //! reach it returns `Ok(None)`, and the buffer tells which legs do not reach it. An error means that the
 //! pose is not valid. Nothing allocates.
 
-use super::leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegSolution, Section};
-use super::{Dependent, Manipulator, Mode};
+use super::leg::{ChainCoordinate, CompiledSection, LegSolution, Section};
+use super::{Manipulator, Mode};
 use crate::chain::{Chain, ReachDeficit};
 use crate::group::{Displacement, JointDisplacement};
 use nalgebra::{Isometry3, Vector3};
@@ -92,11 +92,11 @@ pub struct Solution {
     pub(crate) imaginary: Vec<f64>,
     /// Every leg's displacement along the intersection motion, radians or metres, whether it is reported as an
     /// imaginary joint or not.
-    taus: Vec<f64>,
+    pub(super) taus: Vec<f64>,
     /// The pose that was solved, from which velocities are computed.
     pub(crate) solved: SolvedPose,
     /// The values of its independent and of its dependent coordinates; empty where all are independent.
-    parts: [Vec<f64>; 2],
+    pub(super) parts: [Vec<f64>; 2],
     /// Every leg's displacements from home, as its chains give them.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
@@ -166,7 +166,7 @@ impl Solution {
 
     /// This solution, if every leg closes.
     #[inline]
-    fn reached(&self) -> Option<&Self> {
+    pub(super) fn reached(&self) -> Option<&Self> {
         self.unreachable.is_empty().then_some(self)
     }
 }
@@ -263,41 +263,6 @@ impl ActuatedJoints {
     }
 }
 
-/// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
-///
-/// ```
-/// use opm_core::Manipulator;
-///
-/// let manipulator = Manipulator::example("planar-3rrr")?;
-/// let (mut every, mut buffer) = (manipulator.all_modes(), manipulator.solution());
-/// let pose = manipulator.pose([("theta", 0.1)])?;
-/// let found = manipulator.inverse_all(&pose, &mut every)?.expect("a pose in reach");
-/// for mode in found.modes(&manipulator) {
-///     let joints = manipulator.solution_in_mode(found, mode, &mut buffer).expect("it is listed");
-///     println!("{}: {:?}", manipulator.format_mode(mode), joints.joints());
-/// }
-/// assert_eq!(found.modes(&manipulator).count(), 8);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct AllModes {
-    /// One for each combination of the choices of dependent coordinates: one where all are independent.
-    completions: Vec<Completion>,
-}
-
-/// The solutions of the legs at a pose with its dependent coordinates.
-#[derive(Clone, Debug)]
-struct Completion {
-    solved: SolvedPose,
-    /// The leg whose constraint has no solution, if there is one.
-    missed: Option<Unreachable>,
-    legs: Vec<LegModes>,
-}
-
-/// A leg's solutions in the order of [`super::mode::ModeLayout::of_leg`]; `None` for combinations that the
-/// leg does not have, and before the first pose.
-type LegModes = [Option<Result<LegSolution, Unreachable>>; 4];
-
 impl Manipulator {
     /// A buffer for [`Manipulator::inverse`]. It holds the values at home, which the first call of
     /// [`Manipulator::inverse_near`] starts from.
@@ -329,20 +294,12 @@ impl Manipulator {
         }
     }
 
-    /// A buffer for [`Manipulator::inverse_all`].
-    pub fn all_modes(&self) -> AllModes {
-        let count = self.dependent.as_ref().map_or(1, Dependent::combinations);
-        let legs = vec![[None; 4]; self.legs.len()];
-        let completion = Completion { solved: self.solved_at_home(), missed: None, legs };
-        AllModes { completions: vec![completion; count] }
-    }
-
     /// The pose at home, radians and metres.
     pub fn home_pose(&self) -> Vec<f64> {
         self.task_coordinates().iter().map(|c| c.home).collect()
     }
 
-    fn solved_at_home(&self) -> SolvedPose {
+    pub(super) fn solved_at_home(&self) -> SolvedPose {
         let pose = self.home.clone();
         let (v, b) = self.task.sections(&pose);
         SolvedPose { pose, v, b }
@@ -449,9 +406,7 @@ impl Manipulator {
             None => self.task.sections(pose),
             Some(dependent) => {
                 let all = &mut buffer.all;
-                all.copy_from_slice(&self.home);
-                dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
-                if dependent.complete(self, mode, all).is_err() {
+                if dependent.complete_from_home(self, mode, pose, all).is_err() {
                     return Ok(None);
                 }
                 self.task.sections(all)
@@ -480,202 +435,6 @@ impl Manipulator {
             }
         }
         Ok(Some(buffer))
-    }
-
-    /// Every working mode at a pose; `None` where it is out of reach in all of them. Then
-    /// [`AllModes::modes`] lists those that reach it, and [`Manipulator::solution_in_mode`] gives the
-    /// joints in one.
-    ///
-    /// # Errors
-    /// As [`Manipulator::inverse`].
-    pub fn inverse_all<'a>(
-        &self,
-        pose: &[f64],
-        buffer: &'a mut AllModes,
-    ) -> Result<Option<&'a AllModes>, PoseError> {
-        self.check_pose(pose)?;
-        for (number, completion) in buffer.completions.iter_mut().enumerate() {
-            let Completion { solved, missed, legs } = completion;
-            legs.fill([None; 4]);
-            // The choices that the dependent coordinates are computed with.
-            let (mut mask, mut chosen) = (Mode::default(), Mode::default());
-            *missed = None;
-            match &self.dependent {
-                None => solved.pose.copy_from_slice(pose),
-                Some(dependent) => {
-                    (mask, chosen) = (dependent.mask(), dependent.mode(number));
-                    solved.pose.copy_from_slice(&self.home);
-                    dependent.independent.iter().zip(pose).for_each(|(&i, q)| solved.pose[i] = *q);
-                    *missed = dependent.complete(self, chosen, &mut solved.pose).err();
-                }
-            }
-            if missed.is_some() {
-                continue;
-            }
-            (solved.v, solved.b) = self.task.sections(&solved.pose);
-            let (v, b) = (solved.v, solved.b);
-            for (number, (leg, modes)) in self.legs.iter().zip(legs).enumerate() {
-                let own = self.modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
-                for (part, mode) in self.modes.leg_modes(number).enumerate() {
-                    if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
-                        continue;
-                    }
-                    let branches = self.modes.branches(mode, number);
-                    let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
-                    modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
-                        leg: number,
-                        section,
-                        deficit,
-                    }));
-                }
-            }
-        }
-        Ok(buffer.reached().then_some(buffer))
-    }
-
-    /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
-    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists
-    /// the legs), or where `all` does not hold a pose yet.
-    pub fn solution_in_mode<'a>(
-        &self,
-        all: &AllModes,
-        mode: Mode,
-        buffer: &'a mut Solution,
-    ) -> Option<&'a Solution> {
-        buffer.unreachable.clear();
-        buffer.within_limits = true;
-        let completion = &all.completions[self.completion(mode)];
-        if let Some(missed) = completion.missed {
-            buffer.unreachable.push(missed);
-            return None;
-        }
-        for (number, modes) in completion.legs.iter().enumerate() {
-            match &modes[self.modes.of_leg(mode, number)] {
-                Some(Ok(solution)) => self.write(number, solution, buffer, Revolutions::NearHome),
-                Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
-                None => return None,
-            }
-        }
-        let SolvedPose { pose, v, b } = &completion.solved;
-        buffer.solved.pose.copy_from_slice(pose);
-        (buffer.solved.v, buffer.solved.b) = (*v, *b);
-        self.divide(buffer);
-        buffer.reached()
-    }
-
-    /// The number of the combination of choices of dependent coordinates in a mode.
-    fn completion(&self, mode: Mode) -> usize {
-        self.dependent.as_ref().map_or(0, |dependent| dependent.combination(mode))
-    }
-
-    /// The first working mode, all-plus first, that reaches the pose of `all` within the limits, and
-    /// the joints in it; `None` where there is none.
-    pub fn solution_within_limits<'a>(
-        &self,
-        all: &AllModes,
-        buffer: &'a mut Solution,
-    ) -> Option<(Mode, &'a Solution)> {
-        let first = (all.completions.iter().enumerate())
-            .filter(|(_, completion)| completion.missed.is_none())
-            .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
-        self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
-    }
-
-    /// The first mode with the legs within their limits, and with one combination of choices of dependent
-    /// coordinates.
-    fn first_within_limits(&self, number: usize, completion: &Completion) -> Option<Mode> {
-        let mut first = self.dependent.as_ref().map_or(Mode::default(), |d| d.mode(number));
-        for (number, (leg, modes)) in self.legs.iter().zip(&completion.legs).enumerate() {
-            let within = |solution: &LegSolution| {
-                leg.lower.admits(&self.limits, &solution.lower)
-                    && leg.upper.admits(&self.limits, &solution.upper)
-            };
-            // Legs share no choices, so that the first mode consists of the first choices of each leg.
-            let mode = (self.modes.leg_modes(number).zip(modes))
-                .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
-                .0;
-            first.0 |= mode.0;
-        }
-        Some(first)
-    }
-
-    /// Whether any mode reaches the pose of `all` within the limits. `used` is called with the number and the value
-    /// of the imaginary joints in all these modes.
-    #[doc(hidden)]
-    pub fn within_limits_in_any(&self, all: &AllModes, mut used: impl FnMut(usize, f64)) -> bool {
-        let mut reached = false;
-        for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
-            let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
-                let (lower, upper) = (&leg.lower, &leg.upper);
-                modes.map(|solution| {
-                    solution.and_then(Result::ok).filter(|solution| {
-                        lower.admits(&self.limits, &solution.lower)
-                            && upper.admits(&self.limits, &solution.upper)
-                    })
-                })
-            };
-            let legs = || self.legs.iter().zip(&completion.legs);
-            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
-                continue;
-            }
-            reached = true;
-            for leg in legs() {
-                let Some(imaginary) = leg.0.imaginary else { continue };
-                let joint = &self.imaginary[imaginary];
-                for solution in within(leg).iter().flatten() {
-                    used(imaginary, joint.value(solution.tau, joint.home));
-                }
-            }
-        }
-        reached
-    }
-
-    /// The dependent coordinates of a pose in a mode, in the order of [`Manipulator::dependent_coordinates`], radians
-    /// and metres, angles within π of home; `None` where they have no solution. Other legs may be out of reach.
-    ///
-    /// # Errors
-    /// As [`Manipulator::inverse`].
-    ///
-    /// ```
-    /// use opm_core::Manipulator;
-    ///
-    /// // The place of the hand tells the angle of the right forearm.
-    /// let manipulator = Manipulator::example("five-bar")?;
-    /// let pose = manipulator.pose([("x", 0.02), ("y", 0.3)])?;
-    /// let found = manipulator.dependent_values(&pose, manipulator.home_mode())?;
-    /// assert!((found.expect("in reach")[0].to_degrees() - 1.3885).abs() < 1e-4);
-    /// assert_eq!(manipulator.dependent_values(&[0.0, 0.5], manipulator.home_mode())?, None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn dependent_values(
-        &self,
-        pose: &[f64],
-        mode: Mode,
-    ) -> Result<Option<Vec<f64>>, PoseError> {
-        self.check_pose(pose)?;
-        let Some(dependent) = &self.dependent else { return Ok(Some(Vec::new())) };
-        let found = self.completed(pose, mode).ok();
-        Ok(found.map(|all| dependent.coordinates.iter().map(|&i| all[i]).collect()))
-    }
-
-    /// All coordinates of a pose in a mode, dependent ones too; angles within π of home.
-    ///
-    /// # Errors
-    /// The leg whose constraint has no solution.
-    pub(crate) fn completed(&self, pose: &[f64], mode: Mode) -> Result<Vec<f64>, Unreachable> {
-        let Some(dependent) = &self.dependent else { return Ok(pose.to_vec()) };
-        let mut all = self.home.clone();
-        dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
-        dependent.complete(self, mode, &mut all)?;
-        Ok(all)
-    }
-
-    /// The independent coordinates among all of a pose.
-    pub(crate) fn independent_of(&self, all: &[f64]) -> Vec<f64> {
-        match &self.dependent {
-            None => all.to_vec(),
-            Some(dependent) => dependent.independent_of(self, all),
-        }
     }
 
     /// Returns an error for a pose with a wrong number of coordinates, or with one that is not a finite number.
@@ -710,37 +469,6 @@ impl Manipulator {
         out.solved.pose.copy_from_slice(pose);
         (out.solved.v, out.solved.b) = self.task.sections(pose);
         Ok(true)
-    }
-
-    /// The same for a mechanism with dependent coordinates.
-    #[cold]
-    fn displace_dependent(
-        &self,
-        pose: &[f64],
-        mode: Mode,
-        out: &mut Solution,
-        revolutions: Revolutions,
-    ) -> bool {
-        let Some(dependent) = &self.dependent else { return true };
-        let all = &mut out.solved.pose;
-        if revolutions == Revolutions::NearHome {
-            all.copy_from_slice(&self.home);
-        }
-        dependent.independent.iter().zip(pose).for_each(|(&i, q)| all[i] = *q);
-        out.unreachable.clear();
-        out.unreachable.extend(dependent.complete(self, mode, all).err());
-        (out.solved.v, out.solved.b) = self.task.sections(all);
-        self.divide(out);
-        out.unreachable.is_empty()
-    }
-
-    /// Copies the independent and the dependent coordinates of the solved pose.
-    fn divide(&self, out: &mut Solution) {
-        let Some(dependent) = &self.dependent else { return };
-        let [independent, others] = &mut out.parts;
-        let all = &out.solved.pose;
-        independent.iter_mut().zip(&dependent.independent).for_each(|(q, &i)| *q = all[i]);
-        others.iter_mut().zip(&dependent.coordinates).for_each(|(q, &i)| *q = all[i]);
     }
 
     #[inline]
@@ -785,7 +513,7 @@ impl Manipulator {
 
     /// Writes a leg's solution to `out`.
     #[inline]
-    fn write(
+    pub(super) fn write(
         &self,
         number: usize,
         solution: &LegSolution,
@@ -838,7 +566,7 @@ impl Manipulator {
 
 /// How the number of full revolutions of a reported angle is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Revolutions {
+pub(super) enum Revolutions {
     /// The angle is within π of home, or within the limits where that is possible.
     NearHome,
     /// The angle is the one nearest to the value that the buffer holds.
@@ -852,42 +580,6 @@ impl Revolutions {
             Self::NearHome => home,
             Self::NearHeld => held,
         }
-    }
-}
-
-impl Completion {
-    /// The legs that no choice closes, with the deficit of the first one.
-    fn open_legs(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
-        let open = self.legs.iter().filter(move |leg| !closes(leg));
-        open.filter_map(|leg| leg.iter().flatten().find_map(|solution| solution.err()))
-    }
-}
-
-impl AllModes {
-    /// Whether any mode reaches the pose.
-    fn reached(&self) -> bool {
-        self.completions.iter().any(|c| c.missed.is_none() && c.open_legs().next().is_none())
-    }
-
-    /// The legs that are out of reach in every mode; empty where the pose is in reach.
-    pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        let missing = !self.reached();
-        let completed = self.completions.iter().find(|c| c.missed.is_none());
-        let missed = self.completions[0].missed.filter(|_| missing && completed.is_none());
-        let open = completed.filter(|_| missing).into_iter().flat_map(Completion::open_legs);
-        missed.into_iter().chain(open)
-    }
-
-    /// The modes in which the pose is in reach, all-plus first.
-    pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
-        let layout = &manipulator.modes;
-        manipulator.modes().filter(move |&mode| {
-            let completion = &self.completions[manipulator.completion(mode)];
-            let mut legs = completion.legs.iter().enumerate();
-            completion.missed.is_none()
-                && legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
-        })
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::{Manipulator, Mode, PoseError};
 use crate::numeric::Quantity;
-use crate::numeric::angle::whole_turns;
+use crate::numeric::angle::near;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector3, Vector6};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -193,7 +193,7 @@ impl Manipulator {
     fn within_half_a_turn(&self, mut pose: Vec<f64>) -> Vec<f64> {
         for (q, c) in pose.iter_mut().zip(&self.task.coordinates) {
             if c.quantity == Quantity::Angle && !self.counts_turns(c.kind()) {
-                *q -= TAU * whole_turns(*q - c.home);
+                *q = near(*q, c.home);
             }
         }
         pose

@@ -16,8 +16,7 @@ use super::{Path, PlatformMotion, Spline};
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
 use crate::numeric::Quantity;
-use crate::numeric::angle::whole_turns;
-use std::f64::consts::TAU;
+use crate::numeric::angle::near;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
@@ -218,6 +217,6 @@ fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problem
 /// Shifts every angle by multiples of 2π to within π of the previous one.
 fn unwrap(angles: &mut [f64]) {
     for i in 1..angles.len() {
-        angles[i] -= TAU * whole_turns(angles[i] - angles[i - 1]);
+        angles[i] = near(angles[i], angles[i - 1]);
     }
 }

@@ -152,6 +152,11 @@ pub(crate) fn whole_turns(angle: f64) -> f64 {
     if revolutions.abs() <= 0.5 { 0.0 } else { revolutions.round() }
 }
 
+/// The angle plus full revolutions, within π of `reference`.
+pub(crate) fn near(angle: f64, reference: f64) -> f64 {
+    angle - TAU * whole_turns(angle - reference)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,9 +6,8 @@ use crate::group::{
     PlanarMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::numeric::Quantity;
-use crate::numeric::angle::{sin_cos, whole_turns};
+use crate::numeric::angle::{near, sin_cos};
 use nalgebra::{Complex, Matrix3, Vector3};
-use std::f64::consts::TAU;
 
 /// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
 const POLE: f64 = 1e-13;
@@ -156,11 +155,6 @@ impl Task {
 /// The angles `mu nu` of the rotation that takes the third direction to `axis`.
 pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
     [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
-}
-
-/// The angle plus full revolutions, within π of `home`.
-fn near(angle: f64, home: f64) -> f64 {
-    angle - TAU * whole_turns(angle - home)
 }
 
 /// The angles `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`: of all triples, the one nearest to `home`.

@@ -7,6 +7,7 @@
 use super::{JointMotion, SINGULAR, SingularCause, SingularLeg};
 use crate::manipulator::{Dependent, Manipulator, Section, Solution};
 use crate::numeric::Quantity;
+use nalgebra::{LU, Matrix6, U6, Vector6};
 
 /// The largest number of task coordinates.
 const MOST: usize = 6;
@@ -29,7 +30,7 @@ impl Manipulator {
     ) -> Option<AllRates> {
         let mut all = [[0.0; MOST]; 2];
         for (all, given) in all.iter_mut().zip(given) {
-            dependent.independent.iter().zip(given).for_each(|(&i, rate)| all[i] = *rate);
+            dependent.spread(given, all);
         }
         let n = self.task().coordinates.len();
         let still = [0.0; MOST];
@@ -41,11 +42,10 @@ impl Manipulator {
             let [rates, _] = self.locked_motion(dependent, at, [&unit[..n], &still[..n]]);
             (0..MOST).for_each(|row| matrix[row][column] = rates[row]);
         }
-        let units = self.dependent_units();
+        let system = System::new(&matrix, self.dependent_units(), dependent.coordinates.len());
         for part in 0..2 {
             let moved = self.locked_motion(dependent, at, [&all[0][..n], &all[1][..n]])[part];
-            let found =
-                solved(matrix, moved.map(|rate| -rate), &units[..dependent.coordinates.len()])?;
+            let found = system.solve(moved.map(|rate| -rate))?;
             for (&i, rate) in dependent.coordinates.iter().zip(found) {
                 all[part][i] = rate;
             }
@@ -97,49 +97,35 @@ impl Manipulator {
     }
 }
 
-/// The determinant of a system of equations, whose unknowns have these units.
-pub(super) fn determinant(mut m: Square, units: &[f64]) -> f64 {
-    let n = units.len();
-    let mut product: f64 = units.iter().product();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs())).unwrap_or(k);
-        if m[pivot][k] == 0.0 {
-            return 0.0;
-        }
-        if pivot != k {
-            m.swap(k, pivot);
-            product = -product;
-        }
-        let pivot = m[k];
-        product *= pivot[k];
-        for row in &mut m[k + 1..n] {
-            let factor = row[k] / pivot[k];
-            row.iter_mut().zip(&pivot).for_each(|(entry, above)| *entry -= factor * above);
-        }
-    }
-    product
+/// The rates of the locked joints by those of the dependent coordinates, and their units; ready to be solved.
+pub(super) struct System {
+    lu: LU<f64, U6, U6>,
+    units: [f64; MOST],
 }
 
-/// The solution of a system of equations, by elimination with pivoting. `units` are those of the unknowns; there
-/// are as many equations. `None` where the system is singular.
-pub(super) fn solved(mut m: Square, mut right: [f64; MOST], units: &[f64]) -> Option<[f64; MOST]> {
-    let n = units.len();
-    for row in m.iter_mut().take(n) {
-        row.iter_mut().zip(units).for_each(|(entry, unit)| *entry *= unit);
+impl System {
+    /// `rates` has a row for each locked joint and a column for each dependent coordinate, of which there are
+    /// `count`.
+    pub fn new(rates: &Square, units: [f64; MOST], count: usize) -> Self {
+        let entry = |i: usize, j: usize| match i < count && j < count {
+            true => rates[i][j] * units[j],
+            false => f64::from(u8::from(i == j)),
+        };
+        Self { lu: Matrix6::from_fn(entry).lu(), units }
     }
-    for k in 0..n {
-        let pivot = (k..n).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs()))?;
-        if m[pivot][k].abs() < SINGULAR {
+
+    /// The determinant, dimensionless.
+    pub fn determinant(&self) -> f64 {
+        self.lu.determinant()
+    }
+
+    /// The rates of the dependent coordinates at which the locked joints have these rates. `None` where they are not
+    /// determined.
+    pub fn solve(&self, rates: [f64; MOST]) -> Option<[f64; MOST]> {
+        if self.lu.u().diagonal().iter().any(|pivot| pivot.abs() < SINGULAR) {
             return None;
         }
-        m.swap(k, pivot);
-        right.swap(k, pivot);
-        let pivot = m[k];
-        for i in (0..n).filter(|&i| i != k) {
-            let factor = m[i][k] / pivot[k];
-            m[i].iter_mut().zip(&pivot).for_each(|(entry, above)| *entry -= factor * above);
-            right[i] -= factor * right[k];
-        }
+        let found = self.lu.solve(&Vector6::from(rates))?;
+        Some(found.component_mul(&Vector6::from(self.units)).into())
     }
-    Some(std::array::from_fn(|i| if i < n { right[i] / m[i][i] * units[i] } else { 0.0 }))
 }

@@ -1,7 +1,7 @@
 //! The Jacobians of the upper section, of the lower section, of the whole mechanism, and of the task
 //! coordinates.
 
-use super::dependent::{determinant, solved};
+use super::dependent::System;
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
@@ -390,12 +390,12 @@ impl Manipulator {
             let rates = rates(coordinate);
             (0..count).for_each(|row| matrix[row][column] = rates[row]);
         }
-        let units = self.dependent_units();
-        out.dependence = determinant(matrix, &units[..count]);
+        let system = System::new(&matrix, self.dependent_units(), count);
+        out.dependence = system.determinant();
         for (column, &coordinate) in dependent.independent.iter().enumerate() {
             columns[(coordinate, column)] = 1.0;
             let right = rates(coordinate).map(|rate| -rate);
-            let Some(found) = solved(matrix, right, &units[..count]) else {
+            let Some(found) = system.solve(right) else {
                 columns.fill(f64::NAN);
                 return;
             };

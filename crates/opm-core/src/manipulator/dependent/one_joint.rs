@@ -5,7 +5,6 @@
 //! itself before. Where the platform's home orientation is the identity that is
 //! `sin(ξ/2) = ρ sin(q/2)`, with `ρ` the sine of the angle between `s` and the third direction.
 
-use super::near;
 use crate::chain::{REACH_TOLERANCE, ReachDeficit};
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
@@ -14,7 +13,7 @@ use crate::group::{
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
 use crate::numeric::Quantity;
-use crate::numeric::angle::unit;
+use crate::numeric::angle::{near, unit};
 use crate::task::Task;
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::PI;

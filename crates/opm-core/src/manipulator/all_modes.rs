@@ -1,0 +1,233 @@
+//! Inverse kinematics in every working mode: each choice of each leg is solved once, and the modes combine them.
+
+use super::inverse::{PoseError, Revolutions, Solution, SolvedPose, Unreachable};
+use super::leg::{CompiledLeg, LegSolution};
+use super::{Dependent, Manipulator, Mode};
+
+/// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
+///
+/// ```
+/// use opm_core::Manipulator;
+///
+/// let manipulator = Manipulator::example("planar-3rrr")?;
+/// let (mut every, mut buffer) = (manipulator.all_modes(), manipulator.solution());
+/// let pose = manipulator.pose([("theta", 0.1)])?;
+/// let found = manipulator.inverse_all(&pose, &mut every)?.expect("a pose in reach");
+/// for mode in found.modes(&manipulator) {
+///     let joints = manipulator.solution_in_mode(found, mode, &mut buffer).expect("it is listed");
+///     println!("{}: {:?}", manipulator.format_mode(mode), joints.joints());
+/// }
+/// assert_eq!(found.modes(&manipulator).count(), 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct AllModes {
+    /// One for each combination of the choices of dependent coordinates: one where all are independent.
+    completions: Vec<Completion>,
+}
+
+/// The solutions of the legs at a pose with its dependent coordinates.
+#[derive(Clone, Debug)]
+struct Completion {
+    solved: SolvedPose,
+    /// The leg whose constraint has no solution, if there is one.
+    missed: Option<Unreachable>,
+    legs: Vec<LegModes>,
+}
+
+/// A leg's solutions in the order of [`super::mode::ModeLayout::of_leg`]; `None` for combinations that the
+/// leg does not have, and before the first pose.
+type LegModes = [Option<Result<LegSolution, Unreachable>>; 4];
+
+impl Manipulator {
+    /// A buffer for [`Manipulator::inverse_all`].
+    pub fn all_modes(&self) -> AllModes {
+        let count = self.dependent.as_ref().map_or(1, Dependent::combinations);
+        let legs = vec![[None; 4]; self.legs.len()];
+        let completion = Completion { solved: self.solved_at_home(), missed: None, legs };
+        AllModes { completions: vec![completion; count] }
+    }
+
+    /// Every working mode at a pose; `None` where it is out of reach in all of them. Then
+    /// [`AllModes::modes`] lists those that reach it, and [`Manipulator::solution_in_mode`] gives the
+    /// joints in one.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    pub fn inverse_all<'a>(
+        &self,
+        pose: &[f64],
+        buffer: &'a mut AllModes,
+    ) -> Result<Option<&'a AllModes>, PoseError> {
+        self.check_pose(pose)?;
+        for (number, completion) in buffer.completions.iter_mut().enumerate() {
+            let Completion { solved, missed, legs } = completion;
+            legs.fill([None; 4]);
+            // The choices that the dependent coordinates are computed with.
+            let (mut mask, mut chosen) = (Mode::default(), Mode::default());
+            *missed = None;
+            match &self.dependent {
+                None => solved.pose.copy_from_slice(pose),
+                Some(dependent) => {
+                    (mask, chosen) = (dependent.mask(), dependent.mode(number));
+                    let all = &mut solved.pose;
+                    *missed = dependent.complete_from_home(self, chosen, pose, all).err();
+                }
+            }
+            if missed.is_some() {
+                continue;
+            }
+            (solved.v, solved.b) = self.task.sections(&solved.pose);
+            let (v, b) = (solved.v, solved.b);
+            for (number, (leg, modes)) in self.legs.iter().zip(legs).enumerate() {
+                let own = self.modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
+                for (part, mode) in self.modes.leg_modes(number).enumerate() {
+                    if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
+                        continue;
+                    }
+                    let branches = self.modes.branches(mode, number);
+                    let solution = leg.solve(&self.task, [&v, &b], branches, 0.0);
+                    modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
+                        leg: number,
+                        section,
+                        deficit,
+                    }));
+                }
+            }
+        }
+        Ok(buffer.reached().then_some(buffer))
+    }
+
+    /// The joints in one working mode at the pose of `all`, angles within half a revolution of home;
+    /// `None` where the pose is out of reach in that mode ([`Solution::unreachable`] of the buffer lists
+    /// the legs), or where `all` does not hold a pose yet.
+    pub fn solution_in_mode<'a>(
+        &self,
+        all: &AllModes,
+        mode: Mode,
+        buffer: &'a mut Solution,
+    ) -> Option<&'a Solution> {
+        buffer.unreachable.clear();
+        buffer.within_limits = true;
+        let completion = &all.completions[self.completion(mode)];
+        if let Some(missed) = completion.missed {
+            buffer.unreachable.push(missed);
+            return None;
+        }
+        for (number, modes) in completion.legs.iter().enumerate() {
+            match &modes[self.modes.of_leg(mode, number)] {
+                Some(Ok(solution)) => self.write(number, solution, buffer, Revolutions::NearHome),
+                Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
+                None => return None,
+            }
+        }
+        let SolvedPose { pose, v, b } = &completion.solved;
+        buffer.solved.pose.copy_from_slice(pose);
+        (buffer.solved.v, buffer.solved.b) = (*v, *b);
+        self.divide(buffer);
+        buffer.reached()
+    }
+
+    /// The number of the combination of choices of dependent coordinates in a mode.
+    fn completion(&self, mode: Mode) -> usize {
+        self.dependent.as_ref().map_or(0, |dependent| dependent.combination(mode))
+    }
+
+    /// The first working mode, all-plus first, that reaches the pose of `all` within the limits, and
+    /// the joints in it; `None` where there is none.
+    pub fn solution_within_limits<'a>(
+        &self,
+        all: &AllModes,
+        buffer: &'a mut Solution,
+    ) -> Option<(Mode, &'a Solution)> {
+        let first = (all.completions.iter().enumerate())
+            .filter(|(_, completion)| completion.missed.is_none())
+            .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
+        self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
+    }
+
+    /// The first mode with the legs within their limits, and with one combination of choices of dependent
+    /// coordinates.
+    fn first_within_limits(&self, number: usize, completion: &Completion) -> Option<Mode> {
+        let mut first = self.dependent.as_ref().map_or(Mode::default(), |d| d.mode(number));
+        for (number, (leg, modes)) in self.legs.iter().zip(&completion.legs).enumerate() {
+            let within = |solution: &LegSolution| {
+                leg.lower.admits(&self.limits, &solution.lower)
+                    && leg.upper.admits(&self.limits, &solution.upper)
+            };
+            // Legs share no choices, so that the first mode consists of the first choices of each leg.
+            let mode = (self.modes.leg_modes(number).zip(modes))
+                .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
+                .0;
+            first.0 |= mode.0;
+        }
+        Some(first)
+    }
+
+    /// Whether any mode reaches the pose of `all` within the limits. `used` is called with the number and the value
+    /// of the imaginary joints in all these modes.
+    #[doc(hidden)]
+    pub fn within_limits_in_any(&self, all: &AllModes, mut used: impl FnMut(usize, f64)) -> bool {
+        let mut reached = false;
+        for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
+            let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
+                let (lower, upper) = (&leg.lower, &leg.upper);
+                modes.map(|solution| {
+                    solution.and_then(Result::ok).filter(|solution| {
+                        lower.admits(&self.limits, &solution.lower)
+                            && upper.admits(&self.limits, &solution.upper)
+                    })
+                })
+            };
+            let legs = || self.legs.iter().zip(&completion.legs);
+            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
+                continue;
+            }
+            reached = true;
+            for leg in legs() {
+                let Some(imaginary) = leg.0.imaginary else { continue };
+                let joint = &self.imaginary[imaginary];
+                for solution in within(leg).iter().flatten() {
+                    used(imaginary, joint.value(solution.tau, joint.home));
+                }
+            }
+        }
+        reached
+    }
+}
+
+impl Completion {
+    /// The legs that no choice closes, with the deficit of the first one.
+    fn open_legs(&self) -> impl Iterator<Item = Unreachable> + '_ {
+        let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
+        let open = self.legs.iter().filter(move |leg| !closes(leg));
+        open.filter_map(|leg| leg.iter().flatten().find_map(|solution| solution.err()))
+    }
+}
+
+impl AllModes {
+    /// Whether any mode reaches the pose.
+    fn reached(&self) -> bool {
+        self.completions.iter().any(|c| c.missed.is_none() && c.open_legs().next().is_none())
+    }
+
+    /// The legs that are out of reach in every mode; empty where the pose is in reach.
+    pub fn unreachable(&self) -> impl Iterator<Item = Unreachable> + '_ {
+        let missing = !self.reached();
+        let completed = self.completions.iter().find(|c| c.missed.is_none());
+        let missed = self.completions[0].missed.filter(|_| missing && completed.is_none());
+        let open = completed.filter(|_| missing).into_iter().flat_map(Completion::open_legs);
+        missed.into_iter().chain(open)
+    }
+
+    /// The modes in which the pose is in reach, all-plus first.
+    pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
+        let layout = &manipulator.modes;
+        manipulator.modes().filter(move |&mode| {
+            let completion = &self.completions[manipulator.completion(mode)];
+            let mut legs = completion.legs.iter().enumerate();
+            completion.missed.is_none()
+                && legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
+        })
+    }
+}

@@ -1,0 +1,214 @@
+//! The dependent coordinates of a pose, step by step from its independent ones.
+
+use super::constraint::{Constraint, follows, target_of};
+use super::{Closed, Dependent, OBEYED};
+use crate::chain::ReachDeficit;
+use crate::group::JointDisplacement;
+use crate::manipulator::inverse::{PoseError, Revolutions, Solution, Unreachable};
+use crate::manipulator::leg::Section;
+use crate::manipulator::{Manipulator, Mode};
+use crate::numeric::Quantity;
+
+impl Dependent {
+    /// Writes values of the independent coordinates to their places among all.
+    pub fn spread(&self, independent: &[f64], all: &mut [f64]) {
+        self.independent.iter().zip(independent).for_each(|(&i, value)| all[i] = *value);
+    }
+
+    /// Writes all coordinates of a pose in a mode to `all`, from its independent ones; angles within π of home.
+    ///
+    /// # Errors
+    /// The leg whose constraint no value of the dependent coordinates satisfies.
+    pub fn complete_from_home(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        independent: &[f64],
+        all: &mut [f64],
+    ) -> Result<(), Unreachable> {
+        all.copy_from_slice(&manipulator.home);
+        self.spread(independent, all);
+        self.complete(manipulator, mode, all)
+    }
+
+    /// Computes the dependent coordinates of a pose, whose independent ones are given, in a mode. Angles, and
+    /// coordinates that nothing determines, are those nearest to what `pose` holds.
+    ///
+    /// # Errors
+    /// The leg whose constraint no value of the dependent coordinates satisfies.
+    pub fn complete(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        pose: &mut [f64],
+    ) -> Result<(), Unreachable> {
+        for step in &self.steps {
+            let sign = step.sign(mode);
+            let (leg, section) = (step.solution.leg(), step.solution.section());
+            let missed = |deficit| Unreachable { leg, section, deficit };
+            match &step.solution {
+                Closed::Constant { coordinates, .. } => {
+                    for &coordinate in coordinates {
+                        pose[coordinate] = manipulator.task().coordinates[coordinate].home;
+                    }
+                }
+                Closed::Condition { constraint, coordinate, .. } => {
+                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
+                    let task = manipulator.task();
+                    let target =
+                        |pose: &[f64]| target_of(task, &manipulator.legs[leg], section, tau, pose);
+                    let held = pose[*coordinate];
+                    let function = constraint.function(task, target, *coordinate, pose, self.size);
+                    pose[*coordinate] = function
+                        .zero(sign, held)
+                        .map_err(|value| missed(constraint.condition.deficit(value)))?;
+                }
+                Closed::Joint(joint) => {
+                    let tau = manipulator.tau_before(leg, section, pose, mode)?;
+                    joint.solve(manipulator, tau, sign, pose).map_err(missed)?;
+                }
+            }
+        }
+        for check in &self.checks {
+            let Constraint { leg, section, condition } = *check;
+            let tau = manipulator.tau_before(leg, section, pose, mode)?;
+            let legs = &manipulator.legs;
+            let target = target_of(manipulator.task(), &legs[leg], section, tau, pose);
+            let value = condition.value(&target);
+            let deficit = condition.deficit(value);
+            let unit = if deficit.quantity == Quantity::Length { self.size } else { 1.0 };
+            if deficit.excess > OBEYED * unit {
+                return Err(Unreachable { leg, section, deficit });
+            }
+        }
+        Ok(())
+    }
+
+    /// The independent coordinates among all of a pose. Of the two triples of Euler angles of an orientation it takes
+    /// the one in the branch at home.
+    pub fn independent_of(&self, manipulator: &Manipulator, all: &[f64]) -> Vec<f64> {
+        let mut pose = all.to_vec();
+        for step in &self.steps {
+            if let Closed::Joint(joint) = &step.solution {
+                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), &mut pose);
+            }
+        }
+        self.independent.iter().map(|&i| pose[i]).collect()
+    }
+}
+
+impl Manipulator {
+    /// The dependent coordinates of a pose in a mode, in the order of [`Manipulator::dependent_coordinates`], radians
+    /// and metres, angles within π of home; `None` where they have no solution. Other legs may be out of reach.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// // The place of the hand tells the angle of the right forearm.
+    /// let manipulator = Manipulator::example("five-bar")?;
+    /// let mode = manipulator.home_mode();
+    /// let theta = manipulator.dependent_values(&manipulator.home_pose(), mode)?.expect("in reach");
+    /// assert!(theta[0].abs() < 1e-12, "angles are zero at home");
+    /// // The right arm is 445 mm long.
+    /// assert_eq!(manipulator.dependent_values(&[0.0, 0.5], mode)?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn dependent_values(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+    ) -> Result<Option<Vec<f64>>, PoseError> {
+        self.check_pose(pose)?;
+        let Some(dependent) = &self.dependent else { return Ok(Some(Vec::new())) };
+        let found = self.completed(pose, mode).ok();
+        Ok(found.map(|all| dependent.coordinates.iter().map(|&i| all[i]).collect()))
+    }
+
+    /// All coordinates of a pose in a mode, dependent ones too; angles within π of home.
+    ///
+    /// # Errors
+    /// The leg whose constraint has no solution.
+    pub(crate) fn completed(&self, pose: &[f64], mode: Mode) -> Result<Vec<f64>, Unreachable> {
+        let Some(dependent) = &self.dependent else { return Ok(pose.to_vec()) };
+        let mut all = self.home.clone();
+        dependent.complete_from_home(self, mode, pose, &mut all)?;
+        Ok(all)
+    }
+
+    /// The independent coordinates among all of a pose.
+    pub(crate) fn independent_of(&self, all: &[f64]) -> Vec<f64> {
+        match &self.dependent {
+            None => all.to_vec(),
+            Some(dependent) => dependent.independent_of(self, all),
+        }
+    }
+
+    /// The same for a mechanism with dependent coordinates.
+    #[cold]
+    pub(in crate::manipulator) fn displace_dependent(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Solution,
+        revolutions: Revolutions,
+    ) -> bool {
+        let Some(dependent) = &self.dependent else { return true };
+        let all = &mut out.solved.pose;
+        if revolutions == Revolutions::NearHome {
+            all.copy_from_slice(&self.home);
+        }
+        dependent.spread(pose, all);
+        out.unreachable.clear();
+        out.unreachable.extend(dependent.complete(self, mode, all).err());
+        (out.solved.v, out.solved.b) = self.task.sections(all);
+        self.divide(out);
+        out.unreachable.is_empty()
+    }
+
+    /// Copies the independent and the dependent coordinates of the solved pose.
+    pub(in crate::manipulator) fn divide(&self, out: &mut Solution) {
+        let Some(dependent) = &self.dependent else { return };
+        let [independent, others] = &mut out.parts;
+        let all = &out.solved.pose;
+        independent.iter_mut().zip(&dependent.independent).for_each(|(q, &i)| *q = all[i]);
+        others.iter_mut().zip(&dependent.coordinates).for_each(|(q, &i)| *q = all[i]);
+    }
+}
+
+impl Manipulator {
+    /// The displacement τ of a leg along the intersection motion, where that follows from the section other than
+    /// this one; zero otherwise.
+    ///
+    /// # Errors
+    /// The other section is out of reach.
+    fn tau_before(
+        &self,
+        number: usize,
+        section: Section,
+        pose: &[f64],
+        mode: Mode,
+    ) -> Result<JointDisplacement, Unreachable> {
+        let leg = &self.legs[number];
+        if !follows(self.task(), leg, section) {
+            return Ok(JointDisplacement::Value(0.0));
+        }
+        let bridge = leg.split_section;
+        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: bridge, deficit };
+        let (task, branches) = (self.task(), self.branches(mode, number));
+        match bridge {
+            Section::Lower => {
+                let v = task.lower(pose);
+                let displacements = leg.lower.inverse(&v, branches.lower).map_err(missed)?;
+                Ok(leg.unwound(leg.step(&displacements), 0.0).inverse())
+            }
+            Section::Upper => {
+                let b = task.upper(&pose[task.lower_count..]);
+                let displacements = leg.upper.inverse(&b, branches.upper).map_err(missed)?;
+                Ok(leg.unwound(leg.step(&displacements), 0.0))
+            }
+        }
+    }
+}
