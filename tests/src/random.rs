@@ -12,8 +12,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
 /// motion, and every subspace alone.
-pub const PAIRS: [[Kind; 2]; 29] = {
-    use Kind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
+pub const PAIRS: [[Kind; 2]; 34] = {
+    use Kind::{Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane};
     use Meet::{Nothing, Rotation, Translation};
     [
         [Planar(Rotation), Spherical],
@@ -45,6 +45,11 @@ pub const PAIRS: [[Kind; 2]; 29] = {
         [Cylindrical(Nothing), Cylindrical(Nothing)],
         [TranslationalPlane, Cylindrical(Nothing)],
         [Cylindrical(Nothing), TranslationalPlane],
+        [Schoenflies(Rotation), Spherical],
+        [Spherical, Schoenflies(Rotation)],
+        [Schoenflies(Translation), Cylindrical(Translation)],
+        [Cylindrical(Translation), Schoenflies(Translation)],
+        [Schoenflies(Nothing), Identity],
     ]
 };
 
@@ -73,22 +78,31 @@ pub enum Kind {
     Cylindrical(Meet),
     /// A translational plane that contains z.
     TranslationalPlane,
+    /// A Schoenflies group with its direction along z, or perpendicular to it.
+    Schoenflies(Meet),
 }
 
 impl Kind {
-    fn dimension(self) -> usize {
+    /// Its number of degrees of freedom.
+    pub fn dimension(self) -> usize {
         match self {
             Self::Identity => 0,
             Self::Planar(_) | Self::Spherical => 3,
             Self::Cylindrical(_) | Self::TranslationalPlane => 2,
+            Self::Schoenflies(_) => 4,
         }
+    }
+
+    /// Whether it is a Schoenflies group.
+    fn has_height(self) -> bool {
+        matches!(self, Self::Schoenflies(_))
     }
 
     /// The motion along or about z that it contains.
     fn meet(self) -> Meet {
         match self {
             Self::Identity => Meet::Nothing,
-            Self::Planar(meet) | Self::Cylindrical(meet) => meet,
+            Self::Planar(meet) | Self::Cylindrical(meet) | Self::Schoenflies(meet) => meet,
             Self::Spherical => Meet::Rotation,
             Self::TranslationalPlane => Meet::Translation,
         }
@@ -145,7 +159,21 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
         (Kind::TranslationalPlane, None) => &["PP"],
         (Kind::TranslationalPlane, Some(_)) => &["P"],
+        // A slider more, anywhere.
+        (Kind::Schoenflies(_), None) => &[
+            "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
+            "RPPP", "PPRP", "PPPR",
+        ],
+        (Kind::Schoenflies(_), Some(Rotation)) => {
+            &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR", "PPP"]
+        }
+        (Kind::Schoenflies(_), Some(Translation)) => &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR"],
     }
+}
+
+/// The pairs that may have legs with too few freedoms.
+pub fn constrained_pairs() -> impl Iterator<Item = [Kind; 2]> {
+    PAIRS.into_iter().filter(|pair| !pair.iter().any(|kind| kind.has_height()))
 }
 
 /// What the two subspaces of a pair share.
@@ -222,7 +250,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
 
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
 /// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
-/// joints, or some with several freedoms.
+/// joints, or some with several freedoms, and for other pairs than [`constrained_pairs`].
 pub fn constrained(
     rng: &mut Rng,
     pair: [Kind; 2],
@@ -230,6 +258,7 @@ pub fn constrained(
     repeated: bool,
     options: Options,
 ) -> Option<(Mechanism, Decomposition)> {
+    constrained_pairs().find(|other| *other == pair)?;
     let (mut mechanism, mut decomposition) = mechanism(rng, pair, options);
     let (leg, split) = (&mut mechanism.legs[0], &mut decomposition.legs[0]);
     if leg.joints.iter().any(|joint| joint.freedoms() > 1) {
@@ -313,6 +342,7 @@ pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>)
             SubspaceClass::Cylindrical { axis: g * axis, point: g * point }
         }
         SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
+        SubspaceClass::Schoenflies { axis } => SubspaceClass::Schoenflies { axis: g * axis },
         SubspaceClass::Identity => SubspaceClass::Identity,
         other => panic!("{other}: not a subspace of these mechanisms"),
     };
@@ -329,12 +359,15 @@ fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
     let (normal, point) = match kind {
         Kind::Identity
         | Kind::Planar(Meet::Rotation | Meet::Nothing)
+        | Kind::Schoenflies(Meet::Rotation | Meet::Nothing)
         | Kind::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
         // Its axis passes z at a distance of one, and is not parallel to any of the planes.
         Kind::Cylindrical(Meet::Nothing) => {
             (side.cross(&Vector3::z()) * 0.8 + Vector3::z() * 0.6, Point3::from(side))
         }
-        Kind::Planar(Meet::Translation) | Kind::TranslationalPlane => (side, Point3::origin()),
+        Kind::Planar(Meet::Translation)
+        | Kind::Schoenflies(Meet::Translation)
+        | Kind::TranslationalPlane => (side, Point3::origin()),
         Kind::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
         Kind::Spherical => {
             (Vector3::z(), Point3::new(0.0, 0.0, rng.f64() * 2.0 - 1.0 + 3.0 * azimuth))
@@ -353,6 +386,7 @@ impl Place {
             Kind::Spherical => SubspaceClass::Spherical { centre: point },
             Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
             Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
+            Kind::Schoenflies(_) => SubspaceClass::Schoenflies { axis: normal },
         }
     }
 }
@@ -432,6 +466,13 @@ fn section_joints(
                     joints.push(joint(revolute, place.normal * sign(rng), place.point + at + off));
                 }
             }
+            joints
+        }
+        Kind::Schoenflies(meet) => {
+            let plane = Place { kind: Kind::Planar(meet), ..*place };
+            let mut joints = section_joints(rng, &plane, cut, upper, options);
+            let lift = joint(prismatic, place.normal * sign(rng), Point3::from(vector(rng)));
+            joints.insert(rng.usize(..=joints.len()), lift);
             joints
         }
         Kind::Cylindrical(meet) => {

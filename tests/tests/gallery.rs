@@ -135,6 +135,14 @@ const PAGES: &[Page] = &[
     SPHERICAL,
     Page { name: "orbita", ..SPHERICAL },
     Page { name: "five-bar", numbers: [3, 2, 0, 2], legs: "3|0 2|0", coordinates: "x y", ..PLANAR },
+    Page {
+        name: "schoenflies-column-4dof",
+        numbers: [4, 4, 0, 4],
+        subspaces: ["schoenflies", "identity"],
+        legs: "4|0 4|0 4|0",
+        coordinates: "x y z theta",
+        ..PLANAR
+    },
 ];
 
 /// Three legs of three joints in one plane: nothing to split.

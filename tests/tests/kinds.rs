@@ -3,9 +3,11 @@
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
+use opm_core::Section;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::euler;
 use opm_tests::by_inverse::by_inverse;
+use opm_tests::height;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
@@ -37,6 +39,11 @@ fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
 fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
     let task = manipulator.task();
     let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
+    if !height::within(manipulator, Section::Lower, pose)
+        || !height::within(manipulator, Section::Upper, &pose[task.lower_count..])
+    {
+        return false;
+    }
     let mut ways: Vec<LegBranch> = vec![];
     if !manipulator.upper_closes(&b, mode, &mut ways) {
         return false;
@@ -134,13 +141,15 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
             for number in 0..grid.poses() {
                 let pose = grid.pose(number);
                 let v = manipulator.task().lower(&pose);
-                let expected = (0..manipulator.legs()).all(|leg| {
-                    let cut = cuts.iter().position(|cut| cut.leg == leg);
-                    let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
-                    let mut ways = vec![];
-                    manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
-                    ways.iter().any(|way| manipulator.reaches(way, &v))
-                });
+                let admitted = height::within(&manipulator, Section::Lower, &pose);
+                let expected = admitted
+                    && (0..manipulator.legs()).all(|leg| {
+                        let cut = cuts.iter().position(|cut| cut.leg == leg);
+                        let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
+                        let mut ways = vec![];
+                        manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
+                        ways.iter().any(|way| manipulator.reaches(way, &v))
+                    });
                 assert_eq!(set.contains(number), expected, "{pair:?} {pose:?}");
             }
             poses += grid.poses();

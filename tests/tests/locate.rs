@@ -53,8 +53,12 @@ fn outside_says_how_far_and_where() {
         assert!(outside.rotation.norm() < 1e-6, "{outside}");
         assert!((outside.translation - normal.into_inner() * by).norm() < 1e-6, "{outside}");
     }
+    // A motion of six dimensions leaves nothing outside.
     for pair in PAIRS {
         let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+        if decomposition.lambda == 6 {
+            continue;
+        }
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let anywhere = Isometry3::from_parts(
             Translation3::from(direction(&mut rng).into_inner() * 0.7),

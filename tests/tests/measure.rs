@@ -2,9 +2,10 @@
 //! poses, and with Monte-Carlo estimates.
 
 use fastrand::Rng;
-use opm_core::Quantity;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::Task;
+use opm_core::{Quantity, Section};
+use opm_tests::height;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
@@ -25,9 +26,16 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
     let mut ways: Vec<LegBranch> = Vec::new();
     let lower = m.task().lower_count;
     if domain.sections() == Sections::Upper {
-        return m.upper_closes(&m.task().upper(pose), mode, &mut ways);
+        return height::within(m, Section::Upper, pose)
+            && m.upper_closes(&m.task().upper(pose), mode, &mut ways);
     }
     let (v, others) = (m.task().lower(&pose[..lower]), &pose[lower..]);
+    let whole = domain.sections() == Sections::Whole;
+    if !height::within(m, Section::Lower, pose)
+        || whole && !height::within(m, Section::Upper, others)
+    {
+        return false;
+    }
     let cuts = m.intersection_joints();
     (0..m.legs()).all(|leg| {
         ways.clear();

@@ -3,11 +3,12 @@
 //! poses.
 
 use fastrand::Rng;
-use opm_core::Quantity;
 use opm_core::decomposition::Decomposition;
 use opm_core::manipulator::{LegBranch, Manipulator};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
+use opm_core::{Quantity, Section};
+use opm_tests::height;
 use opm_tests::random::{Options, PAIRS, mechanism, order};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
@@ -37,8 +38,12 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
         count += (0..in_slice)
             .into_par_iter()
             .filter(|i| {
-                let v = manipulator.task().lower(&grid.pose(slice * in_slice + i)[..lower]);
-                legs.iter().all(|ways| ways.iter().any(|way| manipulator.reaches(way, &v)))
+                let pose = grid.pose(slice * in_slice + i);
+                let v = manipulator.task().lower(&pose[..lower]);
+                let within = |section, values: &[f64]| height::within(manipulator, section, values);
+                within(Section::Lower, &pose[..lower])
+                    && within(Section::Upper, &pose[lower..])
+                    && legs.iter().all(|ways| ways.iter().any(|way| manipulator.reaches(way, &v)))
             })
             .count() as u64;
     }
@@ -83,7 +88,7 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
             _ => mechanism,
         };
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-        let counts = [50 + rng.u64(..1500), 20 + rng.u64(..200), 1, 1, 1];
+        let counts = [50 + rng.u64(..1500), 20 + rng.u64(..200), 1, 1, 1, 1];
         let axes = manipulator.task_coordinates().iter().zip(counts).map(|(c, count)| {
             // Several revolutions for angles.
             let most = if rng.u8(..4) == 0 { 10.0 } else { 2.0 };
@@ -155,7 +160,7 @@ fn limits_that_lie_on_poses_are_no_exception() {
         let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let free = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
         let free = free.unwrap();
-        let axes = free.task_coordinates().iter().zip([41, 9, 3, 3, 3]).map(|(c, count)| {
+        let axes = free.task_coordinates().iter().zip([41, 9, 3, 3, 3, 2]).map(|(c, count)| {
             Axis::new(c.name, c.home - rng.f64() - 0.1, c.home + rng.f64() + 0.1, count)
         });
         let axes: Vec<_> = axes.collect();

@@ -12,6 +12,7 @@ use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, SINGULAR, SingularCause, SingularLeg, Singularities,
 };
+use opm_tests::height;
 use opm_tests::paper::{self, PlanoSpherical, Signs, e, n};
 use opm_tests::random;
 use opm_tests::random::{
@@ -420,16 +421,20 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
             }
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut all = manipulator.all_modes();
-            let driven = |legs: usize, freedoms: &[Freedom]| {
-                let joints = &manipulator.mechanism().legs[legs].joints;
-                freedoms.iter().any(|freedom| joints[freedom.joint].actuated)
+            let driven = |leg: usize, freedoms: &[Freedom], class: &SubspaceClass| {
+                let leg = &manipulator.mechanism().legs[leg];
+                // What carries a height has no part in the rest.
+                let own = freedoms.iter().filter(|f| !height::is_lift(leg, **f, class));
+                own.into_iter().any(|freedom| leg.joints[freedom.joint].actuated)
             };
+            let d = manipulator.decomposition();
             // A section that passes no motion on to an actuator is not a part of the Jacobian. Sections that
             // share no motion pass none on to each other.
             let bridged = manipulator.task().shared().is_some();
-            let parts: Vec<[bool; 2]> = (manipulator.decomposition().legs.iter().enumerate())
+            let parts: Vec<[bool; 2]> = (d.legs.iter().enumerate())
                 .map(|(i, split)| {
-                    let [lower, upper] = [driven(i, &split.lower), driven(i, &split.upper)];
+                    let lower = driven(i, &split.lower, &d.lower);
+                    let upper = driven(i, &split.upper, &d.upper);
                     [lower || bridged && !split.imaginary && upper, split.imaginary || upper]
                 })
                 .collect();

@@ -91,7 +91,10 @@ fn each_coordinate_moves_along_its_own_screw() {
                 let class = if lower { d.lower } else { d.upper };
                 let mut plane = None;
                 let (third, origin) = match class {
-                    SubspaceClass::Planar { normal } if line.is_none() => {
+                    SubspaceClass::Planar { normal }
+                    | SubspaceClass::Schoenflies { axis: normal }
+                        if line.is_none() =>
+                    {
                         plane = Some(normal);
                         (standing(normal), reference)
                     }
@@ -117,7 +120,7 @@ fn each_coordinate_moves_along_its_own_screw() {
                 let (expected, measured) = match coordinate.name {
                     "x" => (along(first, amount), first.dot(&origin.coords)),
                     "y" => (along(second, amount), second.dot(&origin.coords)),
-                    "z" => (along(third, amount), third.dot(&origin.coords)),
+                    "z" | "h" => (along(third, amount), third.dot(&origin.coords)),
                     "w" => (along(w, amount), w.dot(&origin.coords)),
                     "theta" | "phi" | "zeta" | "psi" => (about(third, origin, amount), 0.0),
                     "mu" => (about(first, origin, amount), 0.0),

@@ -145,7 +145,7 @@ fn jacobians_compose_to_the_rates() {
                 // q̇ = J_p [J_s upper; lower].
                 let (n_upper, bridges) = (jacobians.upper.ncols(), jacobians.upper.nrows());
                 let across = &jacobians.upper * twist.rows(0, n_upper);
-                let lower = twist.rows(n_upper, twist.len() - n_upper);
+                let lower = twist.rows(n_upper, jacobians.lower.ncols() - bridges);
                 let rates = jacobians.lower.columns(0, bridges) * &across
                     + jacobians.lower.columns_range(bridges..) * lower;
                 let size = size * jacobians.lower.amax().max(1.0);

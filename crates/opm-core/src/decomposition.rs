@@ -16,6 +16,7 @@
 
 mod architecture;
 mod element;
+pub(crate) mod height;
 mod imaginary;
 pub mod mobility;
 mod near;
@@ -26,6 +27,7 @@ mod survey;
 #[cfg(test)]
 pub(crate) mod samples;
 
+pub use height::HeightMiss;
 pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 
@@ -48,6 +50,15 @@ pub struct Freedom {
     /// Index of the freedom in its joint, in the order of
     /// [`Joint::screws`](crate::mechanism::joint::Joint::screws).
     pub index: usize,
+}
+
+impl Freedom {
+    /// All freedoms of a leg, from base to platform.
+    pub(crate) fn of_leg(leg: &Leg) -> Vec<Self> {
+        let of =
+            |(joint, count): (usize, usize)| (0..count).map(move |index| Self { joint, index });
+        leg.joints.iter().map(Joint::freedoms).enumerate().flat_map(of).collect()
+    }
 }
 
 /// How a leg is split into a lower and an upper part.
@@ -173,15 +184,16 @@ pub enum DecomposeError {
          split between two subgroups of less than {lambda} dimensions that share a one-parameter \
          motion{}",
         subspace.as_deref().map(|group| format!(": {}", one_group(group))).unwrap_or_default(),
-        match (near, odd) {
-            (Some(near), _) => nearly_text(Some(near)),
-            (None, Some(odd)) => format!(
+        match (near, height, odd) {
+            (Some(near), _, _) => nearly_text(Some(near)),
+            (None, Some(height), _) => format!("; {height}"),
+            (None, None, Some(odd)) => format!(
                 "; only joint {} of leg {} does not fit such a split: {}",
                 odd.joint,
                 odd.leg,
                 odd.reason()
             ),
-            (None, None) => String::new(),
+            (None, None, None) => String::new(),
         }
     )]
     NoPartialSubspaces {
@@ -193,6 +205,8 @@ pub enum DecomposeError {
         near: Option<Box<NearMiss>>,
         /// Otherwise, the joint without which there would be such a split, if there is exactly one.
         odd: Option<Box<JointMiss>>,
+        /// What closed forms of the group miss, if it is a Schoenflies group.
+        height: Option<Box<HeightMiss>>,
         /// The group in which all legs move together; `None` if the span of all joint screws is not
         /// a subgroup.
         subspace: Option<Box<SubspaceClass>>,
@@ -295,11 +309,13 @@ fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>
     if found.is_empty() {
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
+        let height = subspace.as_deref().and_then(|group| height_miss(mechanism, group));
         return Err(DecomposeError::NoPartialSubspaces {
             lambda,
             mobility,
             near: None,
             odd: None,
+            height: height.map(Box::new),
             subspace,
         });
     }
@@ -352,17 +368,19 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
     let group = fit(&screws).filter(|group| group.class.dimension() == lambda)?;
     // Others have no closed forms, alone.
     SubspaceKind::of(&group.class)?;
-    let whole = |leg: &Leg| {
-        let freedom = |(joint, j): (usize, &Joint)| {
-            (0..j.screws().len()).map(move |index| Freedom { joint, index })
-        };
-        let lower = leg.joints.iter().enumerate().flat_map(freedom).collect();
-        LegSplit { lower, upper: vec![], imaginary: false }
-    };
+    let class = group.class.restored(&frame);
+    // Nor has a Schoenflies group, where a leg has fewer freedoms or no joint of it carries the height.
+    let few = mechanism.legs.iter().any(|leg| leg.screws().len() < lambda);
+    let tall = matches!(class, SubspaceClass::Schoenflies { .. });
+    if tall && (few || height_miss(mechanism, &class).is_some()) {
+        return None;
+    }
+    let whole =
+        |leg: &Leg| LegSplit { lower: Freedom::of_leg(leg), upper: vec![], imaginary: false };
     Some(Decomposition {
         lambda,
         mobility,
-        lower: group.class.restored(&frame),
+        lower: class,
         upper: SubspaceClass::Identity,
         intersection: SubspaceClass::Identity,
         legs: mechanism.legs.iter().map(whole).collect(),
@@ -372,6 +390,14 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
         redundancy: 0,
         deviation: group.deviation,
     })
+}
+
+/// The first leg without a joint that carries the height, if all legs move in a Schoenflies group.
+fn height_miss(mechanism: &Mechanism, group: &SubspaceClass) -> Option<HeightMiss> {
+    let SubspaceClass::Schoenflies { axis } = group else { return None };
+    let size = frame(mechanism).length;
+    let missing = |leg: &Leg| height::lift(leg, &Freedom::of_leg(leg), axis, size).err();
+    mechanism.legs.iter().find_map(missing)
 }
 
 /// All decompositions into two subgroups that share a group of `shared` dimensions, and the number of partial

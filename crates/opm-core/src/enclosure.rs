@@ -173,6 +173,7 @@ impl Manipulator {
                 })
             }
         };
+        let share = share.and(self.lifts_within(query, &coordinates));
         let contributions = share.contributions();
         let mut split = None;
         for (&contribution, number) in contributions.iter().zip(numbers) {
@@ -188,6 +189,29 @@ impl Manipulator {
             None => None,
         };
         Verdict { lower: share.lower, upper: share.upper, split }
+    }
+}
+
+impl Manipulator {
+    /// The share of a box for which the lifts are within their limits.
+    fn lifts_within<const N: usize>(
+        &self,
+        query: BoxQuery,
+        coordinates: &[Coordinate<N>],
+    ) -> Share<N> {
+        let Some(height) = &self.task().height else { return Share::ALL };
+        let first = match (query, height.section) {
+            (BoxQuery::Whole, _) | (BoxQuery::Lower, Section::Lower) => 0,
+            (BoxQuery::Upper, Section::Upper) => self.task().lower_count,
+            (BoxQuery::Lower, Section::Upper) | (BoxQuery::Upper, Section::Lower) => {
+                return Share::ALL;
+            }
+        };
+        let home = self.task().coordinates[height.coordinate].home;
+        let rise = coordinates[height.coordinate - first].minus(home);
+        self.lift_limits().fold(Share::ALL, |share, (lift, limits)| {
+            share.and(within(limits, &Enclosed::Value(rise * lift.sign)))
+        })
     }
 }
 

@@ -186,11 +186,15 @@ impl Linkage {
             shared: decomposition.intersection.name(),
         };
         let task = match Task::new(&mechanism, &decomposition) {
-            Err(TaskError::Subspace { .. } | TaskError::Screw) => {
+            Err(TaskError::Subspace { .. } | TaskError::Screw | TaskError::Height { .. }) => {
                 return Err(LinkageError::NotCovered(subspaces));
             }
             task => task?,
         };
+        // The loop of a Schoenflies section would have five joints.
+        if task.height.is_some() {
+            return Err(LinkageError::NotCovered(subspaces));
+        }
         let Some(axis) = &task.intersection else {
             return Err(LinkageError::NotCovered(subspaces));
         };

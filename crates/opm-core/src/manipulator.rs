@@ -17,6 +17,7 @@ mod closure;
 mod dependent;
 mod inverse;
 mod leg;
+mod lift;
 mod locate;
 mod mode;
 pub(crate) mod plan;
@@ -225,6 +226,7 @@ impl Manipulator {
             CoordinateKind::X
             | CoordinateKind::Y
             | CoordinateKind::Z
+            | CoordinateKind::H
             | CoordinateKind::W
             | CoordinateKind::Zeta
             | CoordinateKind::Xi

@@ -9,8 +9,11 @@
 //! |---|---|---|---|---|---|---|
 //! | planar | `x y` | `x y theta` | `x y theta` | `x y phi` | `w phi` | `x y phi` |
 //! | spherical | `mu nu` | | `zeta xi psi` | `zeta xi psi` | | `zeta xi psi` |
+//! | Schoenflies | `x y z` | `x y z theta` | `x y z theta` | `x y h phi` | `w h phi` | |
 //! | cylindrical | `z` | `theta z` | `theta z` | `phi z` | `phi` | `phi w` |
 //! | translational plane | | `x y` | `x y` | | `w` | `x y` |
+//!
+//! A Schoenflies section is a planar one at a height, `z` or `h`, along the plane's normal.
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
@@ -67,7 +70,9 @@ use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, TaskKey};
 use crate::numeric::angle::sin_cos;
 use frame::Meeting;
-use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{
+    Complex, Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3,
+};
 use std::fmt;
 
 /// Why a decomposition has no task coordinates.
@@ -92,6 +97,27 @@ pub enum TaskError {
         "the partial subspaces meet in a screw motion, for which there are no closed-form chains"
     )]
     Screw,
+    /// One joint alone changes the height of a section, which other legs hold.
+    #[error(
+        "joint {} of leg {} alone changes the height of the {section} section; without it, the section would be {}",
+        odd.joint, odd.leg, odd.without
+    )]
+    Height {
+        /// The section.
+        section: Section,
+        /// The joint.
+        odd: OddJoint,
+    },
+    /// The shared translation of a Schoenflies and a cylindrical section has a component along the direction of the
+    /// Schoenflies section.
+    #[error(
+        "the two sections share a translation with a component along the rotation axes of the {section} section: \
+         closed forms expect one perpendicular to them"
+    )]
+    Inclined {
+        /// The Schoenflies section.
+        section: Section,
+    },
     /// The mechanism's hint `axis` is perpendicular to the intersection motion, so that it chooses neither of
     /// its two directions.
     #[error(
@@ -130,7 +156,11 @@ impl TaskError {
         match self {
             Self::Axis { .. } => Some(TaskKey::Axis),
             Self::Frame { key, .. } => Some(*key),
-            Self::Subspace { .. } | Self::Screw | Self::Unknown { .. } => None,
+            Self::Subspace { .. }
+            | Self::Screw
+            | Self::Height { .. }
+            | Self::Inclined { .. }
+            | Self::Unknown { .. } => None,
         }
     }
 }
@@ -278,7 +308,34 @@ pub struct Task {
     pub lower_count: usize,
     /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
     /// angles; `None` where the pose has no Euler angles, and where it is the identity.
+    /// The height of a Schoenflies section; `None` where there is none.
+    pub(crate) height: Option<Height>,
     home_orientation_inverse: Option<Matrix3<f64>>,
+}
+
+/// The height of a Schoenflies section. A Schoenflies displacement is a planar one followed by a translation along the
+/// plane's normal, and the two commute. So the section is treated as a planar one, and the height by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Height {
+    /// The section.
+    pub section: Section,
+    /// The number of its task coordinate.
+    pub coordinate: usize,
+    /// The unit direction in which it grows, at home in base coordinates.
+    pub up: Vector3<f64>,
+}
+
+impl Height {
+    /// The section of a decomposition that has a height. Two such sections would have all translations in common, and
+    /// are no decomposition.
+    fn of(decomposition: &Decomposition) -> Option<Section> {
+        let has = |class: &SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });
+        match (has(&decomposition.lower), has(&decomposition.upper)) {
+            (true, _) => Some(Section::Lower),
+            (false, true) => Some(Section::Upper),
+            (false, false) => None,
+        }
+    }
 }
 
 /// The intersection motion at home, in base coordinates.
@@ -337,13 +394,34 @@ impl Task {
                 }
             })
         };
+        if let Some(section) = Height::of(decomposition)
+            && let Some(odd) = OddJoint::find(mechanism, decomposition, section)
+        {
+            return Err(TaskError::Height { section, odd });
+        }
         let lower = frame(&decomposition.lower, Section::Lower)?;
         let upper = frame(&decomposition.upper, Section::Upper)?;
         let intersection = meeting.intersection;
         let shared = intersection.as_ref().map(IntersectionAxis::motion_type);
         let mut coordinates = coordinate::of_lower(&lower, shared);
+        let mut of_upper = coordinate::of_upper(&upper, shared);
+        let height = Height::of(decomposition).map(|section| {
+            let (frame, own, first) = match section {
+                Section::Lower => (&lower, &mut coordinates, 0),
+                Section::Upper => (&upper, &mut of_upper, coordinates.len()),
+            };
+            let (place, coordinate) = coordinate::of_height(frame, section, own);
+            own.insert(place, coordinate);
+            Height { section, coordinate: first + place, up: frame.axes.column(2).into_owned() }
+        });
+        if let (Some(height), Some(IntersectionAxis { direction, point: None })) =
+            (&height, &intersection)
+            && height.up.dot(direction).abs() > TOLERANCE
+        {
+            return Err(TaskError::Inclined { section: height.section });
+        }
         let lower_count = coordinates.len();
-        coordinates.extend(coordinate::of_upper(&upper, shared));
+        coordinates.extend(of_upper);
         for (name, value) in &mechanism.task.home {
             match coordinates.iter_mut().find(|c| c.name == name) {
                 Some(coordinate) => coordinate.home = *value,
@@ -377,8 +455,27 @@ impl Task {
             intersection,
             coordinates,
             lower_count,
+            height,
             home_orientation_inverse,
         })
+    }
+
+    /// The height of the Schoenflies section above its home at a pose, metres; zero where there is none.
+    #[doc(hidden)]
+    #[inline]
+    pub fn rise(&self, pose: &[f64]) -> f64 {
+        self.height.as_ref().map_or(0.0, |height| {
+            pose[height.coordinate] - self.coordinates[height.coordinate].home
+        })
+    }
+
+    /// A displacement `v · b` of the platform, raised by `rise` metres along the direction of the Schoenflies section.
+    pub(crate) fn raised(&self, rise: f64, g: Isometry3<f64>) -> Isometry3<f64> {
+        match &self.height {
+            None => g,
+            Some(Height { section: Section::Lower, up, .. }) => Translation3::from(up * rise) * g,
+            Some(Height { section: Section::Upper, up, .. }) => g * Translation3::from(up * rise),
+        }
     }
 
     /// The displacement `v` for the first [`Task::lower_count`] coordinates of a pose, radians and metres.
@@ -469,12 +566,33 @@ impl Task {
         }
     }
 
-    /// The values of a section's coordinates, and those at home. The section starts at coordinate number
-    /// `first`; elements beyond its coordinates are zero.
+    /// The numbers of a section's coordinates other than a height.
+    #[inline]
+    pub(crate) fn numbers(&self, section: Section) -> impl Iterator<Item = usize> + use<> {
+        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
+        let range = match section {
+            Section::Lower => 0..self.lower_count,
+            Section::Upper => self.lower_count..self.coordinates.len(),
+        };
+        range.filter(move |&i| i != height)
+    }
+
+    /// The place of the height among a section's coordinates; `None` if the section has none.
+    #[inline]
+    pub(crate) fn height_in(&self, section: Section) -> Option<usize> {
+        let height = self.height.as_ref().filter(|height| height.section == section)?;
+        let first = if section == Section::Lower { 0 } else { self.lower_count };
+        Some(height.coordinate - first)
+    }
+
+    /// The values of a section's coordinates other than a height, and those at home. The section starts at coordinate
+    /// number `first`; elements beyond its coordinates are zero.
     #[inline]
     fn section_of(&self, pose: &[f64], first: usize) -> ([f64; 3], [f64; 3]) {
         let (mut at, mut home) = ([0.0; 3], [0.0; 3]);
-        let of_section = pose.iter().zip(&self.coordinates[first..]);
+        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
+        let of_section = pose.iter().zip(&self.coordinates[first..]).zip(first..);
+        let of_section = of_section.filter(|(_, i)| *i != height).map(|(both, _)| both);
         for ((at, home), (&value, coordinate)) in at.iter_mut().zip(&mut home).zip(of_section) {
             (*at, *home) = (value, coordinate.home);
         }
@@ -488,10 +606,13 @@ impl Task {
     /// If there are fewer than [`Task::lower_count`] coordinates.
     #[doc(hidden)]
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
-        self.isometry(&self.lower(pose), &self.upper(&pose[self.lower_count..]))
+        self.raised(
+            self.rise(pose),
+            self.isometry(&self.lower(pose), &self.upper(&pose[self.lower_count..])),
+        )
     }
 
-    /// The displacement `v · b` in base coordinates.
+    /// The displacement `v · b` in base coordinates, without a height.
     pub(crate) fn isometry(&self, v: &Displacement, b: &Displacement) -> Isometry3<f64> {
         self.lower.isometry(v) * self.upper.isometry(b)
     }

@@ -280,6 +280,14 @@ impl Manipulator {
             }
             self.write_motion(number, &motion, out);
         }
+        if let Some(height) = &self.task().height {
+            for lift in self.lifts() {
+                let number = lift.coordinate.number;
+                out.joint_rates[number] = lift.displacement(rates[height.coordinate]);
+                out.joint_accelerations[number] =
+                    lift.displacement(accelerations[height.coordinate]);
+            }
+        }
         Ok(out.singular.is_empty())
     }
 
@@ -302,15 +310,18 @@ impl Manipulator {
     /// coordinates.
     fn section_twists(&self, pose: &[f64], rates: &[f64], accelerations: &[f64]) -> SectionTwists {
         let task = self.task();
-        let count = task.lower_count;
-        let twists = |screws: &screws::Screws, part: fn(&[f64], usize) -> &[f64]| {
-            let vector = |all| LocalTwist::from_fn(|i, _| *part(all, count).get(i).unwrap_or(&0.0));
+        let twists = |screws: &screws::Screws, section: Section| {
+            let vector = |all: &[f64]| {
+                let mut found = LocalTwist::zeros();
+                task.numbers(section).zip(found.iter_mut()).for_each(|(i, to)| *to = all[i]);
+                found
+            };
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]
         };
         SectionTwists {
-            v: twists(&task.lower_screws(pose), |all, count| &all[..count]),
-            b: twists(&task.upper_screws(pose), |all, count| &all[count..]),
+            v: twists(&task.lower_screws(pose), Section::Lower),
+            b: twists(&task.upper_screws(pose), Section::Upper),
         }
     }
 

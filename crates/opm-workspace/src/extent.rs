@@ -448,13 +448,13 @@ struct Hit {
 /// The range of an angle whose full revolutions do not matter. Of Euler angles and tilts it gives every
 /// orientation or direction once, that of home among them.
 pub(crate) fn one_turn(kind: CoordinateKind, home: f64) -> [f64; 2] {
-    use CoordinateKind::{Mu, Nu, Phi, Psi, Theta, W, X, Xi, Y, Z, Zeta};
+    use CoordinateKind::{H, Mu, Nu, Phi, Psi, Theta, W, X, Xi, Y, Z, Zeta};
     match kind {
         Xi => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
         Zeta | Psi => [-PI, PI].map(|end| end + whole_turns(home)),
         Nu => [home - FRAC_PI_2, home + FRAC_PI_2],
         Theta | Phi | Mu => [home - PI, home + PI],
-        X | Y | Z | W => unreachable!("a length has no revolutions"),
+        X | Y | Z | H | W => unreachable!("a length has no revolutions"),
     }
 }
 

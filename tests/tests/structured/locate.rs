@@ -20,7 +20,8 @@ fn there_and_back(m: &Manipulator, pose: &[f64]) {
     // Dependent coordinates have no solution at some poses.
     let Ok(target) = m.displacement(pose) else { return };
     if m.dependent_coordinates().is_empty() {
-        let found = task.pose(&task.lower(pose), &task.upper(&pose[task.lower_count..]));
+        let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
+        let found = task.pose(&v, &b, task.rise(pose));
         let off = apart(m, &task.displacement(&found), &target);
         assert!(off < BACK, "{name} {pose:?}: {found:?} is {off:e} off");
     }

@@ -11,7 +11,6 @@ use super::{
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::Leg;
 use std::fmt;
 
@@ -233,7 +232,7 @@ pub fn survey(mechanism: &Mechanism) -> Result<Survey, MobilityError> {
 
 fn leg_survey(leg: &Leg, mechanism: &Mechanism) -> LegSurvey {
     let frame = frame(mechanism);
-    let freedoms = freedoms(leg);
+    let freedoms = Freedom::of_leg(leg);
     let actuated = leg.joints.iter().filter(|joint| joint.actuated);
     LegSurvey {
         name: leg.name.clone(),
@@ -242,11 +241,6 @@ fn leg_survey(leg: &Leg, mechanism: &Mechanism) -> LegSurvey {
         subspace: generated(&elements(leg, &freedoms), frame.length, TOLERANCE),
         span: MotionSubspace::span(frame, &leg.screws()).dimension(),
     }
-}
-
-fn freedoms(leg: &Leg) -> Vec<Freedom> {
-    let of = |(joint, count): (usize, usize)| (0..count).map(move |index| Freedom { joint, index });
-    leg.joints.iter().map(Joint::freedoms).enumerate().flat_map(of).collect()
 }
 
 /// The twists that all legs allow.
@@ -293,7 +287,7 @@ fn no_partial_subspaces(mechanism: &Mechanism, odd: Option<Box<JointMiss>>) -> O
     let frame = frame(mechanism);
     let group = |elements: &[Element]| generated(elements, frame.length, TOLERANCE);
     let all: Vec<Element> =
-        mechanism.legs.iter().flat_map(|leg| elements(leg, &freedoms(leg))).collect();
+        mechanism.legs.iter().flat_map(|leg| elements(leg, &Freedom::of_leg(leg))).collect();
     let subspace = group(&all);
     if subspace != SubspaceClass::Full {
         return Outside::OneSubgroup { subspace };

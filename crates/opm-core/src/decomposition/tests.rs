@@ -145,6 +145,7 @@ fn a_gough_platform_has_no_partial_subspaces() {
         mobility: 6,
         near: None,
         odd: None,
+        height: None,
         subspace,
     };
     assert_eq!(error, expected);

@@ -245,7 +245,7 @@ pub enum Coordinate<const N: usize> {
 
 impl<const N: usize> Coordinate<N> {
     /// The coordinate minus `home`, for a length or a linear angle.
-    fn minus(self, home: f64) -> Affine<N> {
+    pub fn minus(self, home: f64) -> Affine<N> {
         match self {
             Self::Linear(value) => value - home,
             Self::Polar(_) => {
@@ -269,24 +269,28 @@ pub mod task {
     use crate::group::{
         CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
     };
+    use crate::mechanism::leg::Section;
     use crate::task::Task;
     use nalgebra::Complex;
 
     /// The displacement `v` for the first coordinates of a box: see [`Task::lower`].
     pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
-        let home = |i: usize| task.coordinates[i].home;
-        let q = |i: usize| pose[i].minus(home(i));
+        let number =
+            |i: usize| i + usize::from(task.height_in(Section::Lower).is_some_and(|h| i >= h));
+        let home = |i: usize| task.coordinates[number(i)].home;
+        let pose = |i: usize| pose[number(i)];
+        let q = |i: usize| pose(i).minus(home(i));
         match task.lower_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, pose, 0),
+            IntersectionMotion::None(kind) => alone(task, kind, pose, home),
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
                     PlanarMotion::Rotation => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Translation(_) => pose[2].unit_vector(home(2)),
+                    PlanarMotion::Translation(_) => pose(2).unit_vector(home(2)),
                 },
                 translation: Plane { re: q(0), im: q(1) },
             }),
             IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-                Target::Spherical(tilt(pose[0].unit_vector(home(0)), pose[1].unit_vector(home(1))))
+                Target::Spherical(tilt(pose(0).unit_vector(home(0)), pose(1).unit_vector(home(1))))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
@@ -302,20 +306,23 @@ pub mod task {
 
     /// The displacement `b` for the remaining coordinates of a box: see [`Task::upper`].
     pub fn upper<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
-        let home = |i: usize| task.coordinates[task.lower_count + i].home;
-        let q = |i: usize| pose[i].minus(home(i));
+        let number =
+            |i: usize| i + usize::from(task.height_in(Section::Upper).is_some_and(|h| i >= h));
+        let home = |i: usize| task.coordinates[task.lower_count + number(i)].home;
+        let pose = |i: usize| pose[number(i)];
+        let q = |i: usize| pose(i).minus(home(i));
         let planar = |rotation, re, im| {
             Target::Planar(PlanarTarget { rotation, translation: Plane { re, im } })
         };
         let none = Affine::constant(0.0);
         match task.upper_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, pose, task.lower_count),
+            IntersectionMotion::None(kind) => alone(task, kind, pose, home),
             IntersectionMotion::Spherical(SphericalMotion::Rotation) => orientation(task, pose),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => {
-                planar(pose[2].unit_vector(home(2)), q(0), q(1))
+                planar(pose(2).unit_vector(home(2)), q(0), q(1))
             }
             IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
-                planar(pose[1].unit_vector(home(1)), none, q(0))
+                planar(pose(1).unit_vector(home(1)), none, q(0))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(q(0), q(1))
@@ -330,19 +337,18 @@ pub mod task {
     }
 
     /// The displacement of a section that shares no motion with the other one. Its coordinates are those of its
-    /// whole subspace, and begin at number `first` of the pose.
+    /// whole subspace, given by their place, with their values at home.
     fn alone<const N: usize>(
         task: &Task,
         kind: SubspaceKind,
-        pose: &[Coordinate<N>],
-        first: usize,
+        pose: impl Fn(usize) -> Coordinate<N>,
+        home: impl Fn(usize) -> f64,
     ) -> Target<N> {
-        let home = |i: usize| task.coordinates[first + i].home;
-        let q = |i: usize| pose[i].minus(home(i));
+        let q = |i: usize| pose(i).minus(home(i));
         match kind {
             SubspaceKind::Identity => Target::Identity,
             SubspaceKind::Planar => Target::Planar(PlanarTarget {
-                rotation: pose[2].unit_vector(home(2)),
+                rotation: pose(2).unit_vector(home(2)),
                 translation: Plane { re: q(0), im: q(1) },
             }),
             SubspaceKind::Spherical => orientation(task, pose),
@@ -352,8 +358,11 @@ pub mod task {
     }
 
     /// The rotation from home for Euler angles.
-    fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
-        let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[i].unit_vector(0.0));
+    fn orientation<const N: usize>(
+        task: &Task,
+        pose: impl Fn(usize) -> Coordinate<N>,
+    ) -> Target<N> {
+        let [zeta, xi, psi] = [0, 1, 2].map(|i| pose(i).unit_vector(0.0));
         let absolute = euler(zeta, xi, psi);
         Target::Spherical(match task.home_orientation_inverse() {
             Some(inverse) => absolute.after(inverse),

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 /// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
 /// shares of the size. Near a serial singularity, inverse kinematics are only accurate to about the square
 /// root of rounding.
-const MATCH: f64 = 1e-6;
+pub(super) const MATCH: f64 = 1e-6;
 
 /// Two solutions of a leg that both match are distinct if a joint differs by more than this, in radians or
 /// shares of the size. Otherwise they are one solution near a singularity.
@@ -72,14 +72,14 @@ impl Search<'_> {
     /// the same actuated joints.
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
-        let all = m.task().pose(v, b);
+        let all = m.task().pose(v, b, self.rise);
         let independent = m.dependent.as_ref().map(|d| d.independent_of(m, &all));
         let pose = independent.as_deref().unwrap_or(&all);
         if m.check_pose(pose).is_err() {
             return;
         }
         let (v, b) = m.task().sections(&all);
-        let target = m.task().isometry(&v, &b);
+        let target = m.task().raised(self.rise, m.task().isometry(&v, &b));
         let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
             let (matching, error) = self.matching_solutions(leg, [&v, &b]);
@@ -100,6 +100,8 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
+            self.solution.solved.pose.copy_from_slice(&all);
+            m.write_lifts(&mut self.solution);
             match &m.dependent {
                 None => self.accept(pose, mode, &target),
                 Some(dependent) => self.accept_completed(dependent, pose, mode, &target),
@@ -131,7 +133,7 @@ impl Search<'_> {
     }
 
     /// Notes by how much the joints of a rejected candidate are off.
-    fn reject(&mut self, error: f64) {
+    pub(super) fn reject(&mut self, error: f64) {
         self.least = Some(self.least.map_or(error, |least| least.min(error)));
     }
 

@@ -137,7 +137,7 @@ impl Manipulator {
             return Err(newton.ended(Stop::Steps, STEPS, error.amax()).into());
         }
         let (v, b) = (newton.solution.solved.v, newton.solution.solved.b);
-        let pose = self.independent_of(&self.task().pose(&v, &b));
+        let pose = self.independent_of(&self.task().pose(&v, &b, newton.rise()));
         self.inverse(&pose, mode, &mut newton.solution)?;
         let target = newton.solution.displacement(self);
         let mut solution = newton.solution.clone();
@@ -201,6 +201,11 @@ impl Newton<'_> {
         )
     }
 
+    /// The height above home, metres.
+    fn rise(&self) -> f64 {
+        self.manipulator.task().rise(&self.solution.solved.pose)
+    }
+
     /// Takes one step, shortened until it reduces the error.
     fn step(&mut self, jacobians: &mut Jacobians, error: &mut DVector<f64>) -> Result<(), Stop> {
         let m = self.manipulator;
@@ -209,6 +214,7 @@ impl Newton<'_> {
             return Err(Stop::Singular);
         }
         let directions = jacobians.directions();
+        let raised = m.task().height.is_some();
         // In rows and columns, lengths are divided by the size.
         let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
         let columns: Vec<f64> = (directions.iter())
@@ -217,6 +223,7 @@ impl Newton<'_> {
                     if upper.is_translation(u) || lower.is_translation(l) { size } else { 1.0 }
                 },
             )
+            .chain(raised.then_some(size))
             .collect();
         let row = |i: usize| match m.coordinates()[m.actuated()[i]].quantity {
             Quantity::Angle => 1.0,
@@ -255,7 +262,9 @@ impl Newton<'_> {
             // The twists are ḃ b⁻¹ and v⁻¹ v̇.
             let moved_b = upper.first_order(&upper_twist).after(&b);
             let moved_v = v.after(&lower.first_order(&lower_twist));
-            let pose = m.independent_of(&m.task().pose(&moved_v, &moved_b));
+            let along = if raised { step[directions.len()] * size * scale } else { 0.0 };
+            let all = m.task().pose(&moved_v, &moved_b, self.rise() + along);
+            let pose = m.independent_of(&all);
             match m.inverse(&pose, self.mode, &mut tried) {
                 Ok(Some(_)) => {
                     std::mem::swap(&mut self.solution, &mut tried);

@@ -1,5 +1,6 @@
 //! The search for assemblies: it tries every combination of the solutions of the two sections.
 
+use super::accept::MATCH;
 use super::along::{self, along};
 use super::three::{self, Solutions};
 use super::{Assemblies, Unmet};
@@ -33,6 +34,8 @@ pub(super) struct Search<'a> {
     pub displacements: &'a [f64],
     /// The same displacements as unit complex numbers `e(angle)`.
     pub directions: Vec<Complex<f64>>,
+    /// The height above home, metres: that of the first actuated lift.
+    pub rise: f64,
     /// A buffer for inverse kinematics.
     pub solution: Solution,
     /// The assemblies found so far.
@@ -46,6 +49,11 @@ pub(super) struct Search<'a> {
     pub deficits: Vec<Option<ReachDeficit>>,
 }
 
+/// The heights above home that the actuated lifts give, metres.
+fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    m.lifts().filter_map(|lift| Some(lift.sign * displacements[lift.coordinate.actuated?]))
+}
+
 impl<'a> Search<'a> {
     pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
         Self {
@@ -53,6 +61,7 @@ impl<'a> Search<'a> {
             plan,
             displacements,
             directions: displacements.iter().map(|&value| unit(value)).collect(),
+            rise: rises(manipulator, displacements).next().unwrap_or(0.0),
             solution: manipulator.solution(),
             out: Assemblies::default(),
             least: None,
@@ -64,6 +73,12 @@ impl<'a> Search<'a> {
     /// Finds all candidates, and accepts those that close.
     pub fn run(&mut self) {
         let (m, plan) = (self.manipulator, self.plan);
+        let apart = |rise: f64| (rise - self.rise).abs() / m.closure.size;
+        let apart = rises(m, self.displacements).map(apart).fold(0.0, f64::max);
+        if apart > MATCH {
+            self.reject(apart);
+            return;
+        }
         let unknown = vec![None; m.legs.len()];
         match &plan.anchor {
             Anchor::Sections => {

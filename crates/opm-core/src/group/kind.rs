@@ -24,7 +24,8 @@ impl SubspaceKind {
     pub fn of(class: &SubspaceClass) -> Option<Self> {
         match class {
             SubspaceClass::Identity => Some(Self::Identity),
-            SubspaceClass::Planar { .. } => Some(Self::Planar),
+            // A Schoenflies section is a planar one at a height.
+            SubspaceClass::Planar { .. } | SubspaceClass::Schoenflies { .. } => Some(Self::Planar),
             SubspaceClass::Spherical { .. } => Some(Self::Spherical),
             SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
             SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
@@ -33,7 +34,6 @@ impl SubspaceKind {
             | SubspaceClass::Helical { .. }
             | SubspaceClass::TranslationalSpace
             | SubspaceClass::PlanarHelical { .. }
-            | SubspaceClass::Schoenflies { .. }
             | SubspaceClass::Full => None,
         }
     }

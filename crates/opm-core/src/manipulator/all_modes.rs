@@ -125,6 +125,7 @@ impl Manipulator {
         buffer.solved.pose.copy_from_slice(pose);
         (buffer.solved.v, buffer.solved.b) = (*v, *b);
         self.divide(buffer);
+        self.write_lifts(buffer);
         buffer.reached()
     }
 
@@ -142,6 +143,7 @@ impl Manipulator {
     ) -> Option<(Mode, &'a Solution)> {
         let first = (all.completions.iter().enumerate())
             .filter(|(_, completion)| completion.missed.is_none())
+            .filter(|(_, completion)| self.lifts_admit(&completion.solved.pose))
             .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
         self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
@@ -180,7 +182,8 @@ impl Manipulator {
                 })
             };
             let legs = || self.legs.iter().zip(&completion.legs);
-            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
+            let closes = legs().all(|leg| within(leg).iter().any(Option::is_some));
+            if !(closes && self.lifts_admit(&completion.solved.pose)) {
                 continue;
             }
             reached = true;

@@ -276,6 +276,7 @@ impl WithSimd for Solve<'_> {
             block.solve_leg(manipulator, mode, number);
             block.report(manipulator, leg);
         }
+        block.lift(manipulator);
     }
 }
 
@@ -341,9 +342,11 @@ impl Block {
         {
             let mut at = [&[0.0; LANES]; 3];
             let mut home = [0.0; 3];
-            let count = if section == Section::Lower { task.lower_count } else { 3 };
-            let of_section = pose.iter().zip(&task.coordinates).skip(first).take(count);
-            for (number, (column, coordinate)) in of_section.enumerate() {
+            let count = if section == Section::Lower { task.lower_count } else { 4 };
+            let height = task.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
+            let of_section = pose.iter().zip(&task.coordinates).enumerate().skip(first).take(count);
+            let in_plane = of_section.filter(|(i, _)| *i != height).map(|(_, both)| both);
+            for (number, (column, coordinate)) in in_plane.enumerate() {
                 (at[number], home[number]) = (column, coordinate.home);
             }
             section::displace(task, section, at, home, to);
@@ -381,6 +384,21 @@ impl Block {
                         section::shift(step, v, tau, shifted);
                     }
                 }
+            }
+        }
+    }
+
+    /// Computes the values of the lifts.
+    #[inline(always)]
+    fn lift(&mut self, manipulator: &Manipulator) {
+        let Some(height) = &manipulator.task.height else { return };
+        let home = manipulator.task.coordinates[height.coordinate].home;
+        for lift in manipulator.lifts() {
+            for lane in 0..LANES {
+                let rise = self.pose[height.coordinate][lane] - home;
+                let (value, within) = manipulator.lifted(lift, rise);
+                self.joints[lift.coordinate.number][lane] = value;
+                self.status.within_limits[lane] &= u64::from(within);
             }
         }
     }

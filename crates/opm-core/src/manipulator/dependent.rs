@@ -70,13 +70,22 @@ pub enum ConstraintError {
         /// The mobility that one constraining leg for each section would leave.
         determined: usize,
     },
+    /// A leg of a mechanism with a Schoenflies section has too few freedoms.
+    #[error(
+        "leg {leg} has fewer freedoms than the motion of the platform, which closed forms do not cover where a section \
+         is a Schoenflies one"
+    )]
+    Height {
+        /// The leg's name.
+        leg: String,
+    },
 }
 
 impl ConstraintError {
     /// The name of the first leg that it is about.
     pub fn leg(&self) -> Option<&str> {
         match self {
-            Self::Singular { leg, .. } => Some(leg),
+            Self::Singular { leg, .. } | Self::Height { leg } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
         }
     }
@@ -130,6 +139,14 @@ impl Dependent {
         mobility: usize,
         size: f64,
     ) -> Result<Option<Self>, ConstraintError> {
+        if task.height.is_some() {
+            let partial =
+                |leg: &CompiledLeg| [&leg.lower, &leg.upper].iter().any(|s| s.partial.is_some());
+            return match legs.iter().position(partial) {
+                Some(leg) => Err(ConstraintError::Height { leg: names[leg].to_owned() }),
+                None => Ok(None),
+            };
+        }
         let mut steps: Vec<Closed> = Vec::new();
         let mut checks = Vec::new();
         for section in order(task) {
@@ -323,7 +340,11 @@ fn preference(kind: CoordinateKind) -> u8 {
         CoordinateKind::Zeta | CoordinateKind::Theta | CoordinateKind::Phi => 0,
         CoordinateKind::Psi | CoordinateKind::Nu => 1,
         CoordinateKind::Xi | CoordinateKind::Mu => 2,
-        CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Z | CoordinateKind::W => 3,
+        CoordinateKind::X
+        | CoordinateKind::Y
+        | CoordinateKind::Z
+        | CoordinateKind::H
+        | CoordinateKind::W => 3,
     }
 }
 

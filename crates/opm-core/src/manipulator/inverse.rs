@@ -154,7 +154,9 @@ impl Solution {
 
     /// The platform's displacement from home, base coordinates. `manipulator` is the one that was solved.
     pub fn displacement(&self, manipulator: &Manipulator) -> Isometry3<f64> {
-        manipulator.task.isometry(&self.solved.v, &self.solved.b)
+        let SolvedPose { pose, v, b } = &self.solved;
+        let task = &manipulator.task;
+        task.raised(task.rise(pose), task.isometry(v, b))
     }
 
     /// Takes a pose, with its dependent coordinates, as the one that was solved.
@@ -434,6 +436,13 @@ impl Manipulator {
                 buffer.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
+        for lift in self.lifts() {
+            let (value, within) = self.lifted(lift, self.task.rise(pose));
+            buffer.within_limits &= within;
+            if let Some(actuated) = lift.coordinate.actuated {
+                buffer.actuated[actuated] = value;
+            }
+        }
         Ok(Some(buffer))
     }
 
@@ -503,6 +512,17 @@ impl Manipulator {
                     out.unreachable.push(Unreachable { leg: number, section, deficit });
                 }
             }
+        }
+        self.write_lifts(out);
+    }
+
+    /// Writes the values of the lifts at the pose that `out` holds.
+    #[inline]
+    pub(crate) fn write_lifts(&self, out: &mut Solution) {
+        for lift in self.lifts() {
+            let (value, within) = self.lifted(lift, self.task.rise(&out.solved.pose));
+            out.joints[lift.coordinate.number] = value;
+            out.within_limits &= within;
         }
     }
 

@@ -1,11 +1,12 @@
 //! One leg, split into two closed-form chains.
 
+use super::lift::{self, Lift};
 use crate::chain::limits::Limits;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
 use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
-use crate::decomposition::{Freedom, LegSplit};
+use crate::decomposition::{Freedom, HeightMiss, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
@@ -31,6 +32,9 @@ pub enum RefusedLeg {
         /// Whether the two subspaces share a motion.
         bridged: bool,
     },
+    /// The height of a Schoenflies section is not that of one slider along its direction.
+    #[error(transparent)]
+    Height(#[from] HeightMiss),
     /// One of the leg's sections has no closed form.
     #[error("its {section} section has no closed form: {error}")]
     Chain {
@@ -115,6 +119,8 @@ pub(crate) struct CompiledLeg {
     pub upper_constrains: bool,
     /// Whether the imaginary joint rotates about an axis on which full revolutions are counted.
     pub unwinds: bool,
+    /// The joint that carries the height of a Schoenflies section.
+    pub lift: Option<Lift>,
 }
 
 /// What compiling a leg needs to know of the manipulator.
@@ -154,6 +160,9 @@ impl CompiledLeg {
         context: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let task = context.task;
+        let separated = lift::separate(leg, split, first, context)?;
+        let lift = separated.as_ref().map(|(lift, _)| *lift);
+        let split = separated.as_ref().map_or(split, |(_, rest)| rest);
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
         let bridged = task.intersection.is_some();
@@ -175,12 +184,13 @@ impl CompiledLeg {
             Section::Lower => lower < dim_lower,
             Section::Upper => upper < dim_upper,
         };
-        match found {
+        let found = match found {
             Err(error) if bridged && room => {
                 Self::split_in(other, leg, split, first, context).map_err(|_| error)
             }
             found => found,
-        }
+        };
+        found.map(|compiled| Self { lift, ..compiled })
     }
 
     /// The same for a given section that the imaginary joint belongs to.
@@ -226,7 +236,7 @@ impl CompiledLeg {
             let screws = screws(subspace, &joints).map_err(refused)?;
             let partial = partial.map(|locked| PartialChain::new(subspace.kind, screws, locked));
             let own = || coordinates.iter().flatten();
-            Ok(CompiledSection {
+            Ok::<_, RefusedLeg>(CompiledSection {
                 chain,
                 screws,
                 scale: determinant_scale(subspace.kind, &screws, size),
@@ -251,9 +261,15 @@ impl CompiledLeg {
             bridged,
             shapes,
             imaginary: None,
+            lift: None,
             unwinds: task.shared() == Some(MotionType::Rotation)
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
+    }
+
+    /// Whether an actuated joint carries the height.
+    pub fn drives_height(&self) -> bool {
+        self.lift.is_some_and(|lift| lift.coordinate.actuated.is_some())
     }
 
     /// The sections in the order in which they are solved.

@@ -157,8 +157,8 @@ impl Manipulator {
     /// The same with all task coordinates, as if they were independent.
     fn locate_all(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
         let length = self.characteristic_length();
-        let [v, b] = self.task.factors(displacement);
-        let pose = self.task.pose(&v, &b);
+        let ([v, b], rise) = self.task.factors(displacement);
+        let pose = self.task.pose(&v, &b, rise);
         if self.miss(displacement, &pose, 1.0 / length).norm() < ON {
             return Ok(self.within_half_a_turn(pose));
         }
@@ -210,7 +210,7 @@ impl Manipulator {
                 Quantity::Length => c.home,
                 // Irrational steps: the roots of successive primes.
                 Quantity::Angle => {
-                    let step = [2.0_f64, 3.0, 5.0, 7.0, 11.0][i % 5].sqrt();
+                    let step = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0][i % 6].sqrt();
                     c.home + TAU * ((n * step).fract() - (n * step).fract().round())
                 }
             })

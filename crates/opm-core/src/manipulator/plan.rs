@@ -29,6 +29,9 @@ pub enum NoClosedForm {
         "an actuated revolute joint is on the axis of a helical joint: each revolution of it is another assembly"
     )]
     Turns,
+    /// No actuated joint carries the height of a Schoenflies section.
+    #[error("no actuated joint carries the height")]
+    Height,
     /// A spherical joint is actuated.
     #[error("a spherical joint is actuated")]
     Ball,
@@ -98,6 +101,9 @@ impl Plan {
         if [Section::Lower, Section::Upper].iter().any(|section| loses_turns(*section, legs, &held))
         {
             return Err(NoClosedForm::Turns);
+        }
+        if task.height.is_some() && !legs.iter().any(CompiledLeg::drives_height) {
+            return Err(NoClosedForm::Height);
         }
         if task.shared().is_none() {
             if !fixes(task.lower.kind, &conditions(legs, &held, Section::Lower)) {

@@ -137,7 +137,7 @@ impl Manipulator {
         let moved = Span { from: span.from - home, to: span.to - home, step: span.step };
         let mut found = |[from, to]: [f64; 2]| found([from + home, to + home]);
         let at = |first: f64| {
-            let mut pose = [first, 0.0, 0.0];
+            let mut pose = [first, 0.0, 0.0, 0.0];
             pose[1..=others.len()].copy_from_slice(others);
             self.task.lower(&pose)
         };

@@ -109,6 +109,11 @@ pub const EXAMPLES: &[Example] = &[
         description: "planar five-bar (dual-arm SCARA), one subspace: two translations, an angle that follows",
         text: include_str!("../../mechanisms/five-bar.toml"),
     },
+    Example {
+        name: "schoenflies-column-4dof",
+        description: "three arms, one on a column, in one subspace: three translations, one rotation",
+        text: include_str!("../../mechanisms/schoenflies-column-4dof.toml"),
+    },
 ];
 
 /// The example with this name, if there is one.

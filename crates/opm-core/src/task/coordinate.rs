@@ -1,6 +1,7 @@
 //! The coordinates of a pose: the kinds of coordinates, and those of each section.
 
 use crate::group::{MotionType, Subspace, SubspaceKind};
+use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 
 /// What a task coordinate measures; the table in the docs of [`task`](crate::task) says which subspaces
@@ -11,8 +12,10 @@ pub enum CoordinateKind {
     X,
     /// `y`: the reference point along a plane's second direction.
     Y,
-    /// `z`: along a cylinder's axis.
+    /// `z`: along a cylinder's axis; the height of a lower Schoenflies section.
     Z,
+    /// `h`: the height of an upper Schoenflies section.
+    H,
     /// `w`: in the upper plane, perpendicular to the intersection motion; along the axis of an upper cylinder
     /// that shares no motion.
     W,
@@ -34,10 +37,11 @@ pub enum CoordinateKind {
 
 impl CoordinateKind {
     /// Every kind.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::X,
         Self::Y,
         Self::Z,
+        Self::H,
         Self::W,
         Self::Theta,
         Self::Phi,
@@ -54,6 +58,7 @@ impl CoordinateKind {
             Self::X => "x",
             Self::Y => "y",
             Self::Z => "z",
+            Self::H => "h",
             Self::W => "w",
             Self::Theta => "theta",
             Self::Phi => "phi",
@@ -73,7 +78,7 @@ impl CoordinateKind {
     /// Whether the coordinate is an angle or a length.
     pub const fn quantity(self) -> Quantity {
         match self {
-            Self::X | Self::Y | Self::Z | Self::W => Quantity::Length,
+            Self::X | Self::Y | Self::Z | Self::H | Self::W => Quantity::Length,
             Self::Theta | Self::Phi | Self::Zeta | Self::Xi | Self::Psi | Self::Mu | Self::Nu => {
                 Quantity::Angle
             }
@@ -151,6 +156,21 @@ pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
         (SubspaceKind::TranslationalPlane, Some(_)) => listed([(W, at.y)]),
         (SubspaceKind::TranslationalPlane, None) => listed([(X, at.x), (Y, at.y)]),
     }
+}
+
+/// The coordinate that tells the height of a section, and its place: after those that move the reference point in the
+/// plane.
+pub(super) fn of_height(
+    frame: &Subspace,
+    section: Section,
+    coordinates: &[TaskCoordinate],
+) -> (usize, TaskCoordinate) {
+    let kind = match section {
+        Section::Lower => CoordinateKind::Z,
+        Section::Upper => CoordinateKind::H,
+    };
+    let in_plane = coordinates.iter().filter(|c| c.quantity == Quantity::Length).count();
+    (in_plane, TaskCoordinate::new(kind, frame.home().z))
 }
 
 fn listed<const N: usize>(coordinates: [(CoordinateKind, f64); N]) -> Vec<TaskCoordinate> {

@@ -4,23 +4,41 @@
 //! gives `v`, and then `b = v⁻¹ g`. No step takes the angle of a rotation in space, which is ambiguous at
 //! 180 degrees.
 
-use super::Task;
 use super::displacement::{cylindrical, planar};
+use super::{Height, Task};
 use crate::group::{Displacement, MotionType, Subspace, SubspaceKind};
+use crate::mechanism::leg::Section;
 use crate::numeric::angle::{sin_cos, unit};
 use nalgebra::{Complex, Isometry3, Matrix3, Vector3};
 
 impl Task {
     /// Displacements `v` and `b` with `v · b = g`, where `g` is in the motion `A · B`. They are unique up to a
     /// displacement along the intersection motion. For any other `g`, the product of the two is not `g`.
-    pub(crate) fn factors(&self, g: &Isometry3<f64>) -> [Displacement; 2] {
+    ///
+    /// With a Schoenflies section, it is `g` that is raised by the height above home that is also given, metres.
+    pub(crate) fn factors(&self, g: &Isometry3<f64>) -> ([Displacement; 2], f64) {
+        let rise = self.rise_of(g);
+        let g = &self.raised(-rise, *g);
         let v = match self.shared() {
             Some(MotionType::Rotation) => self.lower_factor_by_rotation(g),
             Some(MotionType::Translation) => self.lower_factor_by_translation(g),
             None => lower_factor_alone(&self.lower, &self.upper, g),
         };
         let b = self.upper.local(&(self.lower.isometry(&v).inverse() * g));
-        [v, b]
+        ([v, b], rise)
+    }
+
+    /// The height of `g` above home. The other section keeps a point, or moves it across the direction of the height.
+    fn rise_of(&self, g: &Isometry3<f64>) -> f64 {
+        match &self.height {
+            None => 0.0,
+            Some(Height { section: Section::Lower, up, .. }) => {
+                up.dot(&(g * self.upper.origin - self.upper.origin))
+            }
+            Some(Height { section: Section::Upper, up, .. }) => {
+                up.dot(&(self.lower.origin - g.inverse() * self.lower.origin))
+            }
+        }
     }
 
     /// The factor `v` where the intersection motion is a rotation. The upper frame's origin is on its axis.

@@ -47,7 +47,8 @@ pub(super) fn lay(
     let rotation = shared == Some(MotionType::Rotation);
     let (kind, at_home, normal) = match class {
         SubspaceClass::Identity => (SubspaceKind::Identity, reference, Vector3::z_axis()),
-        SubspaceClass::Planar { normal } => (
+        // A Schoenflies section is a planar one at a height.
+        SubspaceClass::Planar { normal } | SubspaceClass::Schoenflies { axis: normal } => (
             SubspaceKind::Planar,
             reference,
             if rotation { meeting.third(*normal) } else { *normal },
@@ -73,7 +74,6 @@ pub(super) fn lay(
         | SubspaceClass::Helical { .. }
         | SubspaceClass::TranslationalSpace
         | SubspaceClass::PlanarHelical { .. }
-        | SubspaceClass::Schoenflies { .. }
         | SubspaceClass::Full => {
             return Err(TaskError::Subspace { section, name: class.name(), odd: None });
         }

@@ -1,6 +1,6 @@
 //! The coordinates of the pose from the two displacements of `g = v · b`.
 
-use super::Task;
+use super::{Task, TaskCoordinate};
 use crate::group::{
     CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, MotionType,
     PlanarMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
@@ -16,14 +16,22 @@ impl Task {
     /// The coordinates of `v · b`, however the displacement along the intersection motion is distributed
     /// between `v` and `b`. Angles are within π of home, except those of a cylinder, which count revolutions.
     /// Of the two triples of Euler angles of a rotation it is the one nearer to home; where they are singular,
-    /// `zeta` and `psi` are changed from home by equal amounts.
+    /// `zeta` and `psi` are changed from home by equal amounts. `rise` is the height above home, metres; zero where there
+    /// is no Schoenflies section.
     ///
     /// # Panics
     /// If `v` or `b` is a displacement of another kind of subspace.
     #[doc(hidden)]
-    pub fn pose(&self, v: &Displacement, b: &Displacement) -> Vec<f64> {
+    pub fn pose(&self, v: &Displacement, b: &Displacement, rise: f64) -> Vec<f64> {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
-        let home = |i: usize| self.coordinates[i].home;
+        // The height is put in its place at last.
+        let height = self.height.as_ref().map(|height| height.coordinate);
+        let in_plane = |(i, _): &(usize, &TaskCoordinate)| Some(*i) != height;
+        let others = self.coordinates.iter().enumerate().filter(in_plane);
+        let coordinates: Vec<&TaskCoordinate> = others.map(|(_, c)| c).collect();
+        let lower_count =
+            self.lower_count - usize::from(height.is_some_and(|i| i < self.lower_count));
+        let home = |i: usize| coordinates[i].home;
         // Moves the displacement along I to the factor that is not taken modulo I.
         let (v, handed) = match self.shared() {
             Some(MotionType::Rotation) => self.without_shared_rotation(v),
@@ -54,7 +62,7 @@ impl Task {
             Displacement::Cylindrical(g) => pose.extend([home(0) + g.angle, home(1) + g.advance]),
             Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
         }
-        let home = |i: usize| self.coordinates[self.lower_count + i].home;
+        let home = |i: usize| coordinates[lower_count + i].home;
         let translation = self.shared() == Some(MotionType::Translation);
         match b {
             Displacement::Identity(_) => {}
@@ -84,11 +92,14 @@ impl Task {
             | SubspaceKind::Spherical
             | SubspaceKind::TranslationalPlane => false,
         };
-        for (i, (q, c)) in pose.iter_mut().zip(&self.coordinates).enumerate() {
-            let section = if i < self.lower_count { &self.lower } else { &self.upper };
+        for (i, (q, c)) in pose.iter_mut().zip(&coordinates).enumerate() {
+            let section = if i < lower_count { &self.lower } else { &self.upper };
             if c.quantity == Quantity::Angle && !counted(section.kind) {
                 *q = near(*q, c.home);
             }
+        }
+        if let Some(height) = height {
+            pose.insert(height, self.coordinates[height].home + rise);
         }
         pose
     }

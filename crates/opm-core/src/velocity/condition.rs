@@ -7,7 +7,7 @@ use crate::numeric::svd::{Products, jacobi};
 use nalgebra::SMatrix;
 
 /// The largest mobility of a platform: that of two subspaces of three dimensions that share one dimension.
-const MOST: usize = 5;
+const MOST: usize = 6;
 
 /// A singular value below this share of the largest counts as zero: the rounding of the few dozen operations
 /// that lead to it.

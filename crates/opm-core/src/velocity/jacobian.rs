@@ -5,7 +5,7 @@ use super::dependent::System;
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Manipulator, Section, Solution};
-use crate::task::Task;
+use crate::task::{Height, Task};
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 
 /// The Jacobians at one solved pose. The buffer is made by [`Manipulator::jacobians`] and filled by
@@ -21,6 +21,7 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 /// * `lower`: the twist `v⁻¹ v̇` of the lower section, in the frame of [`Task::lower`] as it has
 ///   moved with `v`, of the same form. Where the intersection motion is a rotation, the
 ///   component along it is left out. In a plane that is the velocity of the reference point.
+/// * the rate of the height, if one of the two is a Schoenflies section.
 ///
 /// Rates are those of the coordinates as they are reported: rad/s and m/s.
 ///
@@ -57,7 +58,7 @@ pub struct Jacobians {
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`]) from
     /// the rates along the intersection motion, in the order of the rows of [`Jacobians::upper`], and the lower section's
-    /// twist.
+    /// twist. The joints that carry a height follow it alone, and have no row here.
     pub lower: DMatrix<f64>,
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
     /// twist. For the actuated joints of the lower section `q̇ = J_p [J_s upper; lower]`.
@@ -105,7 +106,7 @@ struct Basis {
     lower: [LocalTwist; 3],
     /// The numbers of upper and of lower components; the rest are zeros.
     counts: [usize; 2],
-    /// The same twists in base coordinates, upper ones first.
+    /// The same twists in base coordinates, upper ones first, and a height's at last.
     in_base: Vec<BaseTwist>,
     /// The home position of the platform's reference point, in the upper section's frame.
     platform: Vector3<f64>,
@@ -132,8 +133,14 @@ impl Basis {
             let [angular, linear] = subspace.embedded(twist);
             BaseTwist { angular, linear, origin: subspace.origin.coords }
         };
+        let rise = task.height.iter().map(|height| BaseTwist {
+            angular: Vector3::zeros(),
+            linear: height.up,
+            origin: Vector3::zeros(),
+        });
         let in_base = (upper.iter().map(|twist| embedded(&task.upper, twist)))
             .chain(lower.iter().map(|twist| embedded(&task.lower, twist)))
+            .chain(rise)
             .collect();
         let padded = |twists: &[LocalTwist]| {
             std::array::from_fn(|i| twists.get(i).copied().unwrap_or_else(LocalTwist::zeros))
@@ -170,7 +177,7 @@ impl Jacobians {
     }
 
     /// The components of the section twist, in the order of the columns: for each, the twists of the upper
-    /// and of the lower section, in the sections' frames.
+    /// and of the lower section, in the sections' frames. A height, which has the last column, is not among them.
     pub(crate) fn directions(&self) -> Vec<[LocalTwist; 2]> {
         let zero = LocalTwist::zeros();
         let [n_upper, n_lower] = self.basis.counts;
@@ -201,8 +208,7 @@ impl Manipulator {
         for (row, &coordinate) in lower_rows.iter().enumerate() {
             driven[coordinate] = Some(row);
         }
-        let [n_upper, n_lower] = basis.counts;
-        let n = n_upper + n_lower;
+        let (n_upper, n_lower, n) = (basis.counts[0], basis.counts[1], basis.in_base.len());
         let home = self.solution();
         Jacobians {
             upper: DMatrix::zeros(bridged.len(), n_upper),
@@ -252,6 +258,14 @@ impl Manipulator {
             }
             out.legs[number] = differential;
             out.taus[number] = at.legs[number].tau;
+        }
+        if self.task().height.is_some() {
+            let column = out.basis.in_base.len() - 1;
+            for lift in self.lifts() {
+                let number = lift.coordinate.number;
+                out.joints.row_mut(number).fill(0.0);
+                out.joints[(number, column)] = lift.displacement(1.0);
+            }
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
@@ -416,12 +430,17 @@ impl Manipulator {
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
         let (v_screws, b_screws) = (task.lower_screws(pose), task.upper_screws(pose));
-        for column in 0..n {
+        if let Some(height) = &task.height {
+            out.pose.fill(0.0);
+            out.pose[(n - 1, height.coordinate)] = 1.0;
+        }
+        let of =
+            |section: Section| task.numbers(section).enumerate().map(move |(i, n)| (section, i, n));
+        for (section, component, column) in of(Section::Lower).chain(of(Section::Upper)) {
             let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
-            if column < task.lower_count {
-                lower = v.adjoint_of_inverse(&v_screws.moved[column]);
-            } else {
-                upper = b_screws.moved[column - task.lower_count];
+            match section {
+                Section::Lower => lower = v.adjoint_of_inverse(&v_screws.moved[component]),
+                Section::Upper => upper = b_screws.moved[component],
             }
             // A rate along the intersection motion may belong to either section. It is moved to the section
             // that has a component for it.
@@ -443,8 +462,12 @@ impl Manipulator {
     /// Computes the platform's twist for each component of the section twist.
     fn platform_columns(&self, at: &Solution, out: &mut Jacobians) {
         // In a frame that moves with v, the reference point is displaced by b.
-        let upper = &self.task().upper;
-        let point = upper.restored(&at.solved.b.act(&out.basis.platform)).coords;
+        let task = self.task();
+        let mut point = task.upper.restored(&at.solved.b.act(&out.basis.platform)).coords;
+        // The height of a lower section moves that frame.
+        if let Some(Height { section: Section::Upper, up, .. }) = &task.height {
+            point += up * task.rise(&at.solved.pose);
+        }
         for (i, BaseTwist { angular, linear, origin }) in out.basis.in_base.iter().enumerate() {
             let velocity = linear + angular.cross(&(point - origin));
             let column = &mut out.platform.as_mut_slice()[6 * i..6 * i + 6];

@@ -23,9 +23,10 @@
 use super::Jacobians;
 use super::closure::{along_unit, inputs, row_unit, section_rows, twist_unit, volume};
 use crate::group::LocalTwist;
-use crate::manipulator::{Manipulator, Section};
+use crate::manipulator::{CompiledLeg, Manipulator, Section};
 use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// A leg counts as a cause of a parallel singularity if its component is more than this share of the
 /// largest.
@@ -118,6 +119,9 @@ struct Layout {
     lower_basis: Vec<LocalTwist>,
     /// The components of the upper section's twist, in its frame.
     upper_basis: Vec<LocalTwist>,
+    /// The section that has a height. Its rate is the last column of the section, and each actuated lift has a row after
+    /// the section's others.
+    height: Option<Section>,
     /// The leg and the section of every row.
     rows: Vec<Cause>,
     /// The number of rows of the lower section, which come first.
@@ -148,21 +152,43 @@ impl Layout {
             legs.iter().any(|leg| leg.split_section == Section::Upper && leg.imaginary.is_none());
         let lower_basis =
             if fixed { task.lower.kind.basis() } else { task.lower_intersection.complement() };
+        let height = task.height.as_ref().map(|height| height.section);
         let rows_of = |section: Section| {
-            legs.iter().enumerate().flat_map(move |(number, leg)| {
-                let count = inputs(leg, section).into_iter().filter(|input| *input).count();
-                std::iter::repeat_n(Cause { leg: number, section }, count)
-            })
+            let of_height = height == Some(section);
+            let driven = move |leg: &CompiledLeg| of_height && leg.drives_height();
+            let lifts = legs.iter().enumerate().filter(move |(_, leg)| driven(leg));
+            legs.iter()
+                .enumerate()
+                .flat_map(move |(number, leg)| {
+                    let count = inputs(leg, section).into_iter().filter(|input| *input).count();
+                    std::iter::repeat_n(Cause { leg: number, section }, count)
+                })
+                .chain(lifts.map(move |(leg, _)| Cause { leg, section }))
         };
         let lower_rows = rows_of(Section::Lower).count();
         let rows = rows_of(Section::Lower).chain(rows_of(Section::Upper)).collect();
         let upper_basis = task.upper.kind.basis();
-        Self { along, along_count, lower_basis, upper_basis, rows, lower_rows }
+        Self { along, along_count, lower_basis, upper_basis, height, rows, lower_rows }
     }
 
     /// The number of columns of the lower section: those of the intersection motion, and the section's own twist.
     fn lower_columns(&self) -> usize {
-        self.along_count + self.lower_basis.len()
+        self.along_count + self.lower_basis.len() + usize::from(self.height == Some(Section::Lower))
+    }
+
+    /// The number of all columns.
+    fn columns(&self) -> usize {
+        let height = usize::from(self.height == Some(Section::Upper));
+        self.lower_columns() + self.upper_basis.len() + height
+    }
+
+    /// The place of the height's column, and the rows of the actuated lifts in it.
+    fn height_block(&self, lifts: usize) -> Option<(usize, Range<usize>)> {
+        let (rows, columns) = match self.height? {
+            Section::Lower => (self.lower_rows, self.lower_columns()),
+            Section::Upper => (self.rows.len(), self.columns()),
+        };
+        Some((columns - 1, rows - lifts..rows))
     }
 }
 
@@ -170,7 +196,7 @@ impl Manipulator {
     /// A buffer for [`Manipulator::measure_singularities`].
     pub fn singularities(&self) -> Singularities {
         let layout = Layout::new(self);
-        let columns = layout.lower_columns() + layout.upper_basis.len();
+        let columns = layout.columns();
         let size = layout.rows.len().max(columns).max(self.task_coordinates().len());
         Singularities {
             upper: Measures::default(),
@@ -270,6 +296,10 @@ impl Manipulator {
         let split = layout.lower_columns();
         let along = v.adjoint(&task.lower_intersection.unit_twist());
         let upper_along = task.upper_intersection.unit_twist();
+        let lifts = self.legs.iter().filter(|leg| leg.drives_height()).count();
+        if let Some((column, rows)) = layout.height_block(lifts) {
+            rows.for_each(|row| closure[(row, column)] = 1.0);
+        }
         let mut row = 0;
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let kind = task.lower.kind;
@@ -292,6 +322,7 @@ impl Manipulator {
                 row += 1;
             }
         }
+        row = layout.lower_rows;
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let (rows, count) = section_rows(leg, Section::Upper, &differential.upper, length);
             let kind = task.upper.kind;

@@ -376,6 +376,7 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
             CoordinateKind::X
             | CoordinateKind::Y
             | CoordinateKind::Z
+            | CoordinateKind::H
             | CoordinateKind::W
             | CoordinateKind::Theta
             | CoordinateKind::Phi

@@ -118,7 +118,7 @@ impl Row {
             }
             None => self.transitions.add_all(window),
         }
-        let mut pose = [0.0; 3];
+        let mut pose = [0.0; 4];
         pose[1..lower].copy_from_slice(others);
         let feasible = |i: u64| {
             pose[0] = axis.value(i);

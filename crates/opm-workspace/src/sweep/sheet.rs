@@ -3,6 +3,7 @@
 use super::Sweep;
 use super::clip::ClipPlan;
 use crate::grid::{Axis, Sections, fill};
+use opm_core::Section;
 use opm_core::chain::region::Region;
 use opm_core::manipulator::{LegBranch, Transitions};
 use std::cell::OnceCell;
@@ -90,6 +91,8 @@ pub struct Sheet<'a> {
     /// The number of the sheet's first row.
     pub first_row: u64,
     pub kind: SheetKind,
+    /// Whether every leg has a branch in the slice, so that a sheet of it may have reachable poses.
+    open: bool,
     /// The branches of every leg.
     pub legs: Vec<Vec<SliceBranch>>,
     /// All coordinates but the first.
@@ -111,6 +114,7 @@ impl<'a> Sheet<'a> {
             number: 0,
             first_row: 0,
             kind: SheetKind::Unreachable,
+            open: false,
             legs: vec![Vec::new(); legs],
             // A row of the upper section alone has no first coordinate that could differ.
             others: vec![0.0; grid.axes().len() - usize::from(grid.lower() > 0)],
@@ -143,7 +147,7 @@ impl<'a> Sheet<'a> {
         self.number = number;
         self.first_row = (slice * sweep.sheets + number) * sweep.side;
         let alone = sweep.grid.sections() == Sections::Upper;
-        if self.kind != SheetKind::Unreachable && !alone {
+        if self.open && !alone {
             self.find_regions();
         }
     }
@@ -152,9 +156,11 @@ impl<'a> Sheet<'a> {
     fn enter_slice(&mut self, slice: u64) {
         let sweep = self.sweep;
         let lower = sweep.grid.lower();
-        let upper = &mut self.others[lower.saturating_sub(1)..];
+        let first = lower.saturating_sub(1);
+        let upper = &mut self.others[first..];
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
+        self.open = true;
         if !manipulator.dependent_coordinates().is_empty() {
             self.kind = SheetKind::Dependent;
             return;
@@ -179,9 +185,13 @@ impl<'a> Sheet<'a> {
             }
             branches.clear();
             branches.extend(self.found.iter().copied().map(SliceBranch::new));
-            if branches.is_empty() {
-                self.kind = SheetKind::Unreachable;
-            }
+            self.open &= !branches.is_empty();
+        }
+        if sweep.grid.sections() != Sections::Lower {
+            self.open &= manipulator.height_admitted(Section::Upper, &self.others[first..]);
+        }
+        if !self.open {
+            self.kind = SheetKind::Unreachable;
         }
     }
 
@@ -190,7 +200,7 @@ impl<'a> Sheet<'a> {
         let sweep = self.sweep;
         let axes = &sweep.grid.axes()[..sweep.grid.lower()];
         // The sheet's first pose, which its regions are seen from.
-        let mut first = [0.0; 3];
+        let mut first = [0.0; 4];
         for (value, axis) in first.iter_mut().zip(&axes[..axes.len().min(2)]) {
             *value = axis.min;
         }
@@ -199,6 +209,10 @@ impl<'a> Sheet<'a> {
             self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
         }
         if self.kind == SheetKind::Dependent {
+            return;
+        }
+        if !sweep.manipulator.height_admitted(Section::Lower, &first[..axes.len()]) {
+            self.kind = SheetKind::Unreachable;
             return;
         }
         let v = sweep.manipulator.task().lower(&first[..axes.len()]);
