@@ -207,13 +207,18 @@ impl Loaded {
             CompileError::Decompose(DecomposeError::NoPartialSubspaces {
                 odd: Some(odd), ..
             }) => of_leg(&odd.leg),
+            CompileError::Decompose(DecomposeError::NoPartialSubspaces {
+                height: Some(height),
+                ..
+            }) => of_leg(&height.leg),
             CompileError::Decompose(DecomposeError::NoActuator { .. }) => {
                 places.legs.first().copied()
             }
             CompileError::Leg { leg, .. }
-            | CompileError::Task(TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }) => {
-                of_leg(leg)
-            }
+            | CompileError::Task(
+                TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }
+                | TaskError::Height { odd: OddJoint { leg, .. }, .. },
+            ) => of_leg(leg),
             CompileError::Constraint(error) => error.leg().and_then(of_leg),
             CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
             _ => None,

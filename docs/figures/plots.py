@@ -26,6 +26,10 @@ def draw():
     workspace(
         "five-bar", "gallery-five-bar.png", panels="slices", x="-270mm:270mm:541", y="50mm:420mm:371"
     )
+    workspace(
+        "schoenflies-column-4dof", "gallery-schoenflies-column.png", panels="slices",
+        x="-180mm:180mm:361", y="-180mm:180mm:361", theta="-75deg:75deg:6",
+    )  # fmt: skip
 
 
 def motion(mechanism, name, picture):

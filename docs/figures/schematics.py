@@ -34,6 +34,7 @@ DRAWN = (
     ("planar-3rpr", "planar-3rpr", (58, -75), {}),
     ("agile-eye", "agile-eye", (22, 35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("five-bar", "five-bar", (58, -75), {}),
+    ("schoenflies-column-4dof", "schoenflies-column", (32, -60), {}),
     ("orbita", "orbita", (18, -60), {"leg1": 60, "leg2": 60, "leg3": 60}),
 )
 
