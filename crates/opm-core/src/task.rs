@@ -577,6 +577,19 @@ impl Task {
         range.filter(move |&i| i != height)
     }
 
+    /// The number of one of a section's coordinates other than a height, by its place among these; `None` beyond the last.
+    #[inline]
+    pub(crate) fn number(&self, section: Section, place: usize) -> Option<usize> {
+        let (first, end) = match section {
+            Section::Lower => (0, self.lower_count),
+            Section::Upper => (self.lower_count, self.coordinates.len()),
+        };
+        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
+        let number = first + place;
+        let number = number + usize::from((first..=number).contains(&height));
+        (number < end).then_some(number)
+    }
+
     /// The place of the height among a section's coordinates; `None` if the section has none.
     #[inline]
     pub(crate) fn height_in(&self, section: Section) -> Option<usize> {

@@ -312,9 +312,7 @@ impl Manipulator {
         let task = self.task();
         let twists = |screws: &screws::Screws, section: Section| {
             let vector = |all: &[f64]| {
-                let mut found = LocalTwist::zeros();
-                task.numbers(section).zip(found.iter_mut()).for_each(|(i, to)| *to = all[i]);
-                found
+                LocalTwist::from_fn(|i, _| task.number(section, i).map_or(0.0, |n| all[n]))
             };
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]

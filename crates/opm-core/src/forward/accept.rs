@@ -100,8 +100,10 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
-            self.solution.solved.pose.copy_from_slice(&all);
-            m.write_lifts(&mut self.solution);
+            if m.task().height.is_some() {
+                self.solution.solved.pose.copy_from_slice(&all);
+                m.write_lifts(&mut self.solution);
+            }
             match &m.dependent {
                 None => self.accept(pose, mode, &target),
                 Some(dependent) => self.accept_completed(dependent, pose, mode, &target),

@@ -1,6 +1,6 @@
 //! The coordinates of the pose from the two displacements of `g = v · b`.
 
-use super::{Task, TaskCoordinate};
+use super::Task;
 use crate::group::{
     CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, MotionType,
     PlanarMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
@@ -24,14 +24,11 @@ impl Task {
     #[doc(hidden)]
     pub fn pose(&self, v: &Displacement, b: &Displacement, rise: f64) -> Vec<f64> {
         let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
-        // The height is put in its place at last.
-        let height = self.height.as_ref().map(|height| height.coordinate);
-        let in_plane = |(i, _): &(usize, &TaskCoordinate)| Some(*i) != height;
-        let others = self.coordinates.iter().enumerate().filter(in_plane);
-        let coordinates: Vec<&TaskCoordinate> = others.map(|(_, c)| c).collect();
-        let lower_count =
-            self.lower_count - usize::from(height.is_some_and(|i| i < self.lower_count));
-        let home = |i: usize| coordinates[i].home;
+        // The height is put in its place at last: until then, the coordinates after it are one place before theirs.
+        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
+        let number = |i: usize| i + usize::from(i >= height);
+        let lower_count = self.lower_count - usize::from(height < self.lower_count);
+        let home = |i: usize| self.coordinates[number(i)].home;
         // Moves the displacement along I to the factor that is not taken modulo I.
         let (v, handed) = match self.shared() {
             Some(MotionType::Rotation) => self.without_shared_rotation(v),
@@ -62,7 +59,7 @@ impl Task {
             Displacement::Cylindrical(g) => pose.extend([home(0) + g.angle, home(1) + g.advance]),
             Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
         }
-        let home = |i: usize| coordinates[lower_count + i].home;
+        let home = |i: usize| self.coordinates[number(lower_count + i)].home;
         let translation = self.shared() == Some(MotionType::Translation);
         match b {
             Displacement::Identity(_) => {}
@@ -92,13 +89,14 @@ impl Task {
             | SubspaceKind::Spherical
             | SubspaceKind::TranslationalPlane => false,
         };
-        for (i, (q, c)) in pose.iter_mut().zip(&coordinates).enumerate() {
+        for (i, q) in pose.iter_mut().enumerate() {
+            let c = &self.coordinates[number(i)];
             let section = if i < lower_count { &self.lower } else { &self.upper };
             if c.quantity == Quantity::Angle && !counted(section.kind) {
                 *q = near(*q, c.home);
             }
         }
-        if let Some(height) = height {
+        if height < self.coordinates.len() {
             pose.insert(height, self.coordinates[height].home + rise);
         }
         pose
