@@ -28,7 +28,7 @@ def draw():
     )
     workspace(
         "schoenflies-column-4dof", "gallery-schoenflies-column.png", panels="slices",
-        x="-180mm:180mm:361", y="-180mm:180mm:361", theta="-75deg:75deg:6",
+        x="-75mm:75mm:7", y="-75mm:105mm:361", theta="-100deg:100deg:201",
     )  # fmt: skip
 
 
