@@ -138,12 +138,12 @@ fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn,
 
 /// Every value that the points of a kind of workspace have.
 fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
-    let lower = manipulator.lower_coordinates();
+    let places = manipulator.place_coordinates();
     let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
     let mut known: Vec<NamedColumn> = coordinates
         .filter(|(i, _)| match kind {
-            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => *i < lower,
-            WorkspaceKind::Imaginary => *i >= lower,
+            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => places.contains(i),
+            WorkspaceKind::Imaginary => !places.contains(i),
             WorkspaceKind::Grid
             | WorkspaceKind::ConstantOrientation
             | WorkspaceKind::Orientation
