@@ -1315,6 +1315,15 @@ class Trajectory:
     def pose_accelerations(self) -> NDArray[np.float64]:
         """(n, d): their second derivatives, m/s² and rad/s²."""
     @property
+    def dependent(self) -> NDArray[np.float64]:
+        """(n, e): every dependent coordinate, metres and radians; angles are continuous, not wrapped at π."""
+    @property
+    def dependent_rates(self) -> NDArray[np.float64]:
+        """(n, e), m/s and rad/s."""
+    @property
+    def dependent_accelerations(self) -> NDArray[np.float64]:
+        """(n, e), m/s² and rad/s²."""
+    @property
     def joints(self) -> NDArray[np.float64]:
         """(n, k): every joint coordinate, metres and radians; angles are continuous, not wrapped at π."""
     @property
