@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import opm_kinematics as opm
+import pytest
 
 UPPER, FORE, HALF = 0.138, 0.307, 0.160
 
@@ -41,6 +42,15 @@ def test_the_forearm_follows_the_hand():
 def test_most_mechanisms_have_none():
     m = opm.examples.load("plano-spherical-5dof")
     assert m.dependent_coordinates == [] and m.dependent([m.home]).shape == (1, 0)
+
+
+def test_they_are_no_axes():
+    m = opm.examples.load("five-bar")
+    follows = "theta follows from x, y; give these instead"
+    with pytest.raises(opm.OpmError, match=follows):
+        opm.sweep(m, theta=(-0.1, 0.1, 5))
+    with pytest.raises(opm.OpmError, match=follows):
+        opm.sweep(m, x=0.1).write("never.mcap", color="theta")
 
 
 def test_a_motion_has_them_with_their_rates():

@@ -29,7 +29,7 @@ pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
-pub use inverse::{ActuatedJoints, LARGEST, PoseError, Solution, Unreachable};
+pub use inverse::{ActuatedJoints, FollowingCoordinate, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
 pub use locate::OutsideMotion;

@@ -2,7 +2,7 @@
 //! the grid.
 
 use opm_core::Quantity;
-use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
+use opm_core::manipulator::{FollowingCoordinate, ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
 use opm_core::task::CoordinateKind;
 use std::f64::consts::TAU;
@@ -51,6 +51,9 @@ pub enum GridError {
         /// The names of all coordinates, separated by commas.
         expected: String,
     },
+    /// The coordinate of the axis follows from the others.
+    #[error(transparent)]
+    Follows(#[from] FollowingCoordinate),
     /// Two axes have the same name.
     #[error("grid axis {0}: given twice")]
     Twice(String),
@@ -261,6 +264,7 @@ impl Grid {
         }
         for axis in given {
             let Some(number) = coordinates.iter().position(|c| c.name == axis.name) else {
+                manipulator.refuse_following(&axis.name)?;
                 let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();
                 let expected = names.join(", ");
                 return Err(GridError::Unknown { name: axis.name, section: sections, expected });

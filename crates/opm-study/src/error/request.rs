@@ -3,6 +3,7 @@
 use crate::kind::{PosePart, WorkspaceKind};
 use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
+use opm_core::manipulator::FollowingCoordinate;
 use opm_workspace::GridError;
 use std::path::PathBuf;
 
@@ -139,6 +140,13 @@ pub enum RequestError {
         /// The kind.
         kind: WorkspaceKind,
     },
+    /// A name is that of a dependent coordinate, which points do not have.
+    Follows {
+        /// The option that has the name.
+        option: RequestOption,
+        /// The coordinate.
+        follows: FollowingCoordinate,
+    },
     /// A name is not that of a value of the points.
     UnknownColumn {
         /// The option that has the name.
@@ -221,7 +229,7 @@ impl RequestError {
             | Self::NoPart { .. }
             | Self::Dependent { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
-            Self::UnknownColumn { option, .. } => *option,
+            Self::Follows { option, .. } | Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
             Self::ReservedField { .. } | Self::RepeatedScalar { .. } => RequestOption::Scalars,
             Self::StandardOutput
@@ -299,6 +307,7 @@ impl RequestError {
                  constant-orientation or orientation",
                 with(kind)
             ),
+            Self::Follows { follows, .. } => follows.to_string(),
             Self::UnknownColumn { name, kind, known, .. } => {
                 let known = known.join(", ");
                 match kind.is_of_poses() {
