@@ -183,8 +183,10 @@ impl Batch<'_> {
         }
         let mut columns = Vec::new();
         for name in &names {
-            let column = find(name, coordinates)
-                .map_err(|error| self.at(number, format_args!("column {name:?}: {error}")))?;
+            let wrong =
+                |error: &dyn Display| self.at(number, format_args!("column {name:?}: {error}"));
+            self.manipulator.refuse_following(name).map_err(|error| wrong(&error))?;
+            let column = find(name, coordinates).map_err(|error| wrong(&error))?;
             if columns.contains(&column) {
                 return Err(self.at(number, format_args!("column {name:?}: given twice")));
             }

@@ -32,7 +32,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         }
         (near, closed_form) => {
             let start = match near {
-                Some(pose) => pose.resolve_for("--near", manipulator.task_coordinates())?,
+                Some(pose) => pose.resolve_for("--near", &manipulator)?,
                 None => manipulator.home_pose(),
             };
             if let (None, Err(why)) = (near, closed_form) {

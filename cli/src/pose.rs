@@ -7,7 +7,7 @@ use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use opm_core::numeric::number::readable;
 use opm_core::task::TaskCoordinate;
 use opm_workspace::measure::CoordinateRange;
-use opm_workspace::{Axis, Coordinate, Sections};
+use opm_workspace::{Axis, Coordinate};
 use std::f64::consts::TAU;
 use std::fmt;
 use std::str::FromStr;
@@ -135,6 +135,15 @@ impl Number {
 }
 
 impl Number {
+    /// The value for `name`, whose quantity is that of the coordinate with this name. Unknown names are reported
+    /// elsewhere.
+    fn value_among(self, name: &str, coordinates: &[Coordinate]) -> Result<f64, Misread> {
+        match coordinates.iter().find(|c| c.name == name) {
+            Some(c) => self.value_of(name, c.quantity),
+            None => Ok(self.value),
+        }
+    }
+
     /// The characteristic length given by `--length`.
     pub fn characteristic_length(self) -> Result<f64, Failure> {
         let length = self.value_of("the characteristic length", Quantity::Length);
@@ -168,8 +177,8 @@ impl FromStr for Pose {
 
 impl Pose {
     /// Every coordinate of the pose. Coordinates that are not given have their home values.
-    pub fn resolve(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
-        self.resolve_for("--pose", coordinates)
+    pub fn resolve(&self, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> {
+        self.resolve_for("--pose", manipulator)
     }
 
     /// The pose of a manipulator, and the values of dependent coordinates that were given.
@@ -189,23 +198,31 @@ impl Pose {
                 None => own.push((name.clone(), *number)),
             }
         }
-        Ok((Self(own).resolve(manipulator.task_coordinates())?, Checks(checks)))
+        Ok((Self(own).resolve(manipulator)?, Checks(checks)))
     }
 
     /// As [`Pose::resolve`], for another flag.
-    pub fn resolve_for(
-        &self,
-        flag: &str,
-        coordinates: &[TaskCoordinate],
-    ) -> Result<Vec<f64>, Failure> {
-        let home = coordinates.iter().map(|c| c.home).collect();
-        self.fill(home, coordinates).map_err(|e| Failure::flag(flag, e))
+    pub fn resolve_for(&self, flag: &str, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> {
+        self.given(flag, manipulator.home_pose(), manipulator)
     }
 
     /// The rates of all coordinates, per second. Rates that are not given are zero.
-    pub fn resolve_rates(&self, coordinates: &[TaskCoordinate]) -> Result<Vec<f64>, Failure> {
-        let still = vec![0.0; coordinates.len()];
-        self.fill(still, coordinates).map_err(|e| Failure::flag("--rates", e))
+    pub fn resolve_rates(&self, manipulator: &Manipulator) -> Result<Vec<f64>, Failure> {
+        let still = vec![0.0; manipulator.task_coordinates().len()];
+        self.given("--rates", still, manipulator)
+    }
+
+    /// The values that a flag gives, in place of some of these.
+    fn given(
+        &self,
+        flag: &str,
+        values: Vec<f64>,
+        manipulator: &Manipulator,
+    ) -> Result<Vec<f64>, Failure> {
+        for (name, _) in &self.0 {
+            manipulator.refuse_following(name).map_err(|error| Failure::flag(flag, error))?;
+        }
+        self.fill(values, manipulator.task_coordinates()).map_err(|e| Failure::flag(flag, e))
     }
 
     /// The given names and values, in order.
@@ -295,17 +312,12 @@ impl FromStr for GridAxis {
 }
 
 impl GridAxis {
-    /// The axis in SI, of a grid of these sections.
-    pub fn resolve(&self, of: Sections, coordinates: &[Coordinate]) -> Result<Axis, Failure> {
+    /// The axis in SI, for one of these coordinates.
+    pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<Axis, Failure> {
         let axis = || {
-            let name = &self.name;
-            let found = coordinates.iter().find(|c| c.name == *name).ok_or_else(|| {
-                let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();
-                let (what, names) = (of.coordinate(), names.join(", "));
-                Misread(format!("no {what} {name:?}, expected one of {names}"))
-            })?;
-            let value = |number: Number| number.value_of(name, found.quantity);
-            Ok(Axis::new(name, value(self.min)?, value(self.max)?, self.count))
+            let [min, max] =
+                [self.min, self.max].map(|end| end.value_among(&self.name, coordinates));
+            Ok(Axis::new(&*self.name, min?, max?, self.count))
         };
         axis().map_err(|error: Misread| Failure::flag("--grid", error))
     }
@@ -346,12 +358,7 @@ impl FromStr for OverAxis {
 impl OverAxis {
     /// The range in SI, for one of these coordinates.
     pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<CoordinateRange, Misread> {
-        let known = coordinates.iter().find(|c| c.name == self.name);
-        // Unknown names are reported elsewhere.
-        let end = |number: Number| match known {
-            Some(c) => number.value_of(&c.name, c.quantity),
-            None => Ok(number.value),
-        };
+        let end = |number: Number| number.value_among(&self.name, coordinates);
         let (name, min) = (&*self.name, end(self.min)?);
         let Some(max) = self.max.map(end).transpose()? else {
             return Ok(CoordinateRange::new(name, min, min));
@@ -394,10 +401,7 @@ mod tests {
 
     fn pose(text: &str) -> Result<Vec<f64>, String> {
         let pose: Pose = text.parse().map_err(|error: Misread| error.to_string())?;
-        pose.resolve(&coordinates()).map_err(|failure| match failure {
-            Failure::Usage(message) => message.to_string(),
-            other => format!("{other:?}"),
-        })
+        pose.fill(vec![0.5, 0.25], &coordinates()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -423,9 +427,9 @@ mod tests {
             ("x=inf", "not a number"),
             ("x=1e999", "too large"),
             ("x=1,x=2", "x is given twice"),
-            ("yaw=1", "--pose: no task coordinate \"yaw\", expected one of x, xi"),
-            ("x=10deg", "--pose: x is a length, but its value has the unit of an angle"),
-            ("xi=10mm", "--pose: xi is an angle, but its value has the unit of a length"),
+            ("yaw=1", "no task coordinate \"yaw\", expected one of x, xi"),
+            ("x=10deg", "x is a length, but its value has the unit of an angle"),
+            ("xi=10mm", "xi is an angle, but its value has the unit of a length"),
         ] {
             let message = pose(text).expect_err(text);
             assert!(message.contains(expected), "{text}: {message}");
@@ -444,7 +448,7 @@ mod tests {
                     counts_turns: false,
                 })
                 .collect();
-            text.parse::<GridAxis>().unwrap().resolve(Sections::Whole, &coordinates)
+            text.parse::<GridAxis>().unwrap().resolve(&coordinates)
         };
         assert_eq!(axis("x=-10mm:10mm:21").unwrap(), Axis::new("x", -0.01, 0.01, 21));
         assert_eq!(axis("x=0:10mm:3").unwrap(), Axis::new("x", 0.0, 0.01, 3));

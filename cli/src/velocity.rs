@@ -21,7 +21,7 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = loaded.compile()?;
     let mode = load::mode(&manipulator, &args.mode)?;
     let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
-    let rates = args.rates.resolve_rates(manipulator.task_coordinates())?;
+    let rates = args.rates.resolve_rates(&manipulator)?;
     let length = args.length.map(Number::characteristic_length).transpose()?;
     let length = characteristic_length(length, &manipulator)?;
     let mut at = manipulator.solution();

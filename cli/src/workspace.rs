@@ -68,9 +68,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
 fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceRequest, Failure> {
     let mut request = WorkspaceRequest::new(args.kind);
     request.modes = Some(modes(&args.mode, manipulator)?);
-    let sections = args.kind.sections();
-    let coordinates = sections.coordinates(manipulator);
-    let axes = args.grid.iter().map(|axis| axis.resolve(sections, &coordinates));
+    let coordinates = args.kind.sections().coordinates(manipulator);
+    let axes = args.grid.iter().map(|axis| axis.resolve(&coordinates));
     request.axes = axes.collect::<Result<_, _>>()?;
     request.length = args.length.map(Number::characteristic_length).transpose()?;
     request.max_condition = args.max_condition;

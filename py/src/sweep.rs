@@ -50,11 +50,11 @@ pub struct Sweep {
 /// manipulator : Manipulator
 /// kind : str
 ///     Kind of the workspace, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
-///     lower one.
+///     lower one. In one subspace, orientations are its angles, places its lengths.
 ///
 ///     * ``"grid"``: poses.
-///     * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the upper or of the lower section held
-///       at one value.
+///     * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the orientation or of the place held at
+///       one value.
 ///     * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
 ///     * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
 ///     * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.
@@ -152,10 +152,10 @@ impl Sweep {
         self.workspace.length()
     }
 
-    /// Number of orientations of the grid: combinations of values of the upper section's coordinates.
+    /// Number of orientations of the grid: combinations of values of its coordinates.
     #[getter]
     fn orientations(&self) -> u64 {
-        self.workspace.grid().slices()
+        self.workspace.grid().orientation_count()
     }
 
     /// Number of points of the workspace. A pose counts if it is in reach and within all limits.

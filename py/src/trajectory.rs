@@ -38,6 +38,15 @@ pub struct Trajectory {
     /// (n, d): their second derivatives, m/s² and rad/s².
     #[pyo3(get)]
     pose_accelerations: Py<PyArray2<f64>>,
+    /// (n, e): every dependent coordinate, metres and radians; angles are continuous, not wrapped at π.
+    #[pyo3(get)]
+    dependent: Py<PyArray2<f64>>,
+    /// (n, e), m/s and rad/s.
+    #[pyo3(get)]
+    dependent_rates: Py<PyArray2<f64>>,
+    /// (n, e), m/s² and rad/s².
+    #[pyo3(get)]
+    dependent_accelerations: Py<PyArray2<f64>>,
     /// (n, k): every joint coordinate, metres and radians; angles are continuous, not wrapped at π.
     #[pyo3(get)]
     joints: Py<PyArray2<f64>>,
@@ -256,8 +265,8 @@ fn parse(
 #[derive(Default)]
 struct Record {
     times: Vec<f64>,
-    /// Poses, rates and accelerations; of the joints; of the imaginary joints.
-    tables: [Vec<f64>; 9],
+    /// Poses, rates and accelerations; of the dependent coordinates; of the joints; of the imaginary joints.
+    tables: [Vec<f64>; 12],
     condition: Vec<f64>,
     /// Reachable, within limits, regular.
     answers: [Vec<bool>; 3],
@@ -273,6 +282,7 @@ impl Record {
         let mut record = Self::default();
         let samples = followed.samples();
         let width = manipulator.task_coordinates().len()
+            + manipulator.dependent_coordinates().len()
             + manipulator.coordinates().len()
             + manipulator.imaginary().len();
         let room = usize::try_from(samples).ok().and_then(|n| n.checked_mul(3 * width));
@@ -296,10 +306,13 @@ impl Record {
         let Sample { time, instant, reached, solution, regular, motion, condition, .. } = sample;
         self.times.push(*time);
         self.condition.push(if *reached { *condition } else { f64::NAN });
-        let rows: [(&[f64], bool); 9] = [
+        let rows: [(&[f64], bool); 12] = [
             (&instant.pose, true),
             (&instant.velocity, true),
             (&instant.acceleration, true),
+            (solution.dependent(), *reached),
+            (&motion.dependent_rates, *reached && *regular),
+            (&motion.dependent_accelerations, *reached && *regular),
             (solution.joints(), *reached),
             (&motion.joint_rates, *reached && *regular),
             (&motion.joint_accelerations, *reached && *regular),
@@ -321,6 +334,7 @@ impl Record {
         let rows = self.times.len();
         let widths = [
             manipulator.task_coordinates().len(),
+            manipulator.dependent_coordinates().len(),
             manipulator.coordinates().len(),
             manipulator.imaginary().len(),
         ];
@@ -336,6 +350,9 @@ impl Record {
             poses: table()?,
             pose_rates: table()?,
             pose_accelerations: table()?,
+            dependent: table()?,
+            dependent_rates: table()?,
+            dependent_accelerations: table()?,
             joints: table()?,
             joint_rates: table()?,
             joint_accelerations: table()?,
@@ -396,11 +413,14 @@ pickled!(Violation {
 columns!(Trajectory);
 
 /// The parts of a trajectory in the form that Python sees.
-const ATTRIBUTES: [&str; 21] = [
+const ATTRIBUTES: [&str; 24] = [
     "times",
     "poses",
     "pose_rates",
     "pose_accelerations",
+    "dependent",
+    "dependent_rates",
+    "dependent_accelerations",
     "joints",
     "joint_rates",
     "joint_accelerations",
@@ -459,6 +479,9 @@ impl Trajectory {
             poses: attribute(attributes, "poses")?,
             pose_rates: attribute(attributes, "pose_rates")?,
             pose_accelerations: attribute(attributes, "pose_accelerations")?,
+            dependent: attribute(attributes, "dependent")?,
+            dependent_rates: attribute(attributes, "dependent_rates")?,
+            dependent_accelerations: attribute(attributes, "dependent_accelerations")?,
             joints: attribute(attributes, "joints")?,
             joint_rates: attribute(attributes, "joint_rates")?,
             joint_accelerations: attribute(attributes, "joint_accelerations")?,

@@ -1,7 +1,10 @@
 """Mechanisms whose legs tie coordinates of the pose together, by the law of cosines."""
 
+import pickle
+
 import numpy as np
 import opm_kinematics as opm
+import pytest
 
 UPPER, FORE, HALF = 0.138, 0.307, 0.160
 
@@ -39,3 +42,29 @@ def test_the_forearm_follows_the_hand():
 def test_most_mechanisms_have_none():
     m = opm.examples.load("plano-spherical-5dof")
     assert m.dependent_coordinates == [] and m.dependent([m.home]).shape == (1, 0)
+
+
+def test_they_are_no_axes():
+    m = opm.examples.load("five-bar")
+    follows = "theta follows from x, y; give these instead"
+    with pytest.raises(opm.OpmError, match=follows):
+        opm.sweep(m, theta=(-0.1, 0.1, 5))
+    with pytest.raises(opm.OpmError, match=follows):
+        opm.sweep(m, x=0.1).write("never.mcap", color="theta")
+
+
+def test_a_motion_has_them_with_their_rates():
+    m = opm.examples.load("five-bar")
+    times = np.linspace(0, 2, 9)
+    places = np.column_stack([0.1 * np.sin(3 * times), 0.3 + 0.03 * np.cos(2 * times)])
+    followed = opm.trajectory(m, places, times=times, rate=500)
+    assert followed.reachable.all() and followed.dependent.shape == (1001, 1)
+    np.testing.assert_allclose(followed.dependent, m.dependent(followed.poses), atol=1e-12)
+    for value, rate in (("dependent", "dependent_rates"), ("dependent_rates", "dependent_accelerations")):
+        found = np.gradient(getattr(followed, value), followed.times, axis=0)
+        # The step, 2 ms, times jumps of the third derivative of a spline.
+        np.testing.assert_allclose(found[1:-1], getattr(followed, rate)[1:-1], atol=1e-2)
+    whole = pickle.loads(pickle.dumps(followed))
+    assert whole == followed and (whole.dependent == followed.dependent).all()
+    most = opm.trajectory(opm.examples.load("plano-spherical-5dof"), "plano-spherical-sinusoids")
+    assert most.dependent.shape == (1001, 0)

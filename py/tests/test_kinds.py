@@ -58,6 +58,20 @@ def test_places_and_orientations_are_reductions_of_the_poses(manipulator, sweeps
     assert 0 < sweeps["imaginary"].fraction < 1 and list(sweeps["imaginary"].axes) == ["zeta", "xi", "psi"]
 
 
+def test_one_subspace_has_its_lengths_as_place():
+    m = opm.examples.load("planar-3rrr")
+    grid = {"x": (-0.1, 0.1, 21), "y": (-0.1, 0.12, 17), "theta": (-0.6, 0.5, 7)}
+    poses = opm.sweep(m, **grid).mask()
+    for kind, expected in (("reachable", poses.any(axis=2)), ("dexterous", poses.all(axis=2))):
+        swept = opm.sweep(m, kind=kind, **grid)
+        np.testing.assert_array_equal(swept.mask(), expected)
+        np.testing.assert_array_equal(swept.visits(), poses.sum(axis=2))
+        assert list(swept.axes) == ["x", "y"] and swept.orientations == 7 and 0 < swept.count
+    assert swept.count < swept.poses
+    with pytest.raises(opm.OpmError, match="^kind: upper: all legs of this mechanism move in one subspace, so it has no upper"):
+        opm.sweep(m, kind="upper")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_masks_counts_and_points_agree(sweeps, kind):
     swept = sweeps[kind]
@@ -271,7 +285,7 @@ def test_parts_of_a_grid_that_share_slices_add_up(manipulator):
     ("options", "message"),
     [
         ({"kind": "none"}, 'kind is "none", expected one of grid, constant-orientation, orientation, reachable, dexterous, imag'),
-        ({"kind": "orientation", "x": (0.0, 0.1, 2)}, "^grid: x has 2 values; kind orientation holds the lower section's coord"),
+        ({"kind": "orientation", "x": (0.0, 0.1, 2)}, "^grid: x has 2 values; kind orientation holds the place's coord"),
         ({"kind": "imaginary", "mode": "any", "xi": 0.1}, "^mode: with kind imaginary: the imaginary joints have other values"),
         ({"kind": "upper", "xi": 0.1, "max_condition": 9}, "^max_condition: with kind upper: a section alone has no condition"),
         ({"kind": "upper", "x": 0.1}, "x: no such task coordinate of the upper section"),

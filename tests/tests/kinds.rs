@@ -5,7 +5,7 @@ use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
 use opm_core::Section;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
-use opm_core::task::euler;
+use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::height;
 use opm_tests::random::{Options, PAIRS, mechanism};
@@ -15,6 +15,7 @@ use opm_workspace::{
 };
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn shipped(name: &str) -> Manipulator {
     Manipulator::example(name).unwrap()
@@ -199,7 +200,7 @@ fn the_upper_section_of_the_paper_reaches_three_caps_less_than_all_orientations(
 }
 
 #[test]
-fn visits_are_slices_that_reach_a_place() {
+fn visits_are_orientations_that_reach_a_place() {
     let mut rng = Rng::with_seed(52);
     let mut several = 0;
     for _ in 0..20 {
@@ -207,10 +208,16 @@ fn visits_are_slices_that_reach_a_place() {
             let (mechanism, decomposition) =
                 mechanism(&mut rng, pair, Options { limited: 0.1, balls: true });
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            let lower = manipulator.task().lower_count;
+            // Lengths are the place where all legs move in one subspace; on a cylinder they come last.
+            let places = manipulator.place_coordinates();
             let axes = manipulator.task_coordinates().iter().enumerate().map(|(i, c)| {
-                let half = if i < lower { 1.0 } else { 0.3 };
-                Axis::new(c.name, c.home - half, c.home + half, if i < lower { 8 } else { 3 })
+                let half = if places.contains(&i) { 1.0 } else { 0.3 };
+                Axis::new(
+                    c.name,
+                    c.home - half,
+                    c.home + half,
+                    if places.contains(&i) { 8 } else { 3 },
+                )
             });
             let grid = Grid::new(&manipulator, axes.collect()).unwrap();
             let modes = match rng.u8(..2) {
@@ -219,7 +226,7 @@ fn visits_are_slices_that_reach_a_place() {
             };
             let mut expected: HashMap<Vec<u64>, u64> = HashMap::new();
             for pose in by_inverse(&manipulator, &grid, modes).0 {
-                let place = pose[..lower].iter().map(|value| value.to_bits()).collect();
+                let place = pose[places.clone()].iter().map(|value| value.to_bits()).collect();
                 *expected.entry(place).or_default() += 1;
             }
             let sweep = Sweep::new(&manipulator, &grid, modes);
@@ -230,20 +237,105 @@ fn visits_are_slices_that_reach_a_place() {
             let [reachable, dexterous] =
                 [visits.reachable(), visits.dexterous()].map(Result::unwrap);
             for (place, &found) in visits.counts().iter().enumerate() {
-                let at: Vec<u64> =
-                    grid.pose(place as u64)[..lower].iter().map(|value| value.to_bits()).collect();
-                let expected = expected.get(&at).copied().unwrap_or(0);
+                let at =
+                    reachable.point(place as u64).iter().map(|value| value.to_bits()).collect();
+                let expected = expected.get::<Vec<u64>>(&at).copied().unwrap_or(0);
                 assert_eq!(found, expected, "{pair:?}");
                 assert_eq!(reachable.contains(place as u64), expected > 0);
-                assert_eq!(dexterous.contains(place as u64), expected == grid.slices());
-                several += u32::from(expected > 1 && expected < grid.slices());
+                assert_eq!(dexterous.contains(place as u64), expected == visits.orientations());
+                several += u32::from(expected > 1 && expected < visits.orientations());
             }
+            let orientations = manipulator.orientation_coordinates().len() as u32;
+            assert_eq!(visits.orientations(), 3_u64.pow(orientations));
             let mut twice = visits.clone();
             twice.merge(&visits).unwrap();
             assert!(twice.counts().iter().zip(visits.counts()).all(|(two, one)| *two == 2 * one));
         }
     }
     assert!(several > 1000, "{several}");
+}
+
+/// Where all legs move in one subspace, lengths are the place and angles the orientation. Every kind is compared
+/// with inverse kinematics of each pose.
+#[test]
+fn kinds_of_one_subspace_are_reductions_of_its_poses() {
+    use opm_study::{PosePart, WorkspaceKind as Kind, WorkspaceRequest};
+    let progress = Progress::default();
+    let (mut partly, mut refused) = (0, 0);
+    for (name, places) in
+        [("planar-3rrr", 2), ("planar-3rpr", 2), ("agile-eye", 0), ("five-bar", 2)]
+    {
+        let m = Arc::new(shipped(name));
+        let coordinates = m.task_coordinates();
+        let axis = |(i, c): (usize, &TaskCoordinate)| {
+            let (half, count) = if i < places { (0.09, 13) } else { (0.7, 8) };
+            Axis::new(c.name, c.home - half, c.home + 0.8 * half, count)
+        };
+        let all: Vec<Axis> = coordinates.iter().enumerate().map(axis).collect();
+        for modes in [Modes::Any, Modes::One(m.home_mode())] {
+            let poses = by_inverse(&m, &Grid::new(&m, all.clone()).unwrap(), modes).0;
+            let analyse = |kind, axes: &[Axis]| {
+                let request =
+                    axes.iter().cloned().fold(WorkspaceRequest::new(kind), WorkspaceRequest::axis);
+                request.modes(modes).resolve(Arc::clone(&m), &progress)?.analyse(&progress)
+            };
+            let count = |set: &GridSet| (set.count(), set.points());
+            for kind in [Kind::Reachable, Kind::Dexterous] {
+                let Ok(found) = analyse(kind, &all) else {
+                    refused += 1;
+                    assert!(name == "agile-eye" || (name, kind) == ("five-bar", Kind::Dexterous));
+                    continue;
+                };
+                let orientations: u64 = all[places..].iter().map(|axis| axis.count).product();
+                let needed = if kind == Kind::Dexterous { orientations } else { 1 };
+                let mut expected: HashMap<Vec<u64>, u64> = HashMap::new();
+                for pose in &poses {
+                    let place = pose[..places].iter().map(|value| value.to_bits()).collect();
+                    *expected.entry(place).or_default() += 1;
+                }
+                let set = found.set.unwrap();
+                assert_eq!(found.visits.unwrap().orientations(), orientations);
+                for number in 0..set.points() {
+                    let at: Vec<u64> = set.point(number).iter().map(|v| v.to_bits()).collect();
+                    let visits = expected.get(&at).copied().unwrap_or(0);
+                    assert_eq!(set.contains(number), visits >= needed, "{name} {kind} {at:?}");
+                }
+                partly += u32::from(set.count() > 0 && set.count() < set.points());
+            }
+            for kind in [Kind::ConstantOrientation, Kind::Orientation] {
+                let held = |i: usize| (i < places) == (kind == Kind::Orientation);
+                let third = |axis: &Axis| Axis::fixed(&*axis.name, axis.value(axis.count / 3));
+                let axes: Vec<Axis> = all
+                    .iter()
+                    .enumerate()
+                    .map(|(i, axis)| if held(i) { third(axis) } else { axis.clone() })
+                    .collect();
+                match analyse(kind, &axes) {
+                    Ok(found) => {
+                        let set = found.set.unwrap();
+                        let grid = Grid::new(&m, axes).unwrap();
+                        let expected = by_inverse(&m, &grid, modes).0.len() as u64;
+                        assert_eq!(count(&set), (expected, grid.poses()), "{name} {kind}");
+                        partly += u32::from(expected > 0 && expected < grid.poses());
+                    }
+                    Err(_) => {
+                        refused += 1;
+                        assert!(
+                            name == "five-bar"
+                                || (name, kind) == ("agile-eye", Kind::ConstantOrientation)
+                        );
+                    }
+                }
+            }
+        }
+        assert_eq!(
+            Kind::Orientation.missing_part(&m),
+            (name == "five-bar").then_some(PosePart::Orientation)
+        );
+    }
+    // Of both modes: the Agile Eye has no place, and the five-bar's orientation follows from it.
+    assert_eq!(refused, 2 * (3 + 3));
+    assert!(partly > 12, "{partly}");
 }
 
 /// A set of random points of a grid with these numbers of values.

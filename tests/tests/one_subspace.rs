@@ -5,6 +5,7 @@ use fastrand::Rng;
 use nalgebra::{Complex, Rotation3, UnitQuaternion, Vector3};
 use opm_core::Manipulator;
 use opm_core::group::subspace::SubspaceClass;
+use opm_core::manipulator::NoClosedForm;
 use opm_tests::random::direction;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -356,4 +357,43 @@ fn the_five_bar_is_two_arms_of_two_links() {
         assert_eq!(seen, [[0, 0], [0, 1], [1, 0], [1, 1]], "{hand}");
     }
     assert!(reached > 300 && beyond > 300, "{reached} {beyond}");
+}
+
+/// A nut on a long-pitched screw, and a slider with a passive revolute joint on the same axis: the advance turns the
+/// nut by `s / p`. A locked revolute joint that completes the nut's leg has no revolutions to lose.
+#[test]
+fn a_nut_on_a_screw_has_a_closed_form() {
+    let pitch = 0.4;
+    let text = |nut: &str, slider: &str, pivot: &str| {
+        format!(
+            "format = 1\nname = \"nut\"\nunits = {{ length = \"m\", angle = \"rad\" }}\n\
+             [platform]\npoint = [0.05, 0, 0.1]\n\
+             [[leg]]\nname = \"screw\"\njoints = [\n\
+             {{ name = \"H\", type = \"helical\", axis = [0, 0, 1], point = [0, 0, 0], pitch = {pitch}{nut} }},\n]\n\
+             [[leg]]\nname = \"guide\"\njoints = [\n\
+             {{ name = \"S\", type = \"prismatic\", axis = [0, 0, 1], point = [0, 0, 0.02]{slider} }},\n\
+             {{ name = \"R\", type = \"revolute\", axis = [0, 0, 1], point = [0, 0, 0.04]{pivot} }},\n]\n"
+        )
+    };
+    let actuated = ", actuated = true";
+    let slid = Manipulator::read(&text("", actuated, "")).unwrap();
+    let turned = Manipulator::read(&text(actuated, "", "")).unwrap();
+    assert_eq!(slid.dependent_coordinates().len(), 1);
+    for advance in [0.01, -0.3, 0.9, 4.0] {
+        // The leg of the screw counts revolutions, the pivot does not.
+        for (m, input) in [(&slid, advance), (&turned, advance / pitch)] {
+            assert_eq!(m.forward_closed_form(), Ok(()));
+            let found = m.forward(&[input]).unwrap();
+            assert_eq!(found.list.len(), 1, "{advance}: {found:?}");
+            let mut at = m.solution();
+            let joints = m.inverse(&found.list[0].pose, m.home_mode(), &mut at).unwrap();
+            let joints = joints.expect("an assembly is in reach").joints();
+            let off = [joints[0] - advance / pitch, joints[1] - advance];
+            assert!(off.iter().all(|off| off.abs() < 1e-12), "{advance}: {joints:?}");
+            assert!(apart(joints[2], advance / pitch) < 1e-12, "{advance}: {joints:?}");
+        }
+    }
+    // A motor on the pivot does not tell by how many revolutions the nut is turned.
+    let pivoted = Manipulator::read(&text("", "", actuated)).unwrap();
+    assert_eq!(pivoted.forward_closed_form(), Err(NoClosedForm::Turns));
 }

@@ -16,7 +16,8 @@ use std::path::PathBuf;
 /// slice.
 ///
 /// --kind selects another set than that of poses. A place is one value for each coordinate of the lower
-/// section (for example x and y), an orientation one value for each coordinate of the upper section.
+/// section (for example x and y), an orientation one value for each coordinate of the upper section. Where
+/// all legs move in one subspace, its lengths are the place and its angles the orientation.
 /// `reachable` and `dexterous` store with each place the share of the orientations that reach it, as
 /// `share`. The lower section alone has the imaginary joints as coordinates too, by their names; they stay
 /// at home unless --grid says otherwise. The whole workspace is where `lower` and `upper` agree on the
@@ -56,6 +57,7 @@ Examples:
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
+  opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5
   opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]

@@ -4,8 +4,9 @@ use super::source::{Kind, Rate, Source, quantity};
 use opm_core::Quantity;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::{
-    ACCELERATIONS_TOPIC, CONDITION_TOPIC, IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC,
-    JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC, Role, VALID, VELOCITIES_TOPIC,
+    ACCELERATIONS_TOPIC, CONDITION_TOPIC, DEPENDENT_TOPIC, DEPENDENT_VELOCITIES_TOPIC,
+    IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC, JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC,
+    Role, VALID, VELOCITIES_TOPIC,
 };
 use opm_plot::Curve;
 
@@ -40,13 +41,15 @@ pub enum TopicKind {
     Condition,
 }
 
-pub const TOPICS: [Topic; 8] = {
+pub const TOPICS: [Topic; 10] = {
     const fn topic(name: &'static str, kind: TopicKind, rate: Rate) -> Topic {
         Topic { name, kind, rate }
     }
     [
         topic(POSE_TOPIC, TopicKind::Pose, Rate::Position),
         topic(POSE_VELOCITIES_TOPIC, TopicKind::Pose, Rate::Velocity),
+        topic(DEPENDENT_TOPIC, TopicKind::Pose, Rate::Position),
+        topic(DEPENDENT_VELOCITIES_TOPIC, TopicKind::Pose, Rate::Velocity),
         topic(JOINTS_TOPIC, TopicKind::Joints, Rate::Position),
         topic(VELOCITIES_TOPIC, TopicKind::Joints, Rate::Velocity),
         topic(ACCELERATIONS_TOPIC, TopicKind::Joints, Rate::Acceleration),
@@ -87,8 +90,10 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
             (field.to_owned(), None, group)
         }
         TopicKind::Pose => {
-            let mut task =
-                source.manipulator().into_iter().flat_map(|m| m.task_coordinates().iter());
+            let mut task = source
+                .manipulator()
+                .into_iter()
+                .flat_map(|m| m.task_coordinates().iter().chain(m.dependent_coordinates()));
             let known = task.find(|c| c.name == field).map(|c| c.quantity);
             let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
             (field.to_owned(), quantity, Group::Pose)

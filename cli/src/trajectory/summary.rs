@@ -31,6 +31,10 @@ impl Report<'_> {
         };
         let Self { request, summary, .. } = self;
         let manipulator = request.manipulator;
+        let dependent: Map<String, Value> =
+            (manipulator.dependent_coordinates().iter().zip(&summary.dependent))
+                .map(|(c, r)| (c.name.to_owned(), ranges(r)))
+                .collect();
         let joints: Map<String, Value> = (manipulator.coordinates().iter().zip(&summary.joints))
             .map(|(c, r)| (c.name.clone(), ranges(r)))
             .collect();
@@ -43,7 +47,7 @@ impl Report<'_> {
             .iter()
             .map(|v| json(&ViolationReport::new(v, manipulator)))
             .collect();
-        json!({
+        let mut json = json!({
             "name": manipulator.mechanism().name,
             "motion": request.motion.name,
             "mode": manipulator.format_mode(request.mode),
@@ -60,7 +64,11 @@ impl Report<'_> {
             })),
             "violation_count": summary.violation_count,
             "violations": violations,
-        })
+        });
+        if !dependent.is_empty() {
+            json["dependent"] = dependent.into();
+        }
+        json
     }
 
     pub fn text(&self) -> String {
@@ -104,6 +112,9 @@ impl Report<'_> {
         }
         for (joint, ranges) in manipulator.imaginary().iter().zip(&summary.imaginary) {
             row(&joint.name, "imaginary", joint.quantity, ranges);
+        }
+        for (c, ranges) in manipulator.dependent_coordinates().iter().zip(&summary.dependent) {
+            row(c.name, "dependent", c.quantity, ranges);
         }
         let _ = write!(text, "{table}");
         if let Some([worst, time]) = summary.condition {

@@ -45,12 +45,13 @@ pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
 
 /// The warning for a set over orientations that is requested at the home orientation only.
 fn one_orientation(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
-    let upper = &grid.axes()[grid.lower()..];
-    if kind.required_visits(grid).is_none() || upper.iter().any(|axis| axis.count > 1) {
+    let orientation = &grid.axes()[grid.orientations()];
+    let none = orientation.is_empty() || kind.required_visits(grid).is_none();
+    if none || orientation.iter().any(|axis| axis.count > 1) {
         return None;
     }
     let names: Vec<String> =
-        upper.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
+        orientation.iter().map(|axis| format!("--grid {}=MIN:MAX:COUNT", axis.name)).collect();
     let names = names.join(", ");
     Some(format!("--kind {kind} has only one orientation here; for more, give {names}"))
 }
@@ -60,8 +61,8 @@ fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     /// Values of a coordinate, and its largest distance from home if it is an angle.
     const VALUES: u64 = 5;
     const HALF: f64 = 20.0;
-    let axes = || grid.axes().iter().zip(grid.coordinates()).skip(grid.lower());
-    let orientations: u64 = axes().map(|(axis, _)| axis.count).product();
+    let axes = || grid.orientations().map(|i| (&grid.axes()[i], &grid.coordinates()[i]));
+    let orientations = grid.orientation_count();
     if kind != WorkspaceKind::Dexterous || orientations == 1 {
         return None;
     }

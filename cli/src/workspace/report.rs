@@ -162,7 +162,7 @@ impl Outcome<'_> {
 /// Adds the known results to the JSON of a workspace.
 fn analysis_json(analysis: &Analysis, json: &mut Value) {
     if let Some(visits) = &analysis.visits {
-        json["orientations"] = visits.slices().into();
+        json["orientations"] = visits.orientations().into();
     }
     if let (Some(shape), Some(set)) = (&analysis.shape, &analysis.set) {
         let Shape { components, boundary } = shape;
@@ -201,7 +201,7 @@ fn analysis_text(analysis: &Analysis, units: FileUnits) -> String {
     let mut text = String::new();
     if let Some(visits) = &analysis.visits {
         let word = if analysis.kind == WorkspaceKind::Dexterous { "all" } else { "any" };
-        let number = count(visits.slices());
+        let number = count(visits.orientations());
         let _ = writeln!(text, "in {word} of {number} orientations");
     }
     if let (Some(shape), Some(set)) = (&analysis.shape, &analysis.set) {

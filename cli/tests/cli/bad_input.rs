@@ -36,7 +36,7 @@ fn wrong_usage_names_the_flag() {
         (&workspace, &["--grid", "x=0:1"], &["--grid", "AXIS=MIN:MAX:COUNT"]),
         (&workspace, &["--grid", "x=0:1:two"], &["--grid", "\"two\""]),
         (&workspace, &["--grid", "x=-1:1mm:3"], &["--grid", "one end only"]),
-        (&workspace, &["--grid", "yaw=0:1:3"], &["--grid", "\"yaw\"", "x, y, zeta, xi, psi"]),
+        (&workspace, &["--grid", "yaw=0:1:3"], &["--grid", "axis yaw", "x, y, zeta, xi, psi"]),
         (&workspace, &["--grid", "x=0:1deg:3"], &["--grid", "x is a length"]),
         (&workspace, &["--grid", "x=0", "--grid", "x=1"], &["--grid", "axis x", "twice"]),
         (&workspace, &["--grid", "x=1:0:3"], &["--grid", "axis x", "smaller one first"]),
@@ -301,4 +301,49 @@ fn messages_name_the_file_once() {
     assert_eq!(run.stderr.matches("taken.npy").count(), 1, "{}", run.stderr);
     opm(&["workspace", PLANO, "--grid", "x=1:0:3"])
         .fails_with_one_line(2, &["expected the smaller one first"]);
+}
+
+/// The five-bar's angle follows from its place, wherever a coordinate of the pose is expected.
+#[test]
+fn a_coordinate_that_follows_from_others_is_told() {
+    let folder = Folder::new();
+    let out = folder.arg("a.mcap");
+    let follows = "theta follows from x, y; give these instead";
+    for (flag, args) in [
+        ("--grid", &["workspace", "--grid", "theta=-10deg:10deg:5"][..]),
+        ("--axes", &["workspace", "-o", &out, "--axes", "theta,x,y"]),
+        ("--scalars", &["workspace", "-o", &out, "--scalars", "theta"]),
+        ("--color", &["workspace", "-o", &out, "--color", "theta"]),
+        ("--near", &["fk", "--joints", "S1=100deg,S2=80deg", "--near", "theta=1"]),
+        ("--rates", &["velocity", "--rates", "theta=1"]),
+    ] {
+        let args = [&[args[0], "five-bar"], &args[1..]].concat();
+        opm(&args).fails_with_one_line(2, &[flag, follows]);
+    }
+    let csv = folder.write("poses.csv", "x,theta\n0,0\n");
+    opm(&["ik", "five-bar", "--poses", &csv]).fails_with_one_line(1, &["poses.csv:1", follows]);
+    let table = folder.write("motion.csv", "t,x,theta\n0,0,0\n1,0,0\n2,0,0\n");
+    let head = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\nduration = 1\nrate = 100\n";
+    let file = folder.write("motion.toml", format!("{head}[coordinates]\ntheta = 3\n"));
+    for (motion, place) in [(table, "motion.csv:1:5"), (file, "motion.toml:7:9")] {
+        let run = opm(&["trajectory", "five-bar", "--motion", &motion]);
+        run.fails_with_one_line(1, &[place, "theta", "follows from x, y; give these instead"]);
+    }
+}
+
+/// A mechanism without an upper section has no coordinates of it to list.
+#[test]
+fn no_list_of_names_is_empty() {
+    let grid = |file, kind| opm(&["workspace", file, "--kind", kind, "--grid", "q=0:0.1:2"]);
+    for (file, kind, words) in [
+        ("planar-3rrr", "upper", ["--kind", "no upper section"]),
+        ("agile-eye", "imaginary", ["--kind", "no imaginary joints"]),
+        ("planar-3rrr", "lower", ["--grid", "expected one of x, y, theta"]),
+        (PLANO, "upper", ["--grid", "expected one of zeta, xi, psi"]),
+        (PLANO, "lower", ["--grid", "expected one of x, y, theta11"]),
+        ("five-bar", "upper", ["--kind", "no upper section"]),
+        ("five-bar", "grid", ["--grid", "expected one of x, y"]),
+    ] {
+        grid(file, kind).fails_with_one_line(2, &words);
+    }
 }

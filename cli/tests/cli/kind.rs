@@ -212,7 +212,7 @@ fn what_a_kind_cannot_do_is_refused() {
     let cases: [(&[&str], &[&str]); 10] = [
         (
             &["--kind", "constant-orientation", "--grid", "xi=0:1:3"],
-            &["--grid", "xi has 3 values", "upper section", "xi=VALUE"],
+            &["--grid", "xi has 3 values", "the orientation's coordinates", "xi=VALUE"],
         ),
         (&["--kind", "orientation", "--grid", "x=0:1:3"], &["--grid", "x has 3 values"]),
         (&["--kind", "upper", "--grid", "x=0:1:3"], &["--grid", "upper section", "zeta, xi, psi"]),
@@ -353,6 +353,29 @@ fn an_empty_dexterous_workspace_says_how_to_ask_for_fewer_orientations() {
     let one = opm(&[&dexterous[..], &["--grid=x=1:2:3"]].concat());
     one.text();
     assert!(one.stderr.contains("no place") && !one.stderr.contains("fewer"), "{}", one.stderr);
+}
+
+/// Which coordinates are the place, and what a mechanism in one subspace does not have.
+#[test]
+fn kinds_of_one_subspace_work_or_say_why_not() {
+    let grid = ["--grid=x=-0.1:0.1:11", "--grid=y=-0.1:0.1:11", "--grid=theta=-10deg:10deg:5"];
+    let found = workspace(&[&["planar-3rrr", "--kind", "dexterous"][..], &grid].concat());
+    assert!(found["reachable"].as_u64() > Some(0) && found["poses"] == 121, "{found}");
+    assert_eq!(found["orientations"], 5);
+    let refused = |mechanism: &str, kind: &str, message: &str| {
+        opm(&["workspace", mechanism, "--kind", kind]).fails_with_one_line(2, &["--kind", message]);
+    };
+    for kind in ["dexterous", "reachable", "constant-orientation"] {
+        refused("agile-eye", kind, "zeta, xi, psi, have no place among them; use grid");
+    }
+    for (kind, what) in [("imaginary", "no imaginary joints"), ("upper", "no upper section")] {
+        let message = format!("all legs of this mechanism move in one subspace, so it has {what}");
+        refused("planar-3rrr", kind, &message);
+    }
+    for kind in ["dexterous", "orientation", "constant-orientation"] {
+        let message = "orientation follows from the other coordinates (dependent: theta";
+        refused("five-bar", kind, message);
+    }
 }
 
 /// The values of imaginary joints are on no grid that they could be a share of.

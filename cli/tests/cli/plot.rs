@@ -426,6 +426,7 @@ fn unknown_motion_with(
     let trajectory = Trajectory {
         pose: vec![],
         joints: vec![joint("a"), joint("b")],
+        dependent: vec![],
         imaginary: vec![],
         rates: false,
         measures: vec![],

@@ -2,7 +2,13 @@
 
 use crate::run::{Folder, Run, keys, number, opm};
 use crate::{HELICAL, PLANO};
+use nalgebra::Complex;
+use opm_mcap::trajectory::{
+    DEPENDENT_TOPIC, DEPENDENT_VELOCITIES_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC,
+};
+use opm_mcap::{ReadError, read};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 const SINUSOIDS: &str = "plano-spherical-sinusoids";
@@ -229,4 +235,74 @@ fn wrong_usage_names_the_flag() {
     // The helical manipulator has no such coordinates.
     trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "`x`, `y`, `phi`"]);
     assert_eq!(folder.names(), ["m.toml"]);
+}
+
+/// The angle of the five-bar's platform is that of its right forearm: by the law of cosines, from the hand's place.
+#[test]
+fn dependent_coordinates_are_recorded() {
+    let (upper, fore, half): (f64, f64, f64) = (0.138, 0.307, 0.160);
+    let [from, to] = [upper + fore, fore - upper];
+    // The forearm's direction where the elbow is on the outer side.
+    let forearm = |x: f64, y: f64| {
+        let way = Complex::new(x - half, y);
+        let d = way.norm();
+        let cosine = (upper * upper + d * d - fore * fore) / (2.0 * upper * d);
+        way - Complex::from_polar(upper, way.arg() - cosine.acos())
+    };
+    let home = forearm(0.0, 0.323_981_552_428_365);
+    let turned = |x: f64, y: f64| (forearm(x, y) / home).arg();
+
+    let folder = Folder::new();
+    let out = folder.arg("five-bar.mcap");
+    let swing = "duration = 2\nrate = 500\n[coordinates]\n\
+                 x = { amplitude = 250, frequency = 0.5 }\n\
+                 y = { amplitude = 40, frequency = 1, offset = 300 }\n";
+    let motion = folder.write("swing.toml", format!("{HEAD}{swing}"));
+    let found = json("five-bar", &motion, &["-o", &out, "-q"]);
+    let mut tables: [BTreeMap<u64, Vec<f64>>; 4] = Default::default();
+    let topics = [POSE_TOPIC, POSE_VELOCITIES_TOPIC, DEPENDENT_TOPIC, DEPENDENT_VELOCITIES_TOPIC];
+    read::<ReadError>(out.as_ref(), |message| {
+        if let Some(i) = topics.iter().position(|topic| *topic == message.topic) {
+            let mut values = vec![];
+            assert!(message.values(&mut values)?);
+            tables[i].insert(message.time, values);
+        }
+        Ok(())
+    })
+    .unwrap();
+    let [pose, rates, angle, angle_rate] = &tables;
+    let (mut highest, mut paused) = (f64::MIN, 0);
+    for (time, place) in pose {
+        let reached = |sign: f64| {
+            let d = (place[0] + sign * half).hypot(place[1]);
+            (to..from).contains(&d)
+        };
+        assert_eq!(angle.contains_key(time), reached(1.0) && reached(-1.0), "{place:?}");
+        let Some(angle) = angle.get(time) else {
+            paused += 1;
+            continue;
+        };
+        let expected = turned(place[0], place[1]);
+        assert!((angle[0] - expected).abs() < 1e-9, "{place:?}: {angle:?} {expected}");
+        highest = highest.max(angle[0]);
+        // A step of a microsecond along the motion; the third derivative times its square is nothing.
+        let step = 1e-6;
+        let at = |sign: f64| {
+            let moved = |i: usize| place[i] + sign * step * rates[time][i];
+            turned(moved(0), moved(1))
+        };
+        let expected = (at(1.0) - at(-1.0)) / (2.0 * step);
+        let off = (angle_rate[time][0] - expected).abs();
+        assert!(off < 1e-6 * (1.0 + expected.abs()), "{place:?}: {angle_rate:?} {expected}");
+    }
+    assert!(paused > 100 && angle.len() > 400, "{paused} paused");
+    assert_eq!(number(&found["dependent"]["theta"]["position"][1]), highest);
+    let inside = opm(&["inspect", &out, "--format", "json"]).json();
+    assert_eq!(inside["metadata"]["roles"]["theta"], "dependent");
+    assert_eq!(inside["metadata"]["quantities"]["theta"], "rad");
+    let text = trajectory("five-bar", &motion, &["-q"]);
+    assert!(text.text().contains("dependent"), "{}", text.stdout);
+    let picture = folder.arg("five-bar.svg");
+    opm(&["plot", &out, "-o", &picture, "-q"]).text();
+    assert!(folder.read("five-bar.svg").contains("theta"));
 }

@@ -30,7 +30,7 @@ pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
-pub use inverse::{ActuatedJoints, LARGEST, PoseError, Solution, Unreachable};
+pub use inverse::{ActuatedJoints, FollowingCoordinate, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
 pub use locate::OutsideMotion;
@@ -48,7 +48,7 @@ pub use transitions::Transitions;
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
-use crate::group::{JointDisplacement, MotionType};
+use crate::group::{JointDisplacement, MotionType, SubspaceKind};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
@@ -60,6 +60,7 @@ pub(crate) use leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegBranches,
 use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;
+use std::ops::Range;
 
 /// The largest number of choices in a [`Mode`].
 const MOST_CHOICES: u32 = 63;
@@ -211,6 +212,31 @@ impl Manipulator {
             None => lower,
             Some(dependent) => dependent.independent.iter().filter(|&&i| i < lower).count(),
         }
+    }
+
+    /// Whether a task coordinate says where the platform is, its *place*: those of the lower section do. Where
+    /// all legs move in one subspace, the lengths do.
+    pub fn is_of_place(&self, coordinate: &TaskCoordinate) -> bool {
+        match self.task.upper.kind {
+            SubspaceKind::Identity => coordinate.quantity == Quantity::Length,
+            _ => self.task.coordinates[..self.task.lower_count]
+                .iter()
+                .any(|c| c.name == coordinate.name),
+        }
+    }
+
+    /// The numbers of the coordinates of a pose that are its place. They stand next to each other.
+    pub fn place_coordinates(&self) -> Range<usize> {
+        let before = self.independent.iter().take_while(|c| !self.is_of_place(c)).count();
+        let places = self.independent.iter().filter(|c| self.is_of_place(c)).count();
+        before..before + places
+    }
+
+    /// The numbers of the other coordinates of a pose, its *orientation*: those of the upper section or, where
+    /// all legs move in one subspace, the angles.
+    pub fn orientation_coordinates(&self) -> Range<usize> {
+        let Range { start, end } = self.place_coordinates();
+        if start > 0 { 0..start } else { end..self.independent.len() }
     }
 
     /// The numbers of the legs, and of their sections, whose constraints tie task coordinates together.

@@ -190,6 +190,8 @@ impl Sample {
         self.motion.joint_accelerations.clone_from(&other.motion.joint_accelerations);
         self.motion.imaginary_rates.clone_from(&other.motion.imaginary_rates);
         self.motion.imaginary_accelerations.clone_from(&other.motion.imaginary_accelerations);
+        self.motion.dependent_rates.clone_from(&other.motion.dependent_rates);
+        self.motion.dependent_accelerations.clone_from(&other.motion.dependent_accelerations);
         self.motion.singular.clone_from(&other.motion.singular);
         self.condition = other.condition;
         (self.upper, self.lower) = (other.upper, other.lower);

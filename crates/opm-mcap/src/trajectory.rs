@@ -3,6 +3,7 @@
 //! | topic | messages |
 //! |---|---|
 //! | `/pose`, `/pose_velocities` | `opm.Pose`, `opm.PoseVelocities`: one double for each task coordinate |
+//! | `/dependent_coordinates`, `/dependent_velocities` | one double for each task coordinate that follows from the others |
 //! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: one double for each joint coordinate |
 //! | `/imaginary_joints`, `/imaginary_velocities` | one double for each imaginary joint |
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
@@ -13,7 +14,7 @@
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
 //! Units are metres, radians and seconds. A topic without values is left out. Time starts at [`START`]; no
-//! clock is read. Where the mechanism cannot follow the motion, the joints pause, while `/pose` and
+//! clock is read. Where the mechanism cannot follow the motion, joints and dependent coordinates pause, while `/pose` and
 //! `/condition` go on (`valid` is 0, the condition number infinite, and the measures are NaN).
 //!
 //! These are the metadata records:
@@ -21,8 +22,8 @@
 //! * `run`: the caller's description of the run;
 //! * `joints`: which joint each field is (see [`crate::joints`]);
 //! * `quantities`: the unit of each position field, `rad` or `m`;
-//! * `roles`: `actuated`, `passive`, `imaginary` or `task`, for each field; if a joint and a task coordinate
-//!   have the same name, the joint's role counts;
+//! * `roles`: `actuated`, `passive`, `imaginary`, `task` or `dependent`, for each field; if a joint and a task
+//!   coordinate have the same name, the joint's role counts;
 //! * the records that the caller adds;
 //! * last `result`, with `complete = "true"`.
 //!
@@ -40,6 +41,7 @@
 //! let crank = Coordinate { name: "crank".into(), unit: "rad", role: Role::Actuated };
 //! let trajectory = Trajectory {
 //!     pose: vec![],
+//!     dependent: vec![],
 //!     joints: vec![crank],
 //!     imaginary: vec![],
 //!     rates: false,
@@ -90,6 +92,10 @@ pub const IMAGINARY_TOPIC: &str = "/imaginary_joints";
 pub const POSE_TOPIC: &str = "/pose";
 /// The topic of the rates of the task coordinates.
 pub const POSE_VELOCITIES_TOPIC: &str = "/pose_velocities";
+/// The topic of the dependent coordinates.
+pub const DEPENDENT_TOPIC: &str = "/dependent_coordinates";
+/// The topic of the rates of the dependent coordinates.
+pub const DEPENDENT_VELOCITIES_TOPIC: &str = "/dependent_velocities";
 /// The topic of the joint rates.
 pub const VELOCITIES_TOPIC: &str = "/velocities";
 /// The topic of the joint accelerations.
@@ -127,16 +133,19 @@ pub enum Role {
     Imaginary,
     /// A task coordinate of the pose.
     Task,
+    /// A task coordinate that follows from those of the pose.
+    Dependent,
 }
 
 impl Role {
-    /// The word for the role: `actuated`, `passive`, `imaginary` or `task`.
+    /// The word for the role: `actuated`, `passive`, `imaginary`, `task` or `dependent`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Actuated => "actuated",
             Self::Passive => "passive",
             Self::Imaginary => "imaginary",
             Self::Task => "task",
+            Self::Dependent => "dependent",
         }
     }
 }
@@ -157,6 +166,8 @@ pub struct Coordinate {
 pub struct Trajectory<'a> {
     /// The task coordinates; none for a mechanism without a platform.
     pub pose: Vec<Coordinate>,
+    /// The task coordinates that follow from those of the pose; none in most mechanisms.
+    pub dependent: Vec<Coordinate>,
     /// The joint coordinates.
     pub joints: Vec<Coordinate>,
     /// The imaginary joints.
@@ -192,6 +203,8 @@ pub struct Sample<'a> {
 /// The joints and bodies at one instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Posture<'a> {
+    /// The dependent coordinates, radians and metres.
+    pub dependent: &'a [f64],
     /// The joint coordinates, radians and metres.
     pub joints: &'a [f64],
     /// The imaginary joints, radians and metres.
@@ -206,6 +219,8 @@ pub struct Posture<'a> {
 /// The rates of the joints at one instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Rates<'a> {
+    /// The rates of the dependent coordinates, per second.
+    pub dependent: &'a [f64],
     /// The rates of the joint coordinates, per second.
     pub velocities: &'a [f64],
     /// The rates of the imaginary joints, per second.
@@ -228,6 +243,8 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     log: Log<W>,
     pose: Option<JointsTopic>,
     pose_velocities: Option<JointsTopic>,
+    dependent: Option<JointsTopic>,
+    dependent_velocities: Option<JointsTopic>,
     joints: Option<JointsTopic>,
     velocities: Option<JointsTopic>,
     accelerations: Option<JointsTopic>,
@@ -265,16 +282,17 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let names = |coordinates: &[Coordinate]| -> Vec<String> {
             coordinates.iter().map(|c| c.name.clone()).collect()
         };
-        let Trajectory { pose, joints, imaginary, rates, measures, bodies, .. } = trajectory;
+        let Trajectory { pose, dependent, joints, imaginary, rates, measures, bodies, .. } =
+            trajectory;
         check(bodies)?;
         let (pose_names, joint_names) = (names(pose), names(joints));
-        let imaginary_names = names(imaginary);
+        let (dependent_names, imaginary_names) = (names(dependent), names(imaginary));
         let [mut quantities, mut roles, mut which] = [const { Metadata::new() }; 3];
-        for coordinates in [pose, joints, imaginary] {
+        for coordinates in [pose, dependent, joints, imaginary] {
             for (field, coordinate) in fields(&names(coordinates))?.into_iter().zip(coordinates) {
                 quantities.insert(field.clone(), coordinate.unit.to_owned());
                 roles.insert(field.clone(), coordinate.role.name().to_owned());
-                if coordinate.role != Role::Task {
+                if !matches!(coordinate.role, Role::Task | Role::Dependent) {
                     which.insert(field, coordinate.name.clone());
                 }
             }
@@ -304,6 +322,9 @@ impl<W: Sink> TrajectoryRecorder<W> {
         };
         let pose_velocities = topic(POSE_VELOCITIES_TOPIC, "PoseVelocities", &pose_names, *rates)?;
         let pose = topic(POSE_TOPIC, "Pose", &pose_names, true)?;
+        let dependent = topic(DEPENDENT_TOPIC, "DependentCoordinates", &dependent_names, true)?;
+        let dependent_velocities =
+            topic(DEPENDENT_VELOCITIES_TOPIC, "DependentVelocities", &dependent_names, *rates)?;
         let joints = topic(JOINTS_TOPIC, "Joints", &joint_names, true)?;
         let velocities = topic(VELOCITIES_TOPIC, "Velocities", &joint_names, *rates)?;
         let accelerations = topic(ACCELERATIONS_TOPIC, "Accelerations", &joint_names, *rates)?;
@@ -323,6 +344,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
             log,
             pose,
             pose_velocities,
+            dependent,
+            dependent_velocities,
             joints,
             velocities,
             accelerations,
@@ -404,9 +427,11 @@ impl<W: Sink> TrajectoryRecorder<W> {
             write(&mut self.condition, &self.judged)?;
         }
         let Some(posture) = sample.posture else { return Ok(()) };
+        write(&mut self.dependent, posture.dependent)?;
         write(&mut self.joints, posture.joints)?;
         write(&mut self.imaginary, posture.imaginary)?;
         if let Some(rates) = posture.rates {
+            write(&mut self.dependent_velocities, rates.dependent)?;
             write(&mut self.velocities, rates.velocities)?;
             write(&mut self.imaginary_velocities, rates.imaginary)?;
             write(&mut self.accelerations, rates.accelerations)?;

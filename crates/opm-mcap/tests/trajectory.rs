@@ -21,6 +21,7 @@ fn coordinates(names: &[&str], role: Role) -> Vec<Coordinate> {
 fn trajectory(imaginary: &[&str]) -> Trajectory<'static> {
     Trajectory {
         pose: Vec::new(),
+        dependent: Vec::new(),
         joints: coordinates(&["a1", "b3", "a.2"], Role::Passive),
         imaginary: coordinates(imaginary, Role::Imaginary),
         rates: false,
@@ -46,6 +47,7 @@ fn whole() -> Trajectory<'static> {
     ];
     Trajectory {
         pose,
+        dependent: coordinates(&["theta"], Role::Dependent),
         rates: true,
         measures: vec!["condition".into()],
         bodies: vec![body("base", None), body("arm", Some(0))],
@@ -131,10 +133,20 @@ fn a_motion_has_all_topics() {
     let mut bytes = Vec::new();
     let mut recorder = TrajectoryRecorder::new(Cursor::new(&mut bytes), &whole()).unwrap();
     let frames = [Frame { translation: [1.0, 2.0, 3.0], rotation: [0.0, 0.0, 0.0, 1.0] }];
-    let rates = Rates { velocities: &[1.0; 3], imaginary: &[2.0], accelerations: &[3.0; 3] };
+    let rates = Rates {
+        dependent: &[5.0],
+        velocities: &[1.0; 3],
+        imaginary: &[2.0],
+        accelerations: &[3.0; 3],
+    };
     let values = [0.5; 3];
-    let reached =
-        Posture { joints: &values, imaginary: &[0.1], rates: Some(rates), frames: &frames };
+    let reached = Posture {
+        dependent: &[0.2],
+        joints: &values,
+        imaginary: &[0.1],
+        rates: Some(rates),
+        frames: &frames,
+    };
     let at = |valid, posture| Sample {
         pose: &[1.0, 2.0],
         pose_velocities: &[3.0, 4.0],
@@ -164,6 +176,8 @@ fn a_motion_has_all_topics() {
     for (topic, count) in [
         (POSE_TOPIC, 2),
         (POSE_VELOCITIES_TOPIC, 2),
+        (DEPENDENT_TOPIC, 1),
+        (DEPENDENT_VELOCITIES_TOPIC, 1),
         (JOINTS_TOPIC, 1),
         (VELOCITIES_TOPIC, 1),
         (ACCELERATIONS_TOPIC, 1),
@@ -179,7 +193,9 @@ fn a_motion_has_all_topics() {
         assert_eq!(counts[topic], count, "{topic}");
     }
     assert_eq!(recording.metadata("roles").unwrap()["x"], "task");
+    assert_eq!(recording.metadata("roles").unwrap()["theta"], "dependent");
     assert_eq!(recording.metadata("roles").unwrap()["a1"], "passive");
+    assert!(!recording.metadata("joints").unwrap().contains_key("theta"));
     assert_eq!(recording.metadata("quantities").unwrap()["x"], "m");
     assert_eq!(recording.metadata("quantities").unwrap()["tau_leg1"], "rad");
     assert_eq!(recording.metadata("violation.1").unwrap()["kind"], "limit");

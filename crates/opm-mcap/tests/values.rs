@@ -11,6 +11,7 @@ fn recorded(long: &[u8], joints: &[[f64; 2]]) -> Vec<u8> {
     let joint = |name: &str| Coordinate { name: name.into(), unit: "m", role: Role::Passive };
     let trajectory = Trajectory {
         pose: vec![],
+        dependent: vec![],
         joints: vec![joint("b"), joint("a.x")],
         imaginary: vec![],
         rates: false,

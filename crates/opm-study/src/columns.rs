@@ -81,6 +81,9 @@ impl PointOptions {
         let known = known(kind, manipulator);
         let find = |name: &String, option| {
             let found = known.iter().find(|column| column.name == *name).cloned();
+            if found.is_none() {
+                refuse_following(name, manipulator, option)?;
+            }
             found.ok_or_else(|| RequestError::UnknownColumn {
                 option,
                 name: name.clone(),
@@ -125,10 +128,23 @@ impl PointChoice {
     }
 }
 
+/// Refuses the name of a dependent coordinate, which points do not have.
+fn refuse_following(
+    name: &str,
+    manipulator: &Manipulator,
+    option: RequestOption,
+) -> Result<(), RequestError> {
+    let refused = manipulator.refuse_following(name);
+    refused.map_err(|follows| RequestError::Follows { option, follows })
+}
+
 /// An axis of a cloud of poses.
 fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn, RequestError> {
     let coordinates = manipulator.task_coordinates();
     let number = coordinates.iter().position(|c| c.name == name);
+    if number.is_none() {
+        refuse_following(name, manipulator, RequestOption::Axes)?;
+    }
     let number = number.ok_or_else(|| RequestError::UnknownCoordinate {
         name: name.to_owned(),
         known: coordinates.iter().map(|c| c.name.to_owned()).collect(),
@@ -138,12 +154,12 @@ fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn,
 
 /// Every value that the points of a kind of workspace have.
 fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
-    let lower = manipulator.lower_coordinates();
+    let places = manipulator.place_coordinates();
     let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
     let mut known: Vec<NamedColumn> = coordinates
         .filter(|(i, _)| match kind {
-            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => *i < lower,
-            WorkspaceKind::Imaginary => *i >= lower,
+            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => places.contains(i),
+            WorkspaceKind::Imaginary => !places.contains(i),
             WorkspaceKind::Grid
             | WorkspaceKind::ConstantOrientation
             | WorkspaceKind::Orientation

@@ -1,5 +1,6 @@
 //! Kinds of workspace: which grid each kind needs, and which points belong to it.
 
+use opm_core::manipulator::Manipulator;
 use opm_workspace::{Grid, Sections};
 use std::fmt;
 use std::ops::Range;
@@ -9,7 +10,8 @@ use std::str::FromStr;
 /// alone.
 ///
 /// A *place* has a value for each coordinate of the lower section, an *orientation* one for each
-/// coordinate of the upper section, and a *pose* has both.
+/// coordinate of the upper section, and a *pose* has both. Where all legs move in one subspace, a place has
+/// its lengths and an orientation its angles.
 ///
 /// ```
 /// use opm_study::WorkspaceKind;
@@ -24,9 +26,9 @@ pub enum WorkspaceKind {
     /// Poses in reach.
     #[default]
     Grid,
-    /// Poses in reach, with one value for each coordinate of the upper section.
+    /// Poses in reach, with one value for each coordinate of the orientation.
     ConstantOrientation,
-    /// Poses in reach, with one value for each coordinate of the lower section.
+    /// Poses in reach, with one value for each coordinate of the place.
     Orientation,
     /// Places that are in reach at one orientation of the grid or more.
     Reachable,
@@ -38,6 +40,25 @@ pub enum WorkspaceKind {
     Upper,
     /// Places, and values of the imaginary joints, at which the lower section alone closes.
     Lower,
+}
+
+/// A part of a pose, which some kinds of workspace hold or vary by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PosePart {
+    /// Where the platform is: [`Manipulator::place_coordinates`].
+    Place,
+    /// How it is turned, or in general all other coordinates: [`Manipulator::orientation_coordinates`].
+    Orientation,
+}
+
+impl PosePart {
+    /// The name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Place => "place",
+            Self::Orientation => "orientation",
+        }
+    }
 }
 
 /// A name that is not one of a kind of workspace.
@@ -84,14 +105,12 @@ impl WorkspaceKind {
         match self {
             Self::Grid => "Poses in reach",
             Self::ConstantOrientation => {
-                "Poses in reach with the upper section's coordinates held, each at one value"
+                "Poses in reach with the orientation's coordinates held, each at one value"
             }
             Self::Orientation => {
-                "Poses in reach with the lower section's coordinates held, each at one value"
+                "Poses in reach with the place's coordinates held, each at one value"
             }
-            Self::Reachable => {
-                "Places (values of the lower section's coordinates) in reach at some orientation of the grid"
-            }
+            Self::Reachable => "Places in reach at some orientation of the grid",
             Self::Dexterous => "Places in reach at every orientation of the grid",
             Self::Imaginary => {
                 "Values of the imaginary joints at orientations with some place in reach"
@@ -115,16 +134,29 @@ impl WorkspaceKind {
         }
     }
 
-    /// Whether the kind tells apart the two sections of a mechanism: a mechanism of one subspace has none of it.
-    pub fn needs_two_sections(self) -> bool {
-        match self {
-            Self::Grid | Self::Lower => false,
-            Self::ConstantOrientation
-            | Self::Orientation
-            | Self::Reachable
-            | Self::Dexterous
-            | Self::Imaginary
-            | Self::Upper => true,
+    /// The part of a pose that the kind needs and that this mechanism does not have: no coordinate belongs to it,
+    /// or all that do follow from the other part, so that it cannot be held or varied.
+    pub fn missing_part(self, manipulator: &Manipulator) -> Option<PosePart> {
+        let has = |part| match part {
+            PosePart::Place => !manipulator.place_coordinates().is_empty(),
+            PosePart::Orientation => !manipulator.orientation_coordinates().is_empty(),
+        };
+        let follows = |part| {
+            let mut dependent = manipulator.dependent_coordinates().iter();
+            !has(part) && dependent.any(|c| manipulator.is_of_place(c) == (part == PosePart::Place))
+        };
+        let (place, orientation) = match self {
+            Self::ConstantOrientation | Self::Dexterous => {
+                (has(PosePart::Place), !follows(PosePart::Orientation))
+            }
+            Self::Orientation => (!follows(PosePart::Place), has(PosePart::Orientation)),
+            Self::Reachable => (has(PosePart::Place), true),
+            Self::Grid | Self::Imaginary | Self::Upper | Self::Lower => (true, true),
+        };
+        match (place, orientation) {
+            (false, _) => Some(PosePart::Place),
+            (true, false) => Some(PosePart::Orientation),
+            (true, true) => None,
         }
     }
 
@@ -144,12 +176,12 @@ impl WorkspaceKind {
         self != Self::Imaginary
     }
 
-    /// The number of slices of the grid in which a point has to be reached to belong to the set; `None` if
+    /// The number of orientations of the grid at which a point has to be reached to belong to the set; `None` if
     /// every point of the grid is decided on its own.
     pub fn required_visits(self, grid: &Grid) -> Option<u64> {
         match self {
             Self::Reachable | Self::Imaginary => Some(1),
-            Self::Dexterous => Some(grid.slices()),
+            Self::Dexterous => Some(grid.orientation_count()),
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
@@ -160,23 +192,22 @@ impl WorkspaceKind {
 
     /// Indices of the axes of a grid whose coordinates its points have.
     pub fn axes(self, grid: &Grid) -> Range<usize> {
-        let (lower, all) = (grid.lower(), grid.axes().len());
         match self {
-            Self::Reachable | Self::Dexterous => 0..lower,
-            Self::Imaginary => lower..all,
+            Self::Reachable | Self::Dexterous => grid.places(),
+            Self::Imaginary => grid.orientations(),
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
             | Self::Upper
-            | Self::Lower => 0..all,
+            | Self::Lower => 0..grid.axes().len(),
         }
     }
 
     /// Indices of the axes that have a single value in a grid of this kind.
     pub fn held_axes(self, grid: &Grid) -> Range<usize> {
         match self {
-            Self::ConstantOrientation => grid.lower()..grid.axes().len(),
-            Self::Orientation => 0..grid.lower(),
+            Self::ConstantOrientation => grid.orientations(),
+            Self::Orientation => grid.places(),
             Self::Grid
             | Self::Reachable
             | Self::Dexterous

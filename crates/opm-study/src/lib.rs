@@ -85,7 +85,7 @@ pub use columns::{Column, NamedColumn, PointChoice, PointColumns, PointOptions};
 #[cfg(feature = "recording")]
 pub use error::{MissingShards, ShardError, ShardProblem};
 pub use error::{RequestError, RequestOption, SetPart, Spelling, StudyError};
-pub use kind::{UnknownKind, WorkspaceKind};
+pub use kind::{PosePart, UnknownKind, WorkspaceKind};
 pub use linkage::{LinkageRound, RoundSummary, input_intervals};
 pub use measure::{Measure, unit_product};
 pub use motion::{

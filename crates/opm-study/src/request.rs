@@ -6,7 +6,9 @@ use crate::columns::{PointChoice, PointOptions};
 use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::workspace::Workspace;
+use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Manipulator;
+use opm_core::task::TaskCoordinate;
 use opm_workspace::{
     Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sections, default_grid,
 };
@@ -257,17 +259,23 @@ fn check_kind(
     modes: Modes,
     limit: Option<ConditionLimit>,
 ) -> Result<(), RequestError> {
-    let coordinates = manipulator.task_coordinates();
-    let dependent = manipulator.dependent_coordinates();
-    let lower = manipulator.lower_coordinates();
-    let alone = kind.sections() != Sections::Whole || kind == WorkspaceKind::Imaginary;
-    if (alone || (kind.needs_two_sections() && lower == 0)) && !dependent.is_empty() {
-        let dependent = dependent.iter().map(|c| c.name.to_owned()).collect();
-        return Err(RequestError::Dependent { kind, dependent });
+    let names = |list: &[TaskCoordinate]| list.iter().map(|c| c.name.to_owned()).collect();
+    let dependent: Vec<String> = names(manipulator.dependent_coordinates());
+    let one_subspace = manipulator.task().upper.kind == SubspaceKind::Identity;
+    match kind {
+        WorkspaceKind::Imaginary | WorkspaceKind::Upper if one_subspace => {
+            return Err(RequestError::OneSubspace { kind });
+        }
+        WorkspaceKind::Imaginary | WorkspaceKind::Upper | WorkspaceKind::Lower
+            if !dependent.is_empty() =>
+        {
+            return Err(RequestError::Dependent { kind, dependent });
+        }
+        _ => {}
     }
-    if kind.needs_two_sections() && lower == coordinates.len() {
-        let coordinates = coordinates.iter().map(|c| c.name.to_owned()).collect();
-        return Err(RequestError::OneSection { kind, coordinates });
+    if let Some(part) = kind.missing_part(manipulator) {
+        let coordinates = names(manipulator.task_coordinates());
+        return Err(RequestError::NoPart { kind, part, coordinates, dependent });
     }
     if kind.sections() != Sections::Whole && limit.is_some() {
         return Err(RequestError::SectionCondition { kind });

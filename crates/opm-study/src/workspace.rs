@@ -128,7 +128,7 @@ impl Workspace {
         Ok(self.conditioning_length().map(index).transpose()?)
     }
 
-    /// The number of slices of the grid in which a sweep, or a shard of it, reaches each point; `None` for
+    /// The number of orientations of the grid at which a sweep, or a shard of it, reaches each point; `None` for
     /// a kind whose points are points of the grid. The numbers of all shards add up.
     ///
     /// # Errors
@@ -156,7 +156,7 @@ impl Workspace {
         }
     }
 
-    /// The number of slices in which a point has to be reached to belong to the set: see
+    /// The number of orientations at which a point has to be reached to belong to the set: see
     /// [`WorkspaceKind::required_visits`].
     pub fn required_visits(&self) -> Option<u64> {
         self.kind.required_visits(&self.grid)

@@ -2,10 +2,11 @@
 //! the grid.
 
 use opm_core::Quantity;
-use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
+use opm_core::manipulator::{FollowingCoordinate, ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
 use opm_core::task::CoordinateKind;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Most poses of a grid: larger numbers are not exact in double precision, which JSON readers use.
 const MOST_POSES: u64 = 1 << 53;
@@ -50,6 +51,9 @@ pub enum GridError {
         /// The names of all coordinates, separated by commas.
         expected: String,
     },
+    /// The coordinate of the axis follows from the others.
+    #[error(transparent)]
+    Follows(#[from] FollowingCoordinate),
     /// Two axes have the same name.
     #[error("grid axis {0}: given twice")]
     Twice(String),
@@ -227,6 +231,8 @@ pub struct Grid {
     cuts: Vec<ImaginaryJoint>,
     /// The number of coordinates that vary within a slice.
     lower: usize,
+    /// The numbers of the coordinates that are the place.
+    places: Range<usize>,
     poses: u64,
 }
 
@@ -258,6 +264,7 @@ impl Grid {
         }
         for axis in given {
             let Some(number) = coordinates.iter().position(|c| c.name == axis.name) else {
+                manipulator.refuse_following(&axis.name)?;
                 let names: Vec<_> = coordinates.iter().map(|c| &*c.name).collect();
                 let expected = names.join(", ");
                 return Err(GridError::Unknown { name: axis.name, section: sections, expected });
@@ -280,13 +287,17 @@ impl Grid {
             Sections::Lower => manipulator.lower_coordinates(),
             Sections::Upper => 0,
         };
+        let places = match sections {
+            Sections::Whole => manipulator.place_coordinates(),
+            Sections::Lower | Sections::Upper => 0..lower,
+        };
         let cuts = match sections {
             Sections::Lower => manipulator.intersection_joints(),
             Sections::Whole | Sections::Upper => vec![],
         };
         match poses {
             Some(poses) if poses <= MOST_POSES => {
-                Ok(Self { axes, coordinates, sections, cuts, lower, poses })
+                Ok(Self { axes, coordinates, sections, cuts, lower, places, poses })
             }
             _ => {
                 let counts: Vec<_> = axes.iter().map(|axis| axis.count.to_string()).collect();
@@ -346,13 +357,35 @@ impl Grid {
 
     /// The number of slices: sets of poses that share all coordinates but those of [`Grid::lower`].
     pub fn slices(&self) -> u64 {
-        self.axes[self.lower..].iter().map(|axis| axis.count).product()
+        self.points_of(self.lower..self.axes.len())
     }
 
     /// The number of the lower section's task coordinates, which vary within a slice. It is zero in a grid
     /// of the upper section alone.
     pub fn lower(&self) -> usize {
         self.lower
+    }
+
+    /// The numbers of the axes whose coordinates are the platform's *place*
+    /// ([`Manipulator::place_coordinates`]), or those of the lower section in a grid of one section alone.
+    pub fn places(&self) -> Range<usize> {
+        self.places.clone()
+    }
+
+    /// The numbers of the other axes, whose coordinates are the platform's *orientation*.
+    pub fn orientations(&self) -> Range<usize> {
+        let Range { start, end } = self.places;
+        if start > 0 { 0..start } else { end..self.axes.len() }
+    }
+
+    /// The number of points that some axes have together.
+    pub(crate) fn points_of(&self, axes: Range<usize>) -> u64 {
+        self.axes[axes].iter().map(|axis| axis.count).product()
+    }
+
+    /// The number of orientations: combinations of values of the orientation's coordinates.
+    pub fn orientation_count(&self) -> u64 {
+        self.points_of(self.orientations())
     }
 
     /// The pose with this number, radians and metres, one value for each axis.

@@ -13,9 +13,9 @@ const MOST: u64 = 1 << 27;
 #[error("visits of two different grids")]
 pub struct OtherGrid;
 
-/// In how many slices of a grid each place is reached. A place is a point of the axes of the lower section's
-/// coordinates. If the upper section is spherical, slices are orientations: the *reachable* workspace are the
-/// places that any orientation reaches, the *dexterous* workspace those that every orientation reaches.
+/// At how many orientations of a grid each place is reached. A place is a point of the axes of
+/// [`Grid::places`](crate::Grid::places), an orientation one of the other axes. The *reachable* workspace are the
+/// places that are reached at any orientation, the *dexterous* workspace those that are reached at every one.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,7 +33,7 @@ pub struct OtherGrid;
 /// )?;
 /// let sweep = Sweep::new(&manipulator, &grid, Modes::Any);
 /// let visits = Visits::new(&sweep, &Progress::default())?;
-/// assert_eq!((visits.slices(), visits.counts().len()), (5, 31 * 31));
+/// assert_eq!((visits.orientations(), visits.counts().len()), (5, 31 * 31));
 /// assert!(visits.dexterous()?.count() <= visits.reachable()?.count());
 /// # Ok(())
 /// # }
@@ -41,8 +41,14 @@ pub struct OtherGrid;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visits {
     axes: Vec<SetAxis>,
-    slices: u64,
+    orientations: u64,
     counts: Vec<u64>,
+}
+
+/// Places that one run of poses reaches, each this many times.
+struct Added {
+    places: Run,
+    times: u64,
 }
 
 impl Visits {
@@ -53,25 +59,31 @@ impl Visits {
     /// There are more places than fit in memory ([`SetError::Size`]), or the source's own errors.
     pub fn new<P: Poses>(poses: &P, progress: &Progress) -> Result<Self, P::Error> {
         let grid = poses.grid();
-        let places = grid.poses() / grid.slices();
+        let places = grid.points_of(grid.places());
+        // Poses from one place to the next, and whether those of a row differ in their places.
+        let stride = grid.points_of(0..grid.places().start);
+        let row_of_places = grid.places().contains(&0);
         if places > MOST {
             return Err(SetError::Size { what: "places", given: places, most: MOST }.into());
         }
-        // Differences from place to place: a run adds one where it starts and subtracts it where it ends.
+        // Differences from place to place: a run adds to the count where it starts and subtracts where it ends.
         let mut counts = vec![0_u64; places as usize + 1];
         poses.points(
             progress,
-            |hits, made: &mut Vec<Run>| {
-                let first = hits.slice * places;
-                let place = |run: Run| Run { from: run.from - first, to: run.to - first };
-                made.extend(hits.numbers(grid).map(place));
+            |hits, made: &mut Vec<Added>| {
+                made.extend(hits.numbers(grid).map(|Run { from, to }| {
+                    let first = from / stride % places;
+                    let (number, times) =
+                        if row_of_places { (to - from, 1) } else { (1, to - from) };
+                    Added { places: Run { from: first, to: first + number }, times }
+                }));
             },
             Vec::new,
             |made| {
-                for Run { from, to } in made {
+                for Added { places: Run { from, to }, times } in made {
                     let (from, to) = (from as usize, to as usize);
-                    counts[from] = counts[from].wrapping_add(1);
-                    counts[to] = counts[to].wrapping_sub(1);
+                    counts[from] = counts[from].wrapping_add(times);
+                    counts[to] = counts[to].wrapping_sub(times);
                 }
                 Ok(())
             },
@@ -82,7 +94,8 @@ impl Visits {
             *place = count;
         }
         counts.pop();
-        Ok(Self { axes: set_axes(grid, 0..grid.lower()), slices: grid.slices(), counts })
+        let (axes, orientations) = (set_axes(grid, grid.places()), grid.orientation_count());
+        Ok(Self { axes, orientations, counts })
     }
 
     /// Adds the visits of another part of the same grid.
@@ -90,7 +103,7 @@ impl Visits {
     /// # Errors
     /// [`OtherGrid`] if those are visits of another grid; then nothing is added.
     pub fn merge(&mut self, other: &Self) -> Result<(), OtherGrid> {
-        if self.axes != other.axes || self.slices != other.slices {
+        if self.axes != other.axes || self.orientations != other.orientations {
             return Err(OtherGrid);
         }
         self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
@@ -102,25 +115,25 @@ impl Visits {
         &self.axes
     }
 
-    /// The number of slices of the grid.
-    pub fn slices(&self) -> u64 {
-        self.slices
+    /// The number of orientations of the grid.
+    pub fn orientations(&self) -> u64 {
+        self.orientations
     }
 
-    /// In how many slices each place is reached: one number for each place, the first axis fastest.
+    /// At how many orientations each place is reached: one number for each place, the first axis fastest.
     pub fn counts(&self) -> &[u64] {
         &self.counts
     }
 
-    /// The share of the slices in which the place of this number is reached, from 0 to 1.
+    /// The share of the orientations at which the place of this number is reached, from 0 to 1.
     ///
     /// # Panics
     /// There is no place of this number.
     pub fn share(&self, place: u64) -> f64 {
-        self.counts[place as usize] as f64 / self.slices as f64
+        self.counts[place as usize] as f64 / self.orientations as f64
     }
 
-    /// The reachable workspace: the places that are reached in any slice.
+    /// The reachable workspace: the places that are reached at any orientation.
     ///
     /// # Errors
     /// The set does not fit in memory ([`SetError::Size`]).
@@ -128,11 +141,11 @@ impl Visits {
         GridSet::of(self.axes.clone(), |place| self.counts[place as usize] > 0)
     }
 
-    /// The dexterous workspace: the places that are reached in every slice.
+    /// The dexterous workspace: the places that are reached at every orientation.
     ///
     /// # Errors
     /// The set does not fit in memory ([`SetError::Size`]).
     pub fn dexterous(&self) -> Result<GridSet, SetError> {
-        GridSet::of(self.axes.clone(), |place| self.counts[place as usize] == self.slices)
+        GridSet::of(self.axes.clone(), |place| self.counts[place as usize] == self.orientations)
     }
 }

@@ -971,7 +971,7 @@ class Sweep:
         """``count / poses``."""
     @property
     def orientations(self) -> int:
-        """Number of orientations of the grid: combinations of values of the upper section's coordinates."""
+        """Number of orientations of the grid: combinations of values of its coordinates."""
     @property
     def imaginary_range(self) -> dict[str, tuple[float, float] | None]:
         """Lowest and highest value of every imaginary joint over the reachable poses of the grid."""
@@ -1203,11 +1203,11 @@ def sweep(
     manipulator : Manipulator
     kind : str
         Kind of the workspace, in Merlet's terms; orientations are the coordinates of the upper section, places those of the
-        lower one.
+        lower one. In one subspace, orientations are its angles, places its lengths.
 
         * ``"grid"``: poses.
-        * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the upper or of the lower section held
-          at one value.
+        * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the orientation or of the place held at
+          one value.
         * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
         * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
         * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.
@@ -1314,6 +1314,15 @@ class Trajectory:
     @property
     def pose_accelerations(self) -> NDArray[np.float64]:
         """(n, d): their second derivatives, m/s² and rad/s²."""
+    @property
+    def dependent(self) -> NDArray[np.float64]:
+        """(n, e): every dependent coordinate, metres and radians; angles are continuous, not wrapped at π."""
+    @property
+    def dependent_rates(self) -> NDArray[np.float64]:
+        """(n, e), m/s and rad/s."""
+    @property
+    def dependent_accelerations(self) -> NDArray[np.float64]:
+        """(n, e), m/s² and rad/s²."""
     @property
     def joints(self) -> NDArray[np.float64]:
         """(n, k): every joint coordinate, metres and radians; angles are continuous, not wrapped at π."""

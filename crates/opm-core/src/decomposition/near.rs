@@ -22,8 +22,10 @@ pub(super) use search::{MOST_DIMENSIONS, elements};
 
 use super::{DecomposeError, Decomposition, passive};
 use crate::decomposition::mobility::{MobilityError, frame, mobility};
-use crate::group::subspace::{SubspaceClass, TOLERANCE};
+use crate::group::subspace::{Frame, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
+use crate::mechanism::joint::JointKind;
+use nalgebra::Vector3;
 use search::{NearSplit, Parts};
 use std::fmt;
 
@@ -50,6 +52,21 @@ pub struct NearMiss {
     pub joints: Vec<JointMiss>,
     /// The tolerance that [`snap`] needs to accept the mechanism, metres.
     pub tolerance: f64,
+}
+
+/// Axes that miss a point by less than this share of the spread of the joints' points are nearly concurrent.
+const CONCURRENT: f64 = 1e-2;
+
+/// The frame of a mechanism. If its axes nearly meet in one point, the length is the spread of the joints' points, as
+/// if they did: the length of [`frame`] would be that of the misses, against which none is small.
+fn sized_frame(mechanism: &Mechanism) -> Frame {
+    let frame = frame(mechanism);
+    let points = || mechanism.joints().filter(|joint| joint.kind != JointKind::Prismatic);
+    let points = || points().map(|joint| joint.point.coords);
+    let count = points().count() as f64;
+    let mean = points().sum::<Vector3<f64>>() / count;
+    let spread = (points().map(|p| (p - mean).norm_squared()).sum::<f64>() / count).sqrt();
+    if frame.length < CONCURRENT * spread { Frame { length: spread, ..frame } } else { frame }
 }
 
 /// The number of joints that a message names.
@@ -126,7 +143,7 @@ fn dimensions(decomposition: &Decomposition) -> usize {
 /// What a mechanism misses to decompose into sections that have at most `dimensions` together. It must
 /// be complete, and must not decompose so already.
 pub(super) fn near_miss(mechanism: &Mechanism, dimensions: usize) -> Option<NearMiss> {
-    let length = frame(mechanism).length;
+    let length = sized_frame(mechanism).length;
     let Correction { split, snapped } = correction(mechanism, FARTHEST, dimensions)?;
     let off = |joint: &JointMiss| joint.relative(length) > TOLERANCE;
     let tolerance = snapped.joints.first().map_or(0.0, |worst| worst.relative(length) * length);
@@ -156,7 +173,7 @@ pub fn snap(mechanism: &Mechanism, tolerance: f64) -> Result<Snapped, MobilityEr
         },
         Ok(_) | Err(_) => MOST_DIMENSIONS,
     };
-    let tolerance = (tolerance / frame(mechanism).length).min(LARGEST_ANGLE);
+    let tolerance = (tolerance / sized_frame(mechanism).length).min(LARGEST_ANGLE);
     let correction = correction(mechanism, tolerance, most);
     Ok(correction.map_or_else(unchanged, |correction| correction.snapped))
 }
@@ -170,7 +187,7 @@ struct Correction {
 /// The correction with the smallest tolerance up to `most` (in characteristic lengths), to sections that
 /// have at most `dimensions` together.
 fn correction(mechanism: &Mechanism, most: f64, dimensions: usize) -> Option<Correction> {
-    let frame = frame(mechanism);
+    let frame = sized_frame(mechanism);
     let larger = std::iter::successors(Some(2.0 * FARTHEST), |t| (*t < 1.0).then_some(2.0 * t));
     let mut tolerances: Vec<f64> = TOLERANCES.into_iter().chain(larger).collect();
     tolerances.retain(|t| *t < most);
@@ -188,9 +205,13 @@ fn correction(mechanism: &Mechanism, most: f64, dimensions: usize) -> Option<Cor
             let Some(snapped) = snapped::snapped(mechanism, &split, frame.length, tolerance) else {
                 continue;
             };
-            let fits = |found: Vec<Decomposition>| {
-                is_exact(&found) && found.first().is_some_and(|d| self::dimensions(d) <= dimensions)
+            // A mechanism in one subspace has no upper section, whatever of it a split calls so.
+            let whole = split.upper == SubspaceClass::Identity;
+            let small = |d: &Decomposition| {
+                self::dimensions(d) <= dimensions && (whole || d.upper != SubspaceClass::Identity)
             };
+            let fits =
+                |found: Vec<Decomposition>| is_exact(&found) && found.first().is_some_and(small);
             if plain(&snapped.mechanism).is_ok_and(fits) {
                 return Some(Correction { split, snapped });
             }

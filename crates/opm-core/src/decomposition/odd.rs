@@ -1,14 +1,17 @@
 //! The one joint that prevents a decomposition, if there is exactly one.
 
 use super::near::{JointMiss, misses_of};
-use super::{Decomposition, Freedom, frame, search};
-use crate::group::subspace::MotionSubspace;
+use super::{Decomposition, Freedom, frame, one_subspace, search};
+use crate::group::subspace::{MotionSubspace, SubspaceClass};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::{Leg, Section};
 
-/// The only joint that must be left out for the mechanism to have partial subspaces, with how far it is
-/// from the nearer section; `None` if there is no such joint, or more than one.
+/// The only joint that must be left out for the mechanism to have partial subspaces, or for its legs to move in one
+/// subspace, with how far it is from the nearer section; `None` if there is no such joint, or more than one.
+///
+/// If all other axes meet in one point, the mechanism has no size that a miss could be small against: that is found
+/// here, and never [`nearly`](super::near::nearly).
 pub(super) fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<JointMiss> {
     let frame = frame(mechanism);
     let mut odd = None;
@@ -18,7 +21,8 @@ pub(super) fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<JointM
             let left_out = others.legs[number].joints.remove(joint);
             let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
             let lambda = MotionSubspace::span(frame, &screws).dimension();
-            let found = search(&others, lambda, mobility, 1).0;
+            let mut found = search(&others, lambda, mobility, 1).0;
+            found.extend(one_subspace(&others, lambda, mobility));
             let misses = found.iter().flat_map(|split| joint_misses(leg, &left_out, split));
             let relative = |miss: &JointMiss| miss.relative(frame.length);
             if let Some(miss) = misses.min_by(|a, b| relative(a).total_cmp(&relative(b))) {
@@ -39,6 +43,8 @@ fn joint_misses(leg: &Leg, joint: &Joint, split: &Decomposition) -> Vec<JointMis
         (0..joint.freedoms()).map(|index| Freedom { joint: 0, index }).collect();
     [(Section::Lower, split.lower), (Section::Upper, split.upper)]
         .into_iter()
+        // There is no upper section where the others move in one subspace.
+        .filter(|(_, subspace)| *subspace != SubspaceClass::Identity)
         .flat_map(|(section, subspace)| misses_of(&alone, &freedoms, section, subspace))
         .map(|(_, miss)| miss)
         .collect()

@@ -125,12 +125,14 @@ pub enum Outside {
         legs: Vec<[String; 2]>,
         /// Whether these are all legs.
         all: bool,
+        /// The one joint without which the legs would share two groups, or move in one, if there is exactly one.
+        odd: Option<Box<JointMiss>>,
     },
     /// Every leg can be divided, but not all into the same two groups.
     NothingShared {
         /// For each leg its name, and the names of the groups of its two parts.
         legs: Vec<(String, [SubspaceClass; 2])>,
-        /// The one joint without which the legs would share two groups, if there is exactly one.
+        /// The one joint without which the legs would share two groups, or move in one, if there is exactly one.
         odd: Option<Box<JointMiss>>,
     },
 }
@@ -150,7 +152,7 @@ impl fmt::Display for Outside {
                 "all legs move in one subgroup ({}), for which opm has no closed forms",
                 subspace.name()
             ),
-            Self::Indivisible { legs, all: true } => {
+            Self::Indivisible { legs, all: true, odd } => {
                 let chains: Vec<&String> = legs.iter().map(|[_, chain]| chain).collect();
                 let same = chains.windows(2).all(|pair| pair[0] == pair[1]);
                 let chain = chains.first().filter(|_| same);
@@ -159,18 +161,20 @@ impl fmt::Display for Outside {
                     f,
                     "wherever one of its{of} legs is divided, one of the two parts moves in all six \
                      dimensions; opm needs legs whose lower parts share one subgroup and whose upper \
-                     parts share another"
+                     parts share another{}",
+                    odd_text(odd.as_deref())
                 )
             }
-            Self::Indivisible { legs, all: false } => {
+            Self::Indivisible { legs, all: false, odd } => {
                 let names: Vec<String> =
                     legs.iter().map(|[name, chain]| format!("{name} ({chain})")).collect();
                 write!(
                     f,
                     "wherever leg {} is divided, one of the two parts moves in all six dimensions; \
                      opm needs legs whose lower parts share one subgroup and whose upper parts share \
-                     another",
-                    names.join(" or leg ")
+                     another{}",
+                    names.join(" or leg "),
+                    odd_text(odd.as_deref())
                 )
             }
             Self::NothingShared { legs, odd } => {
@@ -192,21 +196,20 @@ impl fmt::Display for Outside {
                 };
                 write!(
                     f,
-                    "{divided}, but the legs do not share two subgroups that have one motion in common"
-                )?;
-                match odd {
-                    Some(odd) => write!(
-                        f,
-                        "; only joint {} of leg {} does not fit: {}",
-                        odd.joint,
-                        odd.leg,
-                        odd.reason()
-                    ),
-                    None => Ok(()),
-                }
+                    "{divided}, but the legs do not share two subgroups that have one motion in common{}",
+                    odd_text(odd.as_deref())
+                )
             }
         }
     }
+}
+
+/// The one joint that does not fit, as the end of a message.
+fn odd_text(odd: Option<&JointMiss>) -> String {
+    odd.map_or_else(String::new, |odd| {
+        let JointMiss { joint, leg, .. } = odd;
+        format!("; only joint {joint} of leg {leg} does not fit: {}", odd.reason())
+    })
 }
 
 /// Surveys a mechanism.
@@ -307,7 +310,7 @@ fn no_partial_subspaces(mechanism: &Mechanism, odd: Option<Box<JointMiss>>) -> O
         .collect();
     if !whole.is_empty() {
         let all = whole.len() == mechanism.legs.len();
-        return Outside::Indivisible { legs: whole, all };
+        return Outside::Indivisible { legs: whole, all, odd };
     }
     let names = mechanism.legs.iter().map(|leg| leg.name.clone());
     Outside::NothingShared { legs: names.zip(divided.into_iter().flatten()).collect(), odd }

@@ -47,6 +47,9 @@ pub enum PoseError {
         /// By how much its constraint is missed.
         deficit: ReachDeficit,
     },
+    /// A coordinate is given that follows from those of the pose.
+    #[error(transparent)]
+    Follows(#[from] FollowingCoordinate),
     /// There is no task coordinate with this name.
     #[error("no task coordinate is called {name}, expected {expected}")]
     Unknown {
@@ -55,6 +58,23 @@ pub enum PoseError {
         /// The names of the task coordinates, separated by commas.
         expected: String,
     },
+}
+
+/// A dependent coordinate where one of the pose was expected.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} {}", self.problem())]
+pub struct FollowingCoordinate {
+    /// The name of the dependent coordinate.
+    pub name: String,
+    /// The names of the coordinates of a pose, which it follows from.
+    pub independent: Vec<&'static str>,
+}
+
+impl FollowingCoordinate {
+    /// The problem, without the name of the coordinate.
+    pub(crate) fn problem(&self) -> String {
+        format!("follows from {}; give these instead", self.independent.join(", "))
+    }
 }
 
 /// A leg that does not reach a pose.
@@ -307,6 +327,30 @@ impl Manipulator {
         SolvedPose { pose, v, b }
     }
 
+    /// Refuses the name of a dependent coordinate, where a coordinate of the pose is expected.
+    ///
+    /// # Errors
+    /// [`FollowingCoordinate`]
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let five_bar = Manipulator::example("five-bar")?;
+    /// assert_eq!(five_bar.refuse_following("x"), Ok(()));
+    /// let error = five_bar.refuse_following("theta").unwrap_err();
+    /// assert_eq!(error.to_string(), "theta follows from x, y; give these instead");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn refuse_following(&self, name: &str) -> Result<(), FollowingCoordinate> {
+        match self.dependent_coordinates().iter().any(|c| c.name == name) {
+            false => Ok(()),
+            true => Err(FollowingCoordinate {
+                name: name.to_owned(),
+                independent: self.task_coordinates().iter().map(|c| c.name).collect(),
+            }),
+        }
+    }
+
     /// The pose with these values of task coordinates by name (radians and metres); the others have
     /// their values at home.
     ///
@@ -329,6 +373,7 @@ impl Manipulator {
         let mut pose = self.home_pose();
         for (name, value) in values {
             let Some(number) = coordinates.iter().position(|c| c.name == name) else {
+                self.refuse_following(name)?;
                 let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
                 return Err(PoseError::Unknown {
                     name: name.to_owned(),

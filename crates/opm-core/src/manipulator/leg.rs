@@ -472,7 +472,12 @@ impl CompiledSection {
     #[inline]
     pub fn is_held(&self, joint: usize) -> bool {
         self.coordinates[joint].is_some_and(|joint| joint.actuated.is_some())
-            || self.partial.is_some_and(|partial| partial.locked()[joint])
+            || self.is_locked(joint)
+    }
+
+    /// Whether a joint of the chain never moves: it completes a section with too few freedoms.
+    pub fn is_locked(&self, joint: usize) -> bool {
+        self.partial.is_some_and(|partial| partial.locked()[joint])
     }
 
     /// Whether the displacements of this section's chain are within the limits.

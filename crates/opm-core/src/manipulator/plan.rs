@@ -129,11 +129,13 @@ impl Plan {
     }
 }
 
-/// Whether a section on one axis has both helical joints and actuated revolute joints.
+/// Whether a section on one axis has both helical joints and actuated revolute joints. Locked revolute joints have
+/// no revolutions to lose.
 fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool {
     let (mut screws, mut driven) = (false, false);
     for (leg, held) in legs.iter().zip(held) {
-        let joints = match &leg.section(section).chain {
+        let own = leg.section(section);
+        let joints = match &own.chain {
             Chain::Cylindrical(chain) => chain.joints(),
             // Chains in other subspaces have no helical joints.
             Chain::Rigid
@@ -147,7 +149,8 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             Section::Upper => &held.upper,
         };
         screws |= joints.iter().any(|joint| joint.rotation != 0.0 && joint.advance != 0.0);
-        driven |= held.iter().any(|&joint| joints[joint].advance == 0.0);
+        let turns = |&joint: &usize| joints[joint].advance == 0.0 && !own.is_locked(joint);
+        driven |= held.iter().any(turns);
     }
     screws && driven
 }

@@ -95,7 +95,15 @@ fn read_mode(value: &Value<'_>, manipulator: &Manipulator) -> Option<Mode> {
 
 fn read_coordinates(table: &Table<'_>, manipulator: &Manipulator) -> Vec<Harmonics> {
     let coordinates = manipulator.task_coordinates();
-    let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+    let mut names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+    for c in manipulator.dependent_coordinates() {
+        if let (Some(value), Err(follows)) =
+            (table.get(c.name), manipulator.refuse_following(c.name))
+        {
+            value.report(follows.problem());
+            names.push(c.name);
+        }
+    }
     table.allow(&names);
     let read = |c: &crate::task::TaskCoordinate| match table.get(c.name) {
         Some(value) => read_harmonics(&value, c.quantity),

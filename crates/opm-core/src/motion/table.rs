@@ -156,7 +156,11 @@ fn read_header(
             _ if cell == "t" => None,
             Some(coordinate) => Some(coordinate),
             None => {
-                problems.report(number, at, format!("no coordinate {cell:?}, {}", expected()));
+                let problem = match manipulator.refuse_following(cell) {
+                    Ok(()) => format!("no coordinate {cell:?}, {}", expected()),
+                    Err(follows) => follows.to_string(),
+                };
+                problems.report(number, at, problem);
                 continue;
             }
         };

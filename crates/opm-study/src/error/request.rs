@@ -1,8 +1,9 @@
 //! Errors in requests: typed, each with the option that is wrong.
 
-use crate::kind::WorkspaceKind;
+use crate::kind::{PosePart, WorkspaceKind};
 use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
+use opm_core::manipulator::FollowingCoordinate;
 use opm_workspace::GridError;
 use std::path::PathBuf;
 
@@ -111,12 +112,21 @@ pub enum RequestError {
         /// The kind.
         kind: WorkspaceKind,
     },
-    /// The kind tells places from orientations, or is of the upper section, but the mechanism has one section.
-    OneSection {
+    /// The kind is of the upper section or the imaginary joints, but all legs move in one subspace.
+    OneSubspace {
         /// The kind.
         kind: WorkspaceKind,
-        /// The names of the task coordinates.
+    },
+    /// The kind holds or varies a part of the pose that the mechanism does not have.
+    NoPart {
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The part.
+        part: PosePart,
+        /// The names of the coordinates of a pose.
         coordinates: Vec<String>,
+        /// The names of the dependent coordinates.
+        dependent: Vec<String>,
     },
     /// The kind is of one section alone, but coordinates of one section depend on those of the other.
     Dependent {
@@ -129,6 +139,13 @@ pub enum RequestError {
     NotOfPoses {
         /// The kind.
         kind: WorkspaceKind,
+    },
+    /// A name is that of a dependent coordinate, which points do not have.
+    Follows {
+        /// The option that has the name.
+        option: RequestOption,
+        /// The coordinate.
+        follows: FollowingCoordinate,
     },
     /// A name is not that of a value of the points.
     UnknownColumn {
@@ -207,11 +224,12 @@ impl RequestError {
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
-            Self::NoImaginaryJoints { .. } | Self::OneSection { .. } | Self::Dependent { .. } => {
-                RequestOption::Kind
-            }
+            Self::NoImaginaryJoints { .. }
+            | Self::OneSubspace { .. }
+            | Self::NoPart { .. }
+            | Self::Dependent { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
-            Self::UnknownColumn { option, .. } => *option,
+            Self::Follows { option, .. } | Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
             Self::ReservedField { .. } | Self::RepeatedScalar { .. } => RequestOption::Scalars,
             Self::StandardOutput
@@ -238,11 +256,14 @@ impl RequestError {
             ),
             Self::Grid(error) => error.to_string(),
             Self::Held { kind, axis, count } => {
-                let section = if *kind == WorkspaceKind::Orientation { "lower" } else { "upper" };
+                let part = match kind {
+                    WorkspaceKind::Orientation => PosePart::Place,
+                    _ => PosePart::Orientation,
+                };
                 format!(
-                    "{axis} has {count} values; {} holds the {section} section's coordinates: give \
-                     one value, {axis}=VALUE",
-                    with(kind)
+                    "{axis} has {count} values; {} holds the {}'s coordinates: give one value, {axis}=VALUE",
+                    with(kind),
+                    part.name()
                 )
             }
             Self::SectionCondition { kind } => {
@@ -255,11 +276,27 @@ impl RequestError {
             Self::NoImaginaryJoints { kind } => {
                 format!("with {}: this mechanism has no imaginary joints", with(kind))
             }
-            Self::OneSection { kind, coordinates } => format!(
-                "{kind}: all legs of this mechanism move in one subspace, whose coordinates {} are not \
-                 divided into places and orientations; use grid, with one value for each coordinate to hold",
-                coordinates.join(" ")
+            Self::OneSubspace { kind } => format!(
+                "{kind}: all legs of this mechanism move in one subspace, so it has no {}; use grid",
+                match kind {
+                    WorkspaceKind::Imaginary => "imaginary joints",
+                    _ => "upper section",
+                }
             ),
+            Self::NoPart { kind, part, coordinates, dependent } => {
+                let (part, coordinates) = (part.name(), coordinates.join(", "));
+                match dependent.is_empty() {
+                    true => format!(
+                        "{kind}: the coordinates of this mechanism's poses, {coordinates}, have no {part} among \
+                         them; use grid"
+                    ),
+                    false => format!(
+                        "{kind}: this mechanism's {part} follows from the other coordinates (dependent: {}; poses \
+                         have {coordinates}); use grid",
+                        dependent.join(", ")
+                    ),
+                }
+            }
             Self::Dependent { kind, dependent } => format!(
                 "{kind}: the sections of this mechanism have no workspaces of their own, because its legs tie its \
                  coordinates together (dependent: {}); use grid",
@@ -270,6 +307,7 @@ impl RequestError {
                  constant-orientation or orientation",
                 with(kind)
             ),
+            Self::Follows { follows, .. } => follows.to_string(),
             Self::UnknownColumn { name, kind, known, .. } => {
                 let known = known.join(", ");
                 match kind.is_of_poses() {

@@ -37,6 +37,8 @@ pub struct MotionSummary {
     pub reached: u64,
     /// Number of samples in reach and within all limits.
     pub valid: u64,
+    /// Ranges of every dependent coordinate.
+    pub dependent: Vec<CoordinateRanges>,
     /// Ranges of every joint coordinate.
     pub joints: Vec<CoordinateRanges>,
     /// Ranges of every imaginary joint.
@@ -55,6 +57,7 @@ impl MotionSummary {
             samples: 0,
             reached: 0,
             valid: 0,
+            dependent: vec![[Range::NONE; 3]; manipulator.dependent_coordinates().len()],
             joints: vec![[Range::NONE; 3]; manipulator.coordinates().len()],
             imaginary: vec![[Range::NONE; 3]; manipulator.imaginary().len()],
             condition: None,
@@ -76,6 +79,12 @@ impl MotionSummary {
         }
         let (solution, motion) = (&sample.solution, &sample.motion);
         for (ranges, positions, rates, accelerations) in [
+            (
+                &mut self.dependent,
+                &solution.dependent(),
+                &motion.dependent_rates,
+                &motion.dependent_accelerations,
+            ),
             (
                 &mut self.joints,
                 &solution.joints(),

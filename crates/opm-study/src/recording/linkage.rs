@@ -34,6 +34,7 @@ pub fn record_linkage(
     let mut scene = Scene::new(mechanism, cuts);
     let trajectory = Trajectory {
         pose: Vec::new(),
+        dependent: Vec::new(),
         joints: joint_coordinates(mechanism),
         imaginary: imaginary_coordinates(cuts.imaginary),
         rates: false,
@@ -62,7 +63,7 @@ pub fn record_linkage(
         } else {
             &[]
         };
-        let posture = Posture { joints, imaginary, rates: None, frames };
+        let posture = Posture { joints, imaginary, frames, ..Posture::default() };
         let sample =
             Sample { valid: position.within_limits, posture: Some(posture), ..Sample::default() };
         recorder.push(time, &sample).map_err(failed)

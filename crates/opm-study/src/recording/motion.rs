@@ -6,6 +6,7 @@ use crate::error::StudyError;
 use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
 use opm_core::manipulator::Manipulator;
 use opm_core::skeleton;
+use opm_core::task::TaskCoordinate;
 use opm_core::trajectory::{Change, Sample, Trajectory, Violation, ViolationReport};
 use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
 use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
@@ -103,6 +104,7 @@ impl<'a> MotionRecorder<'a> {
         }
         let Sample { instant, solution, motion, .. } = sample;
         let rates = sample.regular.then_some(Rates {
+            dependent: &motion.dependent_rates,
             velocities: &motion.joint_rates,
             imaginary: &motion.imaginary_rates,
             accelerations: &motion.joint_accelerations,
@@ -115,7 +117,7 @@ impl<'a> MotionRecorder<'a> {
             } else {
                 &[]
             };
-            Some(Posture { joints, imaginary, rates, frames })
+            Some(Posture { dependent: solution.dependent(), joints, imaginary, rates, frames })
         } else {
             None
         };
@@ -178,7 +180,8 @@ fn recorded<'a>(
     let MotionRequest { manipulator, motion, mode, rate, .. } = *request;
     let [mechanism_file, motion_file] = files;
     opm_mcap::Trajectory {
-        pose: task_coordinates(manipulator),
+        pose: task_coordinates(manipulator.task_coordinates(), Role::Task),
+        dependent: task_coordinates(manipulator.dependent_coordinates(), Role::Dependent),
         joints: joint_coordinates(manipulator.mechanism()),
         imaginary: imaginary_coordinates(manipulator.imaginary()),
         rates: true,
@@ -241,11 +244,8 @@ fn parallel(manipulator: &Manipulator) -> [bool; 2] {
     [measured.upper, measured.lower].map(|measures| measures.parallel.is_some())
 }
 
-fn task_coordinates(manipulator: &Manipulator) -> Vec<Coordinate> {
-    let coordinate = |c: &opm_core::task::TaskCoordinate| Coordinate {
-        name: c.name.to_owned(),
-        unit: c.quantity.unit(),
-        role: Role::Task,
-    };
-    manipulator.task_coordinates().iter().map(coordinate).collect()
+fn task_coordinates(list: &[TaskCoordinate], role: Role) -> Vec<Coordinate> {
+    let coordinate =
+        |c: &TaskCoordinate| Coordinate { name: c.name.to_owned(), unit: c.quantity.unit(), role };
+    list.iter().map(coordinate).collect()
 }

@@ -50,8 +50,7 @@ fn the_option_that_is_wrong_is_named() {
         (
             request(Kind::Orientation).axis(Axis::new("x", 0.0, 0.1, 2)),
             RequestOption::Grid,
-            "x has 2 values; kind orientation holds the lower section's coordinates: give one \
-             value, x=VALUE",
+            "x has 2 values; kind orientation holds the place's coordinates: give one value, x=VALUE",
         ),
         (
             request(Kind::Upper).axis(Axis::fixed("x", 0.1)),

@@ -200,6 +200,34 @@ fn a_point_that_is_half_a_millimetre_off_is_named() {
     }
 }
 
+/// Axes of a spherical mechanism that miss the centre: they have no length of their own to be small against, but the
+/// places of the joints have.
+#[test]
+fn axes_that_nearly_meet_in_one_point_are_named() {
+    for name in ["agile-eye", "orbita"] {
+        let mut exact = example(name);
+        for (number, joint) in exact.legs.iter_mut().flat_map(|leg| &mut leg.joints).enumerate() {
+            joint.point += joint.axis.into_inner() * (0.04 + 0.005 * number as f64);
+        }
+        assert_eq!(nearly(&exact), Ok(None));
+        for off in [3e-5, 1e-4, 3e-4] {
+            let mut bent = somewhere(&exact, 3);
+            for (leg, joint, share) in [(0, 1, 1.0), (2, 0, 0.5)] {
+                let odd = &mut bent.legs[leg].joints[joint];
+                let across = odd.axis.cross(&Vector3::new(0.3, 0.5, -0.8)).normalize();
+                odd.point += across * off * share;
+            }
+            let id = [&bent.legs[0].name, &bent.legs[0].joints[1].name].map(String::clone);
+            let Some(near) = nearly(&bent).unwrap() else { panic!("{name} off by {off}") };
+            assert_eq!(worst_joint(&near), [&*id[0], &*id[1]], "{near}");
+            assert_eq!((near.lower.name(), near.upper.name()), ("spherical", "identity"));
+            assert!(near.joints.len() == 2 && (near.tolerance - off).abs() < 1e-2 * off, "{near}");
+            let snapped = snap(&bent, 1.01 * near.tolerance).unwrap();
+            assert_exact(&snapped.mechanism, &exact);
+        }
+    }
+}
+
 /// The directions that a file names for its task coordinates follow the joints.
 #[test]
 fn hints_are_snapped_too() {

@@ -72,6 +72,7 @@ fn a_gough_platform() {
         told.starts_with("wherever one of its UPS legs is divided, one of the two parts moves in"),
         "{told}"
     );
+    assert!(!told.contains("only joint"), "{told}");
     assert_eq!(found.applies.name(), "outside");
 }
 
@@ -86,6 +87,7 @@ fn a_delta_robot() {
     let leg = &found.legs[0];
     assert_eq!((leg.span, leg.subspace, leg.is_closed()), (5, SubspaceClass::Full, false));
     assert!(because(&found).contains("RUU legs"), "{}", because(&found));
+    assert!(!because(&found).contains("only joint"), "{}", because(&found));
 }
 
 #[test]
@@ -95,7 +97,8 @@ fn four_ruu_legs() {
     assert_eq!(found.common_name, Some("4-RUU Schoenflies-motion generator"));
     let Some(SubspaceClass::Schoenflies { axis }) = found.platform.subspace else { panic!() };
     assert!(axis.cross(&Vector3::z()).norm() < 1e-12);
-    assert!(because(&found).contains("RUU legs"));
+    let told = because(&found);
+    assert!(told.contains("RUU legs") && !told.contains("only joint"), "{told}");
 }
 
 /// Each leg has a plane and a centre of its own.
@@ -120,6 +123,38 @@ fn three_rps_legs() {
         told.starts_with("each leg has a planar and a spherical part, but the legs do not share"),
         "{told}"
     );
+}
+
+/// All axes but one meet in a point: nothing but that joint has a length, so no miss is small. It is named, with the
+/// distance by which it misses the centre.
+#[test]
+fn the_axis_that_misses_the_centre_of_all_others_is_named() {
+    for name in ["agile-eye", "orbita"] {
+        let text = crate::mechanism::examples::find(name).unwrap().text;
+        let exact = crate::mechanism::file::read(text).unwrap().mechanism;
+        for off in [1e-5, 5e-4, 2e-2] {
+            for (leg, joint) in (0..3).flat_map(|leg| (0..3).map(move |joint| (leg, joint))) {
+                let mut bent = exact.clone();
+                let odd = &mut bent.legs[leg].joints[joint];
+                let across = odd.axis.cross(&Vector3::new(0.3, 0.5, -0.8)).normalize();
+                odd.point += across * off;
+                let name = odd.name.clone();
+                let found = survey(&bent).unwrap();
+                let Applies::Outside(
+                    Outside::Indivisible { odd: Some(odd), .. }
+                    | Outside::NothingShared { odd: Some(odd), .. },
+                ) = &found.applies
+                else {
+                    panic!("{name} off by {off}: {:?}", found.applies)
+                };
+                assert_eq!(odd.joint, name);
+                assert!((odd.distance - off).abs() < 1e-9 * off, "{odd}");
+                let told = because(&found);
+                let expected = format!("only joint {name} of leg leg{} does not fit", leg + 1);
+                assert!(told.contains(&expected), "{told}");
+            }
+        }
+    }
 }
 
 #[test]
