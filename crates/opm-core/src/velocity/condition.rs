@@ -6,9 +6,6 @@ use crate::numeric::Quantity;
 use crate::numeric::svd::{Products, jacobi};
 use nalgebra::SMatrix;
 
-/// The largest mobility of a platform: that of two subspaces of three dimensions that share one dimension.
-const MOST: usize = 6;
-
 /// A singular value below this share of the largest counts as zero: the rounding of the few dozen operations
 /// that lead to it.
 const RANK: f64 = 1e-13;
@@ -17,8 +14,8 @@ const RANK: f64 = 1e-13;
 /// digit of a singular value.
 const ORTHOGONAL: f64 = 1e-12;
 
-/// A matrix with room for the largest mobility; the first rows and columns are used.
-type Square = SMatrix<f64, MOST, MOST>;
+/// A matrix with room for so many freedoms; the first rows and columns are used.
+type Square<const N: usize> = SMatrix<f64, N, N>;
 
 /// The conditioning of the actuated joints' Jacobian by the platform's twist.
 ///
@@ -81,10 +78,19 @@ impl Manipulator {
         if jacobians.singular.iter().any(serial) {
             return Conditioning::SERIAL;
         }
+        // Platforms have five freedoms at most, but for those with a Schoenflies section, and room costs time.
+        match jacobians.platform.ncols() {
+            0..=5 => self.conditioning_in::<5>(jacobians, length),
+            _ => self.conditioning_in::<6>(jacobians, length),
+        }
+    }
+
+    /// The same in matrices with room for `N` freedoms, away from serial singularities.
+    fn conditioning_in<const N: usize>(&self, jacobians: &Jacobians, length: f64) -> Conditioning {
         let n = jacobians.platform.ncols();
         // With the metric `L Lᵀ` of the platform's twist, components multiplied by `Lᵀ` are orthonormal.
         let scale = length.recip();
-        let mut joints = Square::zeros();
+        let mut joints = Square::<N>::zeros();
         let actuated = self.actuated();
         let matrix = jacobians.joints.as_slice();
         let stride = jacobians.joints.nrows();
@@ -93,21 +99,21 @@ impl Manipulator {
                 Quantity::Angle => 1.0,
                 Quantity::Length => scale,
             };
-            let mut next = [0.0; MOST];
+            let mut next = [0.0; N];
             for (column, value) in next[..n].iter_mut().enumerate() {
                 *value = unit * matrix[coordinate + column * stride];
             }
-            if row < MOST {
+            if row < N {
                 (0..n).for_each(|column| joints[(row, column)] = next[column]);
             } else {
                 // There are more rows than fit. Their triangular factor has the same singular values.
-                if row == MOST {
+                if row == N {
                     joints = triangle(&joints, n);
                 }
                 push_row(&mut joints, next, n);
             }
         }
-        let metric = metric(jacobians, scale);
+        let metric = metric::<N>(jacobians, scale);
         divide(&mut joints, &metric, n);
         let free = n - jacobians.locked.nrows();
         if free < n {
@@ -135,8 +141,13 @@ impl Manipulator {
 
 /// Removes the twists of the platform that its constraining legs prevent from a matrix whose columns are
 /// orthonormal components of the twist.
-fn project(matrix: &mut Square, jacobians: &Jacobians, metric: &Square, n: usize) {
-    let mut rows = Square::zeros();
+fn project<const N: usize>(
+    matrix: &mut Square<N>,
+    jacobians: &Jacobians,
+    metric: &Square<N>,
+    n: usize,
+) {
+    let mut rows = Square::<N>::zeros();
     let count = jacobians.locked.nrows();
     for i in 0..count {
         (0..n).for_each(|j| rows[(i, j)] = jacobians.locked[(i, j)]);
@@ -153,7 +164,7 @@ fn project(matrix: &mut Square, jacobians: &Jacobians, metric: &Square, n: usize
             row /= length;
         }
         rows.set_row(i, &row);
-        for j in 0..MOST {
+        for j in 0..N {
             let along = matrix.row(j).dot(&row);
             let rest = matrix.row(j) - row * along;
             matrix.set_row(j, &rest);
@@ -163,10 +174,10 @@ fn project(matrix: &mut Square, jacobians: &Jacobians, metric: &Square, n: usize
 
 /// The triangular factor `Lᵀ` of the metric of the platform's twist, by Cholesky's method. The columns are
 /// far from dependent, so that squaring them loses few digits.
-fn metric(jacobians: &Jacobians, scale: f64) -> Square {
+fn metric<const N: usize>(jacobians: &Jacobians, scale: f64) -> Square<N> {
     let n = jacobians.platform.ncols();
     let square = scale * scale;
-    let mut r = Square::zeros();
+    let mut r = Square::<N>::zeros();
     for i in 0..n {
         for j in i..n {
             let (a, b) = (jacobians.platform.column(i), jacobians.platform.column(j));
@@ -190,8 +201,8 @@ fn metric(jacobians: &Jacobians, scale: f64) -> Square {
 }
 
 /// The triangular factor `R` of a matrix `Q R`.
-fn triangle(matrix: &Square, n: usize) -> Square {
-    let mut r = Square::zeros();
+fn triangle<const N: usize>(matrix: &Square<N>, n: usize) -> Square<N> {
+    let mut r = Square::<N>::zeros();
     for row in matrix.row_iter() {
         push_row(&mut r, std::array::from_fn(|i| row[i]), n);
     }
@@ -199,7 +210,7 @@ fn triangle(matrix: &Square, n: usize) -> Square {
 }
 
 /// Adds a row to a triangular factor, by Givens rotations.
-fn push_row(r: &mut Square, mut next: [f64; MOST], n: usize) {
+fn push_row<const N: usize>(r: &mut Square<N>, mut next: [f64; N], n: usize) {
     for i in 0..n {
         if next[i] == 0.0 {
             continue;
@@ -215,16 +226,16 @@ fn push_row(r: &mut Square, mut next: [f64; MOST], n: usize) {
 }
 
 /// Computes `matrix · R⁻¹` in place, column by column.
-fn divide(matrix: &mut Square, r: &Square, n: usize) {
+fn divide<const N: usize>(matrix: &mut Square<N>, r: &Square<N>, n: usize) {
     for j in 0..n {
         for k in 0..j {
             let factor = r[(k, j)];
-            for i in 0..MOST {
+            for i in 0..N {
                 matrix[(i, j)] -= matrix[(i, k)] * factor;
             }
         }
         let inverse = r[(j, j)].recip();
-        for i in 0..MOST {
+        for i in 0..N {
             matrix[(i, j)] *= inverse;
         }
     }
@@ -232,9 +243,9 @@ fn divide(matrix: &mut Square, r: &Square, n: usize) {
 
 /// The singular values of the first `n` columns, by the rotations of [`crate::numeric::svd`]. Entries are
 /// near one, so that squares do not overflow.
-fn singular_values(mut m: Square, n: usize) -> [f64; MOST] {
+fn singular_values<const N: usize>(mut m: Square<N>, n: usize) -> [f64; N] {
     let orthogonal = |p: &Products| p.pq * p.pq <= ORTHOGONAL * ORTHOGONAL * p.pp * p.qq;
     let secant = |tan: f64| (1.0 + tan * tan).sqrt();
-    jacobi(m.as_mut_slice(), [MOST, n], orthogonal, secant, |_, _, _| {});
+    jacobi(m.as_mut_slice(), [N, n], orthogonal, secant, |_, _, _| {});
     std::array::from_fn(|i| m.column(i).norm())
 }
