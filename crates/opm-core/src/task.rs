@@ -203,7 +203,9 @@ impl OddJoint {
                 .map(|(leg, freedom)| leg.joints[freedom.joint].screws()[freedom.index])
                 .collect();
             let class = MotionSubspace::span(frame, &others).class()?;
-            SubspaceKind::of(&class)?;
+            // A Schoenflies section without one of its joints is one still.
+            SubspaceKind::of(&class)
+                .filter(|_| !matches!(class, SubspaceClass::Schoenflies { .. }))?;
             let (leg, joint) = (one.0.name.clone(), joint(one));
             Some(Self { leg, joint, without: class.name() })
         });
@@ -394,7 +396,9 @@ impl Task {
                 }
             })
         };
-        if let Some(section) = Height::of(decomposition)
+        // A leg alone has no other that could hold the height.
+        if mechanism.legs.len() > 1
+            && let Some(section) = Height::of(decomposition)
             && let Some(odd) = OddJoint::find(mechanism, decomposition, section)
         {
             return Err(TaskError::Height { section, odd });
