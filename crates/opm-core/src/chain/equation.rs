@@ -14,7 +14,7 @@ const CONSTANT: f64 = 1e-12;
 /// A function of `t` that has its zeros in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Equation {
-    /// `c₀ + c₁ t + c₂ t²`; `c₂` is not negative where [`Equation::roots`] or [`Equation::zeros`] are asked for.
+    /// `c₀ + c₁ t + c₂ t²`; `c₂` is not negative where all its zeros are asked for ([`Equation::zeros`]).
     Polynomial([f64; 3]),
     /// `c₀ + c₁ cos t + c₂ sin t`.
     Harmonic([f64; 3]),
