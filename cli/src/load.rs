@@ -217,7 +217,8 @@ impl Loaded {
             CompileError::Leg { leg, .. }
             | CompileError::Task(
                 TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }
-                | TaskError::Height { odd: OddJoint { leg, .. }, .. },
+                | TaskError::Height { odd: OddJoint { leg, .. }, .. }
+                | TaskError::JointName { leg, .. },
             ) => of_leg(leg),
             CompileError::Constraint(error) => error.leg().and_then(of_leg),
             CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),

@@ -6,19 +6,20 @@ use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::joint::JointKind;
 use opm_core::mechanism::leg::Leg;
-use opm_core::task::CoordinateKind;
+use opm_core::task::{CoordinateKind, TaskCoordinate};
 
 /// Whether every slider along the direction of a Schoenflies section is within its limits, for the values of the
 /// section's coordinates. All other sections have no height.
 pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
     let d = m.decomposition();
-    let (class, first, kind) = match section {
-        Section::Lower => (&d.lower, 0, CoordinateKind::Z),
-        Section::Upper => (&d.upper, m.task().lower_count, CoordinateKind::H),
+    let (class, first) = match section {
+        Section::Lower => (&d.lower, 0),
+        Section::Upper => (&d.upper, m.task().lower_count),
     };
     let SubspaceClass::Schoenflies { axis } = class else { return true };
     let coordinates = &m.task().coordinates[first..];
-    let place = coordinates.iter().position(|c| c.kind() == kind).unwrap();
+    let is_height = |c: &TaskCoordinate| matches!(c.kind(), CoordinateKind::Z | CoordinateKind::H);
+    let place = coordinates.iter().position(is_height).unwrap();
     let frame = if section == Section::Lower { &m.task().lower } else { &m.task().upper };
     let up = frame.axes.column(2).into_owned();
     assert!(up.cross(axis).norm() < 1e-9);

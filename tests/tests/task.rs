@@ -12,7 +12,8 @@ use opm_core::mechanism::family::{Family, PlanoSpherical};
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{FrameHints, Mechanism, TaskHints, examples, file};
-use opm_core::task::{Subspace, SubspaceKind, TaskError};
+use opm_core::task::{CoordinateKind, Subspace, SubspaceKind, TaskError};
+use opm_tests::random;
 use opm_tests::random::{
     Options, PAIRS, direction, displace, displace_decomposition, displacement, mechanism, vector,
 };
@@ -455,4 +456,31 @@ fn given_frames_shift_home() {
     assert!(moved.rotation.angle_to(&turn) < AGREE);
     let expected = mechanism.platform - Vector3::z() * 0.1;
     assert!((moved * mechanism.platform - expected).norm() < AGREE);
+}
+
+/// A joint cannot have the name of any task coordinate: both are columns of one table.
+#[test]
+fn names_of_coordinates_are_no_names_of_joints() {
+    let text = opm_core::mechanism::examples::find("planar-3rrr").unwrap().text;
+    for kind in CoordinateKind::ALL.into_iter().filter(|kind| *kind != CoordinateKind::H) {
+        let renamed = text.replacen("name = \"A1\"", &format!("name = {:?}", kind.name()), 1);
+        assert_ne!(renamed, text);
+        let error = Manipulator::read(&renamed).unwrap_err().to_string();
+        assert!(error.contains("is the name of a task coordinate"), "{error}");
+    }
+    // Few mechanisms have the coordinate `h`.
+    let mut rng = Rng::with_seed(45);
+    let meet = random::Meet::Translation;
+    for pair in [
+        [random::Kind::Cylindrical(meet), random::Kind::Schoenflies(meet)],
+        [random::Kind::Schoenflies(meet), random::Kind::Cylindrical(meet)],
+    ] {
+        let options = Options { limited: 0.0, balls: false };
+        let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        mechanism.legs[1].joints[0].name = "h".into();
+        let found = Manipulator::with_decomposition(mechanism, decomposition);
+        let refused = found.err().map(|error| error.to_string());
+        let has_h = matches!(pair, [random::Kind::Cylindrical(_), _]);
+        assert_eq!(refused.is_some_and(|told| told.starts_with("joint h of leg leg2")), has_h);
+    }
 }

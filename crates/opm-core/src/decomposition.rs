@@ -27,7 +27,7 @@ mod survey;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use height::HeightMiss;
+pub use height::{HeightMiss, HeightReason};
 pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 
@@ -180,20 +180,24 @@ pub enum DecomposeError {
     },
     /// No split of the legs gives two groups that share exactly a one-parameter group.
     #[error(
-        "no partial subspaces (lambda = {lambda}, mobility N = {mobility}){}; opm needs legs that \
-         split between two subgroups of less than {lambda} dimensions that share a one-parameter \
-         motion{}",
+        "no partial subspaces (lambda = {lambda}, mobility N = {mobility}){}; {}{}",
         subspace.as_deref().map(|group| format!(": {}", one_group(group))).unwrap_or_default(),
+        match height {
+            Some(height) => height.to_string(),
+            None => format!(
+                "opm needs legs that split between two subgroups of less than {lambda} dimensions that share \
+                 a one-parameter motion"
+            ),
+        },
         match (near, height, odd) {
-            (Some(near), _, _) => nearly_text(Some(near)),
-            (None, Some(height), _) => format!("; {height}"),
+            (Some(near), ..) => nearly_text(Some(near)),
             (None, None, Some(odd)) => format!(
                 "; only joint {} of leg {} does not fit such a split: {}",
                 odd.joint,
                 odd.leg,
                 odd.reason()
             ),
-            (None, None, None) => String::new(),
+            (None, ..) => String::new(),
         }
     )]
     NoPartialSubspaces {
@@ -369,10 +373,8 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
     // Others have no closed forms, alone.
     SubspaceKind::of(&group.class)?;
     let class = group.class.restored(&frame);
-    // Nor has a Schoenflies group, where a leg has fewer freedoms or no joint of it carries the height.
-    let few = mechanism.legs.iter().any(|leg| leg.screws().len() < lambda);
-    let tall = matches!(class, SubspaceClass::Schoenflies { .. });
-    if tall && (few || height_miss(mechanism, &class).is_some()) {
+    // Nor has a Schoenflies group, where no joint of a leg carries the height.
+    if height_miss(mechanism, &class).is_some() {
         return None;
     }
     let whole =
@@ -392,11 +394,18 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
     })
 }
 
-/// The first leg without a joint that carries the height, if all legs move in a Schoenflies group.
+/// The first leg without a joint that carries the height, or with another number of freedoms than the group, if all legs
+/// move in a Schoenflies group.
 fn height_miss(mechanism: &Mechanism, group: &SubspaceClass) -> Option<HeightMiss> {
     let SubspaceClass::Schoenflies { axis } = group else { return None };
     let size = frame(mechanism).length;
-    let missing = |leg: &Leg| height::lift(leg, &Freedom::of_leg(leg), axis, size).err();
+    let missing = |leg: &Leg| {
+        let freedoms = Freedom::of_leg(leg);
+        let reason = HeightReason::Freedoms(freedoms.len());
+        let miss = HeightMiss { leg: leg.name.clone(), reason };
+        let wrong = (freedoms.len() != group.dimension()).then_some(miss);
+        wrong.or_else(|| height::lift(leg, &freedoms, axis, size).err())
+    };
     mechanism.legs.iter().find_map(missing)
 }
 

@@ -9,11 +9,12 @@
 //! |---|---|---|---|---|---|---|
 //! | planar | `x y` | `x y theta` | `x y theta` | `x y phi` | `w phi` | `x y phi` |
 //! | spherical | `mu nu` | | `zeta xi psi` | `zeta xi psi` | | `zeta xi psi` |
-//! | Schoenflies | `x y z` | `x y z theta` | `x y z theta` | `x y h phi` | `w h phi` | |
+//! | Schoenflies | `x y z` | `x y z theta` | `x y z theta` | `x y z phi` | `w h phi` | |
 //! | cylindrical | `z` | `theta z` | `theta z` | `phi z` | `phi` | `phi w` |
 //! | translational plane | | `x y` | `x y` | | `w` | `x y` |
 //!
-//! A Schoenflies section is a planar one at a height, `z` or `h`, along the plane's normal.
+//! A Schoenflies section is a planar one at a height along the plane's normal: `z`, or `h` above a cylinder, which has
+//! a `z`.
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
@@ -108,6 +109,16 @@ pub enum TaskError {
         /// The joint.
         odd: OddJoint,
     },
+    /// A joint has the name of a task coordinate of this mechanism.
+    #[error(
+        "joint {joint} of leg {leg} has the name of a task coordinate of this mechanism, expected another"
+    )]
+    JointName {
+        /// The name of the leg.
+        leg: String,
+        /// The name of the joint.
+        joint: &'static str,
+    },
     /// The shared translation of a Schoenflies and a cylindrical section has a component along the direction of the
     /// Schoenflies section.
     #[error(
@@ -159,6 +170,7 @@ impl TaskError {
             Self::Subspace { .. }
             | Self::Screw
             | Self::Height { .. }
+            | Self::JointName { .. }
             | Self::Inclined { .. }
             | Self::Unknown { .. } => None,
         }
@@ -221,8 +233,8 @@ impl OddJoint {
 pub enum FrameProblem {
     /// The hint sets a direction or point that the geometry already determines.
     NotFree {
-        /// The kind of the subspace.
-        kind: SubspaceKind,
+        /// The name of the subspace.
+        subspace: &'static str,
         /// The keys of the frame that can be chosen.
         free: Vec<&'static str>,
     },
@@ -254,8 +266,8 @@ pub enum FrameProblem {
 impl fmt::Display for FrameProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFree { kind, free } => {
-                write!(f, "is not free: the frame of this {kind} subspace ")?;
+            Self::NotFree { subspace, free } => {
+                write!(f, "is not free: the frame of this {subspace} subspace ")?;
                 match &**free {
                     [] => write!(f, "has nothing to choose"),
                     free => write!(f, "has {} to choose", free.join(", ")),
@@ -411,11 +423,14 @@ impl Task {
         let mut of_upper = coordinate::of_upper(&upper, shared);
         let height = Height::of(decomposition).map(|section| {
             let (frame, own, first) = match section {
-                Section::Lower => (&lower, &mut coordinates, 0),
-                Section::Upper => (&upper, &mut of_upper, coordinates.len()),
+                Section::Lower => (&lower, &coordinates, 0),
+                Section::Upper => (&upper, &of_upper, coordinates.len()),
             };
-            let (place, coordinate) = coordinate::of_height(frame, section, own);
-            own.insert(place, coordinate);
+            let (place, coordinate) = coordinate::of_height(frame, own, &coordinates);
+            match section {
+                Section::Lower => coordinates.insert(place, coordinate),
+                Section::Upper => of_upper.insert(place, coordinate),
+            }
             Height { section, coordinate: first + place, up: frame.axes.column(2).into_owned() }
         });
         if let (Some(height), Some(IntersectionAxis { direction, point: None })) =
@@ -426,6 +441,14 @@ impl Task {
         }
         let lower_count = coordinates.len();
         coordinates.extend(of_upper);
+        // Files keep the names of all coordinates from joints but this one, which few mechanisms have.
+        let h = CoordinateKind::H;
+        if coordinates.iter().any(|c| c.kind() == h)
+            && let Some(leg) = (mechanism.legs.iter())
+                .find(|leg| leg.joints.iter().any(|joint| joint.name == h.name()))
+        {
+            return Err(TaskError::JointName { leg: leg.name.clone(), joint: h.name() });
+        }
         for (name, value) in &mechanism.task.home {
             match coordinates.iter_mut().find(|c| c.name == name) {
                 Some(coordinate) => coordinate.home = *value,

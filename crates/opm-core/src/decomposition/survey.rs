@@ -7,7 +7,8 @@ use super::mobility::{Mobility, MobilityError, frame, mobility};
 use super::near::{elements, near_smaller};
 use super::search::candidates;
 use super::{
-    DecomposeError, Decomposition, Freedom, JointMiss, NearMiss, found_or_near, list, passive,
+    DecomposeError, Decomposition, Freedom, HeightMiss, JointMiss, NearMiss, found_or_near,
+    height_miss, list, passive,
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
@@ -118,6 +119,8 @@ pub enum Outside {
     OneSubgroup {
         /// The group.
         subspace: SubspaceClass,
+        /// What its closed forms miss, if it is a Schoenflies group.
+        height: Option<Box<HeightMiss>>,
     },
     /// Some legs cannot be divided into two parts that each move in a proper subgroup of SE(3).
     Indivisible {
@@ -147,7 +150,10 @@ impl fmt::Display for Outside {
                  other poses; another assembled pose may decompose",
                 list(singularities)
             ),
-            Self::OneSubgroup { subspace } => write!(
+            Self::OneSubgroup { subspace, height: Some(height) } => {
+                write!(f, "all legs move in one subgroup ({}); {height}", subspace.name())
+            }
+            Self::OneSubgroup { subspace, height: None } => write!(
                 f,
                 "all legs move in one subgroup ({}), for which opm has no closed forms",
                 subspace.name()
@@ -293,7 +299,8 @@ fn no_partial_subspaces(mechanism: &Mechanism, odd: Option<Box<JointMiss>>) -> O
         mechanism.legs.iter().flat_map(|leg| elements(leg, &Freedom::of_leg(leg))).collect();
     let subspace = group(&all);
     if subspace != SubspaceClass::Full {
-        return Outside::OneSubgroup { subspace };
+        let height = height_miss(mechanism, &subspace).map(Box::new);
+        return Outside::OneSubgroup { subspace, height };
     }
     // The division of each leg into the smallest groups.
     let divided = mechanism.legs.iter().map(|leg| {

@@ -33,7 +33,7 @@ pub enum RefusedLeg {
         bridged: bool,
     },
     /// The height of a Schoenflies section is not that of one slider along its direction.
-    #[error(transparent)]
+    #[error("{}", .0.of_leg())]
     Height(#[from] HeightMiss),
     /// One of the leg's sections has no closed form.
     #[error("its {section} section has no closed form: {error}")]
@@ -166,12 +166,19 @@ impl CompiledLeg {
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
         let bridged = task.intersection.is_some();
-        let preferred = split_section(task, [lower, upper]).ok_or(RefusedLeg::Freedoms {
-            lower,
-            upper,
-            dim_lower,
-            dim_upper,
-            bridged,
+        let preferred = split_section(task, [lower, upper]).ok_or_else(|| {
+            // A message counts the lift, too.
+            let of_height = |section| {
+                usize::from(task.height.as_ref().is_some_and(|height| height.section == section))
+            };
+            let (low, high) = (of_height(Section::Lower), of_height(Section::Upper));
+            RefusedLeg::Freedoms {
+                lower: lower + low,
+                upper: upper + high,
+                dim_lower: dim_lower + low,
+                dim_upper: dim_upper + high,
+                bridged,
+            }
         })?;
         let found = Self::split_in(preferred, leg, split, first, context);
         // A section may contain the intersection motion itself, though it has few joints. Then the imaginary joint

@@ -1,7 +1,6 @@
 //! The coordinates of a pose: the kinds of coordinates, and those of each section.
 
 use crate::group::{MotionType, Subspace, SubspaceKind};
-use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 
 /// What a task coordinate measures; the table in the docs of [`task`](crate::task) says which subspaces
@@ -12,9 +11,9 @@ pub enum CoordinateKind {
     X,
     /// `y`: the reference point along a plane's second direction.
     Y,
-    /// `z`: along a cylinder's axis; the height of a lower Schoenflies section.
+    /// `z`: along a cylinder's axis; the height of a Schoenflies section.
     Z,
-    /// `h`: the height of an upper Schoenflies section.
+    /// `h`: the height of an upper Schoenflies section, where a cylinder below has `z`.
     H,
     /// `w`: in the upper plane, perpendicular to the intersection motion; along the axis of an upper cylinder
     /// that shares no motion.
@@ -159,16 +158,14 @@ pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
 }
 
 /// The coordinate that tells the height of a section, and its place: after those that move the reference point in the
-/// plane.
+/// plane. `lower` has the coordinates of the lower section.
 pub(super) fn of_height(
     frame: &Subspace,
-    section: Section,
     coordinates: &[TaskCoordinate],
+    lower: &[TaskCoordinate],
 ) -> (usize, TaskCoordinate) {
-    let kind = match section {
-        Section::Lower => CoordinateKind::Z,
-        Section::Upper => CoordinateKind::H,
-    };
+    let taken = lower.iter().any(|c| c.kind() == CoordinateKind::Z);
+    let kind = if taken { CoordinateKind::H } else { CoordinateKind::Z };
     let in_plane = coordinates.iter().filter(|c| c.quantity == Quantity::Length).count();
     (in_plane, TaskCoordinate::new(kind, frame.home().z))
 }

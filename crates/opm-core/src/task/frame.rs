@@ -78,7 +78,7 @@ pub(super) fn lay(
             return Err(TaskError::Subspace { section, name: class.name(), odd: None });
         }
     };
-    let hints = Checked { hints, section, kind, shared };
+    let hints = Checked { hints, section, kind, name: class.name(), shared };
     hints.refuse_what_is_not_free()?;
     hints.refuse_a_perpendicular_axis(&normal)?;
     let flat = match kind {
@@ -135,6 +135,8 @@ struct Checked<'a> {
     hints: &'a FrameHints,
     section: Section,
     kind: SubspaceKind,
+    /// The name of the subspace.
+    name: &'static str,
     shared: Option<MotionType>,
 }
 
@@ -178,7 +180,7 @@ impl Checked<'_> {
         match given.iter().find(|(key, given)| *given && !free.contains(key)) {
             Some((key, _)) => {
                 let free = free.iter().map(|key| key.name()).collect();
-                let problem = FrameProblem::NotFree { kind: self.kind, free };
+                let problem = FrameProblem::NotFree { subspace: self.name, free };
                 Err(TaskError::Frame { key: *key, problem })
             }
             None => Ok(()),
