@@ -109,7 +109,7 @@ impl Manipulator {
         Self::compile(file, text, name.to_owned())
     }
 
-    /// The joints' unit screws by leg, (f, 6) each: (omega; v) at home in the base frame, one row for each degree of freedom.
+    /// The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom.
     #[getter]
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

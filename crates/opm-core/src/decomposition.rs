@@ -257,8 +257,8 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
 /// or so placed that home is a parallel singularity.
 ///
 /// # Errors
-/// [`DecomposeError`] if the mechanism is incomplete, cannot move, is singular at home in another
-/// respect, or has no partial subspaces.
+/// [`DecomposeError`] if the mechanism is incomplete, cannot move, or has no partial subspaces, or if its home pose is
+/// singular in another respect.
 pub fn search_all(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     found_or_near(mechanism, passive(mechanism, &mobility(mechanism)?))
 }

@@ -21,21 +21,23 @@ mod lift;
 mod locate;
 mod mode;
 pub(crate) mod plan;
+mod pose;
 mod reach;
 #[cfg(feature = "files")]
 mod read;
+mod solution;
 mod transitions;
 
 pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
-pub use inverse::{ActuatedJoints, FollowingCoordinate, LARGEST, PoseError, Solution, Unreachable};
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
+pub use pose::{FollowingCoordinate, LARGEST, PoseError};
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub use reach::LegBranch;
@@ -43,6 +45,7 @@ pub use reach::LegBranch;
 pub use read::ReadError;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
+pub use solution::{ActuatedJoints, Solution, Unreachable};
 pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;

@@ -52,256 +52,29 @@
 
 mod coordinate;
 mod displacement;
+mod error;
 mod factors;
 mod frame;
+mod height;
 mod pose;
 
 pub use coordinate::{CoordinateKind, TaskCoordinate};
 pub use displacement::euler;
 pub(crate) use displacement::{Form, lower_displacement, upper_displacement};
+pub use error::{FrameProblem, OddJoint, TaskError};
+pub(crate) use height::Height;
 
 // The types of `Task`'s fields and results.
 pub use crate::group::{Displacement, Subspace, SubspaceKind};
 
-use crate::decomposition::{Decomposition, Freedom, LegSplit};
-use crate::group::screw::Screw;
-use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
+use crate::decomposition::Decomposition;
+use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path, PlanarPath};
-use crate::mechanism::leg::{Leg, Section};
+use crate::mechanism::leg::Section;
 use crate::mechanism::{Mechanism, TaskKey};
 use crate::numeric::angle::sin_cos;
 use frame::Meeting;
-use nalgebra::{
-    Complex, Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3,
-};
-use std::fmt;
-
-/// Why a decomposition has no task coordinates.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TaskError {
-    /// A subspace without closed-form chains.
-    #[error(
-        "the {section} section moves in a {name} subspace, which has no closed-form chains{}",
-        odd.as_ref().map(OddJoint::to_string).unwrap_or_default()
-    )]
-    Subspace {
-        /// The section that moves in the subspace.
-        section: Section,
-        /// The name of the subspace.
-        name: &'static str,
-        /// The joint without which there would be closed-form chains, if there is exactly one.
-        odd: Option<OddJoint>,
-    },
-    /// The two subspaces meet in a screw motion.
-    #[error(
-        "the partial subspaces meet in a screw motion, for which there are no closed-form chains"
-    )]
-    Screw,
-    /// One joint alone changes the height of a section, which other legs hold.
-    #[error(
-        "joint {} of leg {} alone changes the height of the {section} section; without it, the section would be {}",
-        odd.joint, odd.leg, odd.without
-    )]
-    Height {
-        /// The section.
-        section: Section,
-        /// The joint.
-        odd: OddJoint,
-    },
-    /// A joint has the name of a task coordinate of this mechanism.
-    #[error(
-        "joint {joint} of leg {leg} has the name of a task coordinate of this mechanism, expected another"
-    )]
-    JointName {
-        /// The name of the leg.
-        leg: String,
-        /// The name of the joint.
-        joint: &'static str,
-    },
-    /// The shared translation of a Schoenflies and a cylindrical section has a component along the direction of the
-    /// Schoenflies section.
-    #[error(
-        "the two sections share a translation with a component along the rotation axes of the {section} section: \
-         closed forms expect one perpendicular to them"
-    )]
-    Inclined {
-        /// The Schoenflies section.
-        section: Section,
-    },
-    /// The mechanism's hint `axis` is perpendicular to the intersection motion, so that it chooses neither of
-    /// its two directions.
-    #[error(
-        "[task] axis is {}, perpendicular to the intersection motion, expected a direction along {} or \
-         opposite to it",
-        triple(given),
-        triple(along)
-    )]
-    Axis {
-        /// The direction given, base coordinates.
-        given: [f64; 3],
-        /// The unit direction of the intersection motion, base coordinates.
-        along: [f64; 3],
-    },
-    /// The mechanism's hint on a frame does not fit the geometry.
-    #[error("[task] {key} {problem}")]
-    Frame {
-        /// The hint that does not fit.
-        key: TaskKey,
-        /// Why it does not fit the geometry.
-        problem: FrameProblem,
-    },
-    /// The mechanism names a coordinate that its subspaces do not have.
-    #[error("home gives `{name}`, but the task coordinates are {expected}")]
-    Unknown {
-        /// The name given.
-        name: String,
-        /// The names of the task coordinates, separated by commas.
-        expected: String,
-    },
-}
-
-impl TaskError {
-    /// The hint that causes the error, if one does.
-    pub fn key(&self) -> Option<TaskKey> {
-        match self {
-            Self::Axis { .. } => Some(TaskKey::Axis),
-            Self::Frame { key, .. } => Some(*key),
-            Self::Subspace { .. }
-            | Self::Screw
-            | Self::Height { .. }
-            | Self::JointName { .. }
-            | Self::Inclined { .. }
-            | Self::Unknown { .. } => None,
-        }
-    }
-}
-
-/// The joint without which a section would have a subspace with closed-form chains.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("; without joint {joint} of leg {leg} it would be {without}")]
-pub struct OddJoint {
-    /// The leg's name.
-    pub leg: String,
-    /// The joint's name.
-    pub joint: String,
-    /// The name of the subspace that the section's other joints span.
-    pub without: &'static str,
-}
-
-impl OddJoint {
-    /// Looks for such a joint among the joints of a section; `None` unless there is exactly one.
-    fn find(
-        mechanism: &Mechanism,
-        decomposition: &Decomposition,
-        section: Section,
-    ) -> Option<Self> {
-        let frame = crate::decomposition::mobility::frame(mechanism);
-        let part = |split: &LegSplit| match section {
-            Section::Lower => split.lower.clone(),
-            Section::Upper => split.upper.clone(),
-        };
-        let freedoms: Vec<(&Leg, Freedom)> = mechanism
-            .legs
-            .iter()
-            .zip(&decomposition.legs)
-            .flat_map(|(leg, split)| part(split).into_iter().map(move |freedom| (leg, freedom)))
-            .collect();
-        let joint = |(leg, freedom): &(&Leg, Freedom)| leg.joints[freedom.joint].name.clone();
-        let mut odd = freedoms.iter().filter_map(|one| {
-            let others: Vec<Screw> = freedoms
-                .iter()
-                .filter(|other| joint(other) != joint(one))
-                .map(|(leg, freedom)| leg.joints[freedom.joint].screws()[freedom.index])
-                .collect();
-            let class = MotionSubspace::span(frame, &others).class()?;
-            // A Schoenflies section without one of its joints is one still.
-            SubspaceKind::of(&class)
-                .filter(|_| !matches!(class, SubspaceClass::Schoenflies { .. }))?;
-            let (leg, joint) = (one.0.name.clone(), joint(one));
-            Some(Self { leg, joint, without: class.name() })
-        });
-        // Where several joints qualify, none of them alone is the cause.
-        let first = odd.next()?;
-        odd.all(|other| other.joint == first.joint).then_some(first)
-    }
-}
-
-/// Why a hint on a frame does not fit the geometry. Directions have unit length.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum FrameProblem {
-    /// The hint sets a direction or point that the geometry already determines.
-    NotFree {
-        /// The name of the subspace.
-        subspace: &'static str,
-        /// The keys of the frame that can be chosen.
-        free: Vec<&'static str>,
-    },
-    /// The hint orients the intersection motion, and the two subspaces share none.
-    NoIntersection,
-    /// The hint is perpendicular to the line whose sense it chooses.
-    Perpendicular {
-        /// The direction given.
-        given: [f64; 3],
-        /// The direction of the line.
-        line: [f64; 3],
-    },
-    /// The hint chooses the sense of a line, and is not along that line.
-    NotAlong {
-        /// The direction given.
-        given: [f64; 3],
-        /// The direction of the line.
-        line: [f64; 3],
-    },
-    /// The direction given is not perpendicular to the normal or to the intersection motion.
-    NotPerpendicular {
-        /// The direction given.
-        given: [f64; 3],
-        /// The direction of the normal or of the intersection motion.
-        to: [f64; 3],
-    },
-}
-
-impl fmt::Display for FrameProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFree { subspace, free } => {
-                write!(f, "is not free: the frame of this {subspace} subspace ")?;
-                match &**free {
-                    [] => write!(f, "has nothing to choose"),
-                    free => write!(f, "has {} to choose", free.join(", ")),
-                }
-            }
-            Self::NoIntersection => f.write_str(
-                "orients the motion that the two subspaces share, but these share none, expected `axis` of \
-                 `lower` or `upper`",
-            ),
-            Self::Perpendicular { given, line } => {
-                let (given, along) = (triple(given), triple(line));
-                write!(f, "is {given}, perpendicular to the axis {along} that it orients")
-            }
-            Self::NotAlong { given, line } => {
-                let (given, back) = (triple(given), triple(&line.map(|c| -c)));
-                write!(f, "is {given}, expected {} or {back}", triple(line))
-            }
-            Self::NotPerpendicular { given, to } => {
-                write!(
-                    f,
-                    "is {}, expected a direction perpendicular to {}",
-                    triple(given),
-                    triple(to)
-                )
-            }
-        }
-    }
-}
-
-fn triple(v: &[f64; 3]) -> String {
-    // Adding zero turns -0 into 0.
-    let [x, y, z] = v.map(|c| (c * 1e6).round() / 1e6 + 0.0);
-    format!("({x:.6}, {y:.6}, {z:.6})")
-}
+use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// The subspaces' frames and the coordinates of a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -325,31 +98,6 @@ pub struct Task {
     /// The height of a Schoenflies section; `None` where there is none.
     pub(crate) height: Option<Height>,
     home_orientation_inverse: Option<Matrix3<f64>>,
-}
-
-/// The height of a Schoenflies section. A Schoenflies displacement is a planar one followed by a translation along the
-/// plane's normal, and the two commute. So the section is treated as a planar one, and the height by itself.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Height {
-    /// The section.
-    pub section: Section,
-    /// The number of its task coordinate.
-    pub coordinate: usize,
-    /// The unit direction in which it grows, at home in base coordinates.
-    pub up: Vector3<f64>,
-}
-
-impl Height {
-    /// The section of a decomposition that has a height. Two such sections would have all translations in common, and
-    /// are no decomposition.
-    fn of(decomposition: &Decomposition) -> Option<Section> {
-        let has = |class: &SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });
-        match (has(&decomposition.lower), has(&decomposition.upper)) {
-            (true, _) => Some(Section::Lower),
-            (false, true) => Some(Section::Upper),
-            (false, false) => None,
-        }
-    }
 }
 
 /// The intersection motion at home, in base coordinates.
@@ -487,24 +235,6 @@ impl Task {
         })
     }
 
-    /// The height of the Schoenflies section above its home at a pose, metres; zero where there is none.
-    #[doc(hidden)]
-    #[inline]
-    pub fn rise(&self, pose: &[f64]) -> f64 {
-        self.height.as_ref().map_or(0.0, |height| {
-            pose[height.coordinate] - self.coordinates[height.coordinate].home
-        })
-    }
-
-    /// A displacement `v · b` of the platform, raised by `rise` metres along the direction of the Schoenflies section.
-    pub(crate) fn raised(&self, rise: f64, g: Isometry3<f64>) -> Isometry3<f64> {
-        match &self.height {
-            None => g,
-            Some(Height { section: Section::Lower, up, .. }) => Translation3::from(up * rise) * g,
-            Some(Height { section: Section::Upper, up, .. }) => g * Translation3::from(up * rise),
-        }
-    }
-
     /// The displacement `v` for the first [`Task::lower_count`] coordinates of a pose, radians and metres.
     ///
     /// # Panics
@@ -512,7 +242,7 @@ impl Task {
     #[doc(hidden)]
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
-        let (at, home) = self.section_of(&pose[..self.lower_count], 0);
+        let (at, home) = self.section_of(pose, Section::Lower);
         let displacement = lower_displacement(self.form(Section::Lower), at, home, sin_cos);
         self.displaced_from_home(Section::Lower, displacement)
     }
@@ -578,7 +308,7 @@ impl Task {
     #[doc(hidden)]
     #[inline]
     pub fn upper(&self, pose: &[f64]) -> Displacement {
-        let (at, home) = self.section_of(pose, self.lower_count);
+        let (at, home) = self.section_of(pose, Section::Upper);
         let displacement = upper_displacement(self.form(Section::Upper), at, home, sin_cos);
         self.displaced_from_home(Section::Upper, displacement)
     }
@@ -593,46 +323,13 @@ impl Task {
         }
     }
 
-    /// The numbers of a section's coordinates other than a height.
+    /// The values of a section's coordinates other than a height, and those at home; zeros beyond the last. `pose` begins
+    /// with the section's first coordinate.
     #[inline]
-    pub(crate) fn numbers(&self, section: Section) -> impl Iterator<Item = usize> + use<> {
-        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
-        let range = match section {
-            Section::Lower => 0..self.lower_count,
-            Section::Upper => self.lower_count..self.coordinates.len(),
-        };
-        range.filter(move |&i| i != height)
-    }
-
-    /// The number of one of a section's coordinates other than a height, by its place among these; `None` beyond the last.
-    #[inline]
-    pub(crate) fn number(&self, section: Section, place: usize) -> Option<usize> {
-        let (first, end) = match section {
-            Section::Lower => (0, self.lower_count),
-            Section::Upper => (self.lower_count, self.coordinates.len()),
-        };
-        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
-        let number = first + place;
-        let number = number + usize::from((first..=number).contains(&height));
-        (number < end).then_some(number)
-    }
-
-    /// The place of the height among a section's coordinates; `None` if the section has none.
-    #[inline]
-    pub(crate) fn height_in(&self, section: Section) -> Option<usize> {
-        let height = self.height.as_ref().filter(|height| height.section == section)?;
-        let first = if section == Section::Lower { 0 } else { self.lower_count };
-        Some(height.coordinate - first)
-    }
-
-    /// The values of a section's coordinates other than a height, and those at home. The section starts at coordinate
-    /// number `first`; elements beyond its coordinates are zero.
-    #[inline]
-    fn section_of(&self, pose: &[f64], first: usize) -> ([f64; 3], [f64; 3]) {
+    fn section_of(&self, pose: &[f64], section: Section) -> ([f64; 3], [f64; 3]) {
         let (mut at, mut home) = ([0.0; 3], [0.0; 3]);
-        let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
-        let of_section = pose.iter().zip(&self.coordinates[first..]).zip(first..);
-        let of_section = of_section.filter(|(_, i)| *i != height).map(|(both, _)| both);
+        let of_section = pose.iter().zip(&self.coordinates[self.range(section)]);
+        let of_section = self.in_plane(section, of_section);
         for ((at, home), (&value, coordinate)) in at.iter_mut().zip(&mut home).zip(of_section) {
             (*at, *home) = (value, coordinate.home);
         }

@@ -312,7 +312,10 @@ impl Manipulator {
         let task = self.task();
         let twists = |screws: &screws::Screws, section: Section| {
             let vector = |all: &[f64]| {
-                LocalTwist::from_fn(|i, _| task.number(section, i).map_or(0.0, |n| all[n]))
+                let mut found = LocalTwist::zeros();
+                let own = task.in_plane(section, &all[task.range(section)]);
+                found.iter_mut().zip(own).for_each(|(to, value)| *to = *value);
+                found
             };
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]

@@ -454,7 +454,7 @@ class Manipulator:
         """Every working mode, all-plus first: the mode axis of ``inverse(poses, mode="all")``."""
     @property
     def screws(self) -> dict[str, NDArray[np.float64]]:
-        """The joints' unit screws by leg, (f, 6) each: (omega; v) at home in the base frame, one row for each degree of freedom."""
+        """The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom."""
     def solids(self, pose: Sequence[float] | NDArray[np.float64] | None = None, *, mode: str = "home") -> list[Solid]:
         """The solids that the mechanism is drawn with, from its joint screws alone.
 

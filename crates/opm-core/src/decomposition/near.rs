@@ -24,7 +24,7 @@ use super::{DecomposeError, Decomposition, passive};
 use crate::decomposition::mobility::{MobilityError, frame, mobility};
 use crate::group::subspace::{Frame, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::JointKind;
+use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::Vector3;
 use search::{NearSplit, Parts};
 use std::fmt;
@@ -61,8 +61,8 @@ const CONCURRENT: f64 = 1e-2;
 /// if they did: the length of [`frame`] would be that of the misses, against which none is small.
 fn sized_frame(mechanism: &Mechanism) -> Frame {
     let frame = frame(mechanism);
-    let points = || mechanism.joints().filter(|joint| joint.kind != JointKind::Prismatic);
-    let points = || points().map(|joint| joint.point.coords);
+    let placed = |joint: &&Joint| joint.kind != JointKind::Prismatic;
+    let points = || mechanism.joints().filter(placed).map(|joint| joint.point.coords);
     let count = points().count() as f64;
     let mean = points().sum::<Vector3<f64>>() / count;
     let spread = (points().map(|p| (p - mean).norm_squared()).sum::<f64>() / count).sqrt();

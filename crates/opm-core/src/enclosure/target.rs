@@ -273,24 +273,37 @@ pub mod task {
     use crate::task::Task;
     use nalgebra::Complex;
 
+    /// The coordinates of a section other than a height, and their values at home; zeros beyond the last. `pose` begins
+    /// with the section's first coordinate.
+    fn in_plane<const N: usize>(
+        task: &Task,
+        section: Section,
+        pose: &[Coordinate<N>],
+    ) -> ([Coordinate<N>; 3], [f64; 3]) {
+        let mut at = [Coordinate::Linear(Affine::constant(0.0)); 3];
+        let mut home = [0.0; 3];
+        let of_section = pose.iter().zip(&task.coordinates[task.range(section)]);
+        for (place, (value, c)) in task.in_plane(section, of_section).enumerate() {
+            (at[place], home[place]) = (*value, c.home);
+        }
+        (at, home)
+    }
+
     /// The displacement `v` for the first coordinates of a box: see [`Task::lower`].
     pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
-        let number =
-            |i: usize| i + usize::from(task.height_in(Section::Lower).is_some_and(|h| i >= h));
-        let home = |i: usize| task.coordinates[number(i)].home;
-        let pose = |i: usize| pose[number(i)];
-        let q = |i: usize| pose(i).minus(home(i));
+        let (pose, home) = in_plane(task, Section::Lower, pose);
+        let q = |i: usize| pose[i].minus(home[i]);
         match task.lower_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, pose, home),
+            IntersectionMotion::None(kind) => alone(task, kind, &pose, &home),
             IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
                 rotation: match motion {
                     PlanarMotion::Rotation => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Translation(_) => pose(2).unit_vector(home(2)),
+                    PlanarMotion::Translation(_) => pose[2].unit_vector(home[2]),
                 },
                 translation: Plane { re: q(0), im: q(1) },
             }),
             IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-                Target::Spherical(tilt(pose(0).unit_vector(home(0)), pose(1).unit_vector(home(1))))
+                Target::Spherical(tilt(pose[0].unit_vector(home[0]), pose[1].unit_vector(home[1])))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(Affine::constant(0.0), q(0))
@@ -306,23 +319,20 @@ pub mod task {
 
     /// The displacement `b` for the remaining coordinates of a box: see [`Task::upper`].
     pub fn upper<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
-        let number =
-            |i: usize| i + usize::from(task.height_in(Section::Upper).is_some_and(|h| i >= h));
-        let home = |i: usize| task.coordinates[task.lower_count + number(i)].home;
-        let pose = |i: usize| pose[number(i)];
-        let q = |i: usize| pose(i).minus(home(i));
+        let (pose, home) = in_plane(task, Section::Upper, pose);
+        let q = |i: usize| pose[i].minus(home[i]);
         let planar = |rotation, re, im| {
             Target::Planar(PlanarTarget { rotation, translation: Plane { re, im } })
         };
         let none = Affine::constant(0.0);
         match task.upper_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, pose, home),
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => orientation(task, pose),
+            IntersectionMotion::None(kind) => alone(task, kind, &pose, &home),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => orientation(task, &pose),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => {
-                planar(pose(2).unit_vector(home(2)), q(0), q(1))
+                planar(pose[2].unit_vector(home[2]), q(0), q(1))
             }
             IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
-                planar(pose(1).unit_vector(home(1)), none, q(0))
+                planar(pose[1].unit_vector(home[1]), none, q(0))
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
                 Target::Cylindrical(q(0), q(1))
@@ -341,14 +351,14 @@ pub mod task {
     fn alone<const N: usize>(
         task: &Task,
         kind: SubspaceKind,
-        pose: impl Fn(usize) -> Coordinate<N>,
-        home: impl Fn(usize) -> f64,
+        pose: &[Coordinate<N>; 3],
+        home: &[f64; 3],
     ) -> Target<N> {
-        let q = |i: usize| pose(i).minus(home(i));
+        let q = |i: usize| pose[i].minus(home[i]);
         match kind {
             SubspaceKind::Identity => Target::Identity,
             SubspaceKind::Planar => Target::Planar(PlanarTarget {
-                rotation: pose(2).unit_vector(home(2)),
+                rotation: pose[2].unit_vector(home[2]),
                 translation: Plane { re: q(0), im: q(1) },
             }),
             SubspaceKind::Spherical => orientation(task, pose),
@@ -358,11 +368,8 @@ pub mod task {
     }
 
     /// The rotation from home for Euler angles.
-    fn orientation<const N: usize>(
-        task: &Task,
-        pose: impl Fn(usize) -> Coordinate<N>,
-    ) -> Target<N> {
-        let [zeta, xi, psi] = [0, 1, 2].map(|i| pose(i).unit_vector(0.0));
+    fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> Target<N> {
+        let [zeta, xi, psi] = pose.map(|coordinate| coordinate.unit_vector(0.0));
         let absolute = euler(zeta, xi, psi);
         Target::Spherical(match task.home_orientation_inverse() {
             Some(inverse) => absolute.after(inverse),

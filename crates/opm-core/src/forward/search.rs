@@ -51,7 +51,7 @@ pub(super) struct Search<'a> {
 
 /// The heights above home that the actuated lifts give, metres.
 fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    m.lifts().filter_map(|lift| Some(lift.sign * displacements[lift.coordinate.actuated?]))
+    m.lifts().filter_map(|lift| Some(lift.rise(displacements[lift.coordinate.actuated?])))
 }
 
 impl<'a> Search<'a> {

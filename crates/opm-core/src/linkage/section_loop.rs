@@ -73,8 +73,8 @@ pub struct DeadPoint {
 const SINGULAR: f64 = 1e-12;
 
 impl SectionLoop {
-    /// Builds the loop of these joints at home in base coordinates, in the order of the loop. They are
-    /// projected exactly into the subspace.
+    /// The loop of these joints, in its order, as they are at home, in base coordinates. What they deviate from the
+    /// subspace by is dropped.
     ///
     /// # Errors
     /// [`ChainError`] if there is not one joint more than the subspace has dimensions, or if some of

@@ -1,7 +1,9 @@
 //! Inverse kinematics in every working mode: each choice of each leg is solved once, and the modes combine them.
 
-use super::inverse::{PoseError, Revolutions, Solution, SolvedPose, Unreachable};
+use super::inverse::Revolutions;
 use super::leg::{CompiledLeg, LegSolution};
+use super::pose::PoseError;
+use super::solution::{Solution, SolvedPose, Unreachable};
 use super::{Dependent, Manipulator, Mode};
 
 /// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
@@ -143,7 +145,7 @@ impl Manipulator {
     ) -> Option<(Mode, &'a Solution)> {
         let first = (all.completions.iter().enumerate())
             .filter(|(_, completion)| completion.missed.is_none())
-            .filter(|(_, completion)| self.lifts_admit(&completion.solved.pose))
+            .filter(|(_, completion)| self.lifts_admit(self.task.rise(&completion.solved.pose)))
             .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
         self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
@@ -183,7 +185,7 @@ impl Manipulator {
             };
             let legs = || self.legs.iter().zip(&completion.legs);
             let closes = legs().all(|leg| within(leg).iter().any(Option::is_some));
-            if !(closes && self.lifts_admit(&completion.solved.pose)) {
+            if !(closes && self.lifts_admit(self.task.rise(&completion.solved.pose))) {
                 continue;
             }
             reached = true;

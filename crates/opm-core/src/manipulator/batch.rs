@@ -9,8 +9,9 @@
 mod lanes;
 mod section;
 
-use super::inverse::{LARGEST, PoseError, Solution};
 use super::leg::CompiledLeg;
+use super::pose::{LARGEST, PoseError};
+use super::solution::Solution;
 use super::{Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
@@ -338,16 +339,11 @@ impl Block {
                 }
             }
         }
-        for (section, first, to) in [(Section::Lower, 0, v), (Section::Upper, task.lower_count, b)]
-        {
+        for (section, to) in [(Section::Lower, v), (Section::Upper, b)] {
             let mut at = [&[0.0; LANES]; 3];
             let mut home = [0.0; 3];
-            let count = if section == Section::Lower { task.lower_count } else { 4 };
-            let height = task.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
-            let of_section = pose.iter().zip(&task.coordinates).enumerate().skip(first).take(count);
-            let in_plane = of_section.filter(|(i, _)| *i != height).map(|(_, both)| both);
-            for (number, (column, coordinate)) in in_plane.enumerate() {
-                (at[number], home[number]) = (column, coordinate.home);
+            for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
+                (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
             }
             section::displace(task, section, at, home, to);
         }

@@ -26,6 +26,11 @@ impl Lift {
     pub fn displacement(&self, rise: f64) -> f64 {
         self.sign * rise
     }
+
+    /// The height above home at a displacement of the joint, metres.
+    pub fn rise(&self, displacement: f64) -> f64 {
+        self.sign * displacement
+    }
 }
 
 /// The joint of a leg that carries the height, and the split of the leg's other joints; `None` without a height.
@@ -72,10 +77,9 @@ impl Manipulator {
         (self.coordinates()[number].home + displacement, within)
     }
 
-    /// Whether all lifts are within their limits at a pose.
+    /// Whether all lifts are within their limits at a height above home, metres.
     #[inline]
-    pub(super) fn lifts_admit(&self, pose: &[f64]) -> bool {
-        let rise = self.task().rise(pose);
+    pub(super) fn lifts_admit(&self, rise: f64) -> bool {
         self.lifts().all(|lift| self.lifted(lift, rise).1)
     }
 
@@ -83,9 +87,8 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn height_admitted(&self, section: Section, of_section: &[f64]) -> bool {
         let Some(place) = self.task().height_in(section) else { return true };
-        let first = if section == Section::Lower { 0 } else { self.task().lower_count };
-        let rise = of_section[place] - self.task().coordinates[first + place].home;
-        self.lifts().all(|lift| self.lifted(lift, rise).1)
+        let home = self.task().coordinates[self.task().range(section)][place].home;
+        self.lifts_admit(of_section[place] - home)
     }
 
     /// The limits of the heights above home that the lifts admit.

@@ -434,8 +434,11 @@ impl Manipulator {
             out.pose.fill(0.0);
             out.pose[(n - 1, height.coordinate)] = 1.0;
         }
-        let of =
-            |section: Section| task.numbers(section).enumerate().map(move |(i, n)| (section, i, n));
+        let of = |section: Section| {
+            task.in_plane(section, task.range(section))
+                .enumerate()
+                .map(move |(i, n)| (section, i, n))
+        };
         for (section, component, column) in of(Section::Lower).chain(of(Section::Upper)) {
             let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
             match section {

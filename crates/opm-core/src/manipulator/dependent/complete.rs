@@ -4,9 +4,9 @@ use super::constraint::{Constraint, follows, target_of};
 use super::{Closed, Dependent, OBEYED};
 use crate::chain::ReachDeficit;
 use crate::group::JointDisplacement;
-use crate::manipulator::inverse::{PoseError, Revolutions, Solution, Unreachable};
+use crate::manipulator::inverse::Revolutions;
 use crate::manipulator::leg::Section;
-use crate::manipulator::{Manipulator, Mode};
+use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
 use crate::numeric::Quantity;
 
 impl Dependent {

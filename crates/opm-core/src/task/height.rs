@@ -1,0 +1,81 @@
+//! The height of a Schoenflies section.
+
+use super::Task;
+use crate::decomposition::Decomposition;
+use crate::group::subspace::SubspaceClass;
+use crate::mechanism::leg::Section;
+use nalgebra::{Isometry3, Translation3, Vector3};
+use std::ops::Range;
+
+/// The height of a Schoenflies section. A Schoenflies displacement is a planar one followed by a translation along the
+/// plane's normal, and the two commute. So the section is treated as a planar one, and the height by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Height {
+    /// The section.
+    pub section: Section,
+    /// The number of its task coordinate.
+    pub coordinate: usize,
+    /// The unit direction in which it grows, as it is at home, in base coordinates.
+    pub up: Vector3<f64>,
+}
+
+impl Height {
+    /// The section of a decomposition that has a height. Two such sections would have all translations in common, and
+    /// are no decomposition.
+    pub(super) fn of(decomposition: &Decomposition) -> Option<Section> {
+        let has = |class: &SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });
+        match (has(&decomposition.lower), has(&decomposition.upper)) {
+            (true, _) => Some(Section::Lower),
+            (false, true) => Some(Section::Upper),
+            (false, false) => None,
+        }
+    }
+}
+
+impl Task {
+    /// The height of the Schoenflies section above its home at a pose, metres; zero where there is none.
+    #[doc(hidden)]
+    #[inline]
+    pub fn rise(&self, pose: &[f64]) -> f64 {
+        self.height.as_ref().map_or(0.0, |height| {
+            pose[height.coordinate] - self.coordinates[height.coordinate].home
+        })
+    }
+
+    /// A displacement `v · b` of the platform, raised by `rise` metres along the direction of the Schoenflies section.
+    pub(crate) fn raised(&self, rise: f64, g: Isometry3<f64>) -> Isometry3<f64> {
+        match &self.height {
+            None => g,
+            Some(Height { section: Section::Lower, up, .. }) => Translation3::from(up * rise) * g,
+            Some(Height { section: Section::Upper, up, .. }) => g * Translation3::from(up * rise),
+        }
+    }
+
+    /// The numbers of a section's coordinates.
+    #[inline]
+    pub(crate) fn range(&self, section: Section) -> Range<usize> {
+        match section {
+            Section::Lower => 0..self.lower_count,
+            Section::Upper => self.lower_count..self.coordinates.len(),
+        }
+    }
+
+    /// Of values for each of a section's coordinates, all but that for a height.
+    #[inline]
+    pub(crate) fn in_plane<T>(
+        &self,
+        section: Section,
+        values: impl IntoIterator<Item = T>,
+    ) -> impl Iterator<Item = T> {
+        let height = self.height_in(section).unwrap_or(usize::MAX);
+        let others = values.into_iter().enumerate().filter(move |(place, _)| *place != height);
+        others.map(|(_, value)| value)
+    }
+
+    /// The place of the height among a section's coordinates; `None` if the section has none.
+    #[inline]
+    pub(crate) fn height_in(&self, section: Section) -> Option<usize> {
+        let height = self.height.as_ref().filter(|height| height.section == section)?;
+        Some(height.coordinate - self.range(section).start)
+    }
+}
