@@ -1,5 +1,6 @@
 """The command of the Python package, compared with the program that cargo builds."""
 
+import functools
 import os
 import pty
 import signal
@@ -87,11 +88,15 @@ def test_ctrl_c_while_it_waits(opm, program):
     command = [opm] if program == "cargo" else SCRIPT
     read, write = os.pipe()
     os.write(write, b"format = 1\n")
-    process = subprocess.Popen([*command, "decompose", f"/dev/fd/{read}"], pass_fds=[read], stderr=subprocess.PIPE)
+    # Where the tests run in the background, a shell has them ignore Ctrl-C.
+    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(
+        [*command, "decompose", f"/dev/fd/{read}"], pass_fds=[read], stderr=subprocess.PIPE, preexec_fn=heed
+    )
     os.close(read)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
-    assert process.wait() == -signal.SIGINT
+    assert process.wait(60) == -signal.SIGINT
     os.close(write)
     assert b"Traceback" not in process.stderr.read()
     process.stderr.close()

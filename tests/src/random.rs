@@ -1,5 +1,6 @@
 //! Random mechanisms of every pair of subspaces, with the decomposition from which they were built.
 
+use crate::height::is_lift;
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::decomposition::mobility::mobility;
@@ -93,11 +94,6 @@ impl Kind {
         }
     }
 
-    /// Whether it is a Schoenflies group.
-    fn has_height(self) -> bool {
-        matches!(self, Self::Schoenflies(_))
-    }
-
     /// The motion along or about z that it contains.
     fn meet(self) -> Meet {
         match self {
@@ -169,11 +165,6 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         }
         (Kind::Schoenflies(_), Some(Translation)) => &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR"],
     }
-}
-
-/// The pairs that may have legs with too few freedoms.
-pub fn constrained_pairs() -> impl Iterator<Item = [Kind; 2]> {
-    PAIRS.into_iter().filter(|pair| !pair.iter().any(|kind| kind.has_height()))
 }
 
 /// What the two subspaces of a pair share.
@@ -250,7 +241,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
 
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
 /// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
-/// joints, or some with several freedoms, and for other pairs than [`constrained_pairs`].
+/// joints, or some with several freedoms. A joint that carries a height is kept.
 pub fn constrained(
     rng: &mut Rng,
     pair: [Kind; 2],
@@ -258,18 +249,21 @@ pub fn constrained(
     repeated: bool,
     options: Options,
 ) -> Option<(Mechanism, Decomposition)> {
-    constrained_pairs().find(|other| *other == pair)?;
     let (mut mechanism, mut decomposition) = mechanism(rng, pair, options);
     let (leg, split) = (&mut mechanism.legs[0], &mut decomposition.legs[0]);
     if leg.joints.iter().any(|joint| joint.freedoms() > 1) {
         return None;
     }
-    for (section, count) in [&mut split.lower, &mut split.upper].into_iter().zip(lacks) {
+    let classes = [&decomposition.lower, &decomposition.upper];
+    let sections = [&mut split.lower, &mut split.upper].into_iter().zip(classes);
+    for ((section, class), count) in sections.zip(lacks) {
         for _ in 0..count {
-            if section.is_empty() {
+            let removable = |i: &usize| !is_lift(leg, section[*i], class);
+            let removable: Vec<usize> = (0..section.len()).filter(removable).collect();
+            if removable.is_empty() {
                 return None;
             }
-            section.remove(rng.usize(..section.len()));
+            section.remove(removable[rng.usize(..removable.len())]);
         }
     }
     if split.lower.len() + split.upper.len() == 0 {

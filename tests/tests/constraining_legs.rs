@@ -11,7 +11,7 @@ use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::differences::derivatives;
-use opm_tests::random::{Kind, Options, constrained, constrained_pairs};
+use opm_tests::random::{Kind, Options, PAIRS, constrained};
 use opm_tests::structured::gap;
 use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
 use std::f64::consts::{PI, TAU};
@@ -29,7 +29,7 @@ fn options(round: usize) -> Options {
 #[test]
 fn every_mode_closes_every_original_leg() {
     let mut rng = Rng::with_seed(140);
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             let (mut made, mut poses, mut reached, mut solutions) = (0, 0, 0, 0);
             let mut worst = 0.0_f64;
@@ -93,7 +93,7 @@ fn every_mode_closes_every_original_leg() {
 fn every_displacement_of_the_leg_is_found() {
     let mut rng = Rng::with_seed(141);
     let mut tried = 0;
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             for round in 0..30 {
                 let Some((mechanism, decomposition)) =
@@ -173,7 +173,7 @@ fn solutions(rng: &mut Rng, m: &Manipulator) -> Vec<(Vec<f64>, Mode, Solution)> 
 fn rates_are_derivatives() {
     let mut rng = Rng::with_seed(142);
     let (mut compared, mut unsure, mut worst) = (0, 0, [0.0_f64; 2]);
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             for round in 0..4 {
                 let Some(m) = actuated(&mut rng, pair, lacks, round) else { continue };
@@ -246,7 +246,7 @@ fn rates_are_derivatives() {
 fn joints_of_a_pose_lead_back_to_it() {
     let mut rng = Rng::with_seed(143);
     let (mut poses, mut open, mut loose, mut near, mut turns) = (0, 0, 0, 0, 0);
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             for round in 0..8 {
                 let Some(m) = actuated(&mut rng, pair, lacks, round) else { continue };
@@ -321,7 +321,7 @@ fn joints_of_a_pose_lead_back_to_it() {
 fn sweeps_agree_with_the_inverse() {
     let mut rng = Rng::with_seed(144);
     let (mut poses, mut reached) = (0, 0);
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             for round in 0..3 {
                 let limited = Options { limited: 0.3, balls: round == 1 };
@@ -373,7 +373,7 @@ fn sweeps_agree_with_the_inverse() {
 fn home_is_where_the_joints_are() {
     let mut rng = Rng::with_seed(145);
     let mut homes = 0;
-    for pair in constrained_pairs() {
+    for pair in PAIRS {
         for lacks in LACKS {
             for round in 0..6 {
                 let Some((mechanism, decomposition)) =

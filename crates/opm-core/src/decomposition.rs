@@ -394,18 +394,11 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
     })
 }
 
-/// The first leg without a joint that carries the height, or with another number of freedoms than the group, if all legs
-/// move in a Schoenflies group.
+/// The first leg without a joint that carries the height, if all legs move in a Schoenflies group.
 fn height_miss(mechanism: &Mechanism, group: &SubspaceClass) -> Option<HeightMiss> {
     let SubspaceClass::Schoenflies { axis } = group else { return None };
     let size = frame(mechanism).length;
-    let missing = |leg: &Leg| {
-        let freedoms = Freedom::of_leg(leg);
-        let reason = HeightReason::Freedoms(freedoms.len());
-        let miss = HeightMiss { leg: leg.name.clone(), reason };
-        let wrong = (freedoms.len() != group.dimension()).then_some(miss);
-        wrong.or_else(|| height::lift(leg, &freedoms, axis, size).err())
-    };
+    let missing = |leg: &Leg| height::lift(leg, &Freedom::of_leg(leg), axis, size).err();
     mechanism.legs.iter().find_map(missing)
 }
 

@@ -253,20 +253,22 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let twists = match &self.dependent {
-            None => self.section_twists(&at.solved.pose, rates, accelerations),
+        let all;
+        let [rates, accelerations] = match &self.dependent {
+            None => [rates, accelerations],
             Some(dependent) => {
-                let all = self.all_rates(dependent, at, [rates, accelerations], out);
-                let Some([rates, accelerations]) = all else {
+                let found = self.all_rates(dependent, at, [rates, accelerations], out);
+                let Some(found) = found else {
                     self.all_singular(&mut out.singular);
                     out.dependent_rates.fill(f64::NAN);
                     out.dependent_accelerations.fill(f64::NAN);
                     return Ok(false);
                 };
-                let n = self.task().coordinates.len();
-                self.section_twists(&at.solved.pose, &rates[..n], &accelerations[..n])
+                all = found;
+                all.each_ref().map(|all| &all[..self.task().coordinates.len()])
             }
         };
+        let twists = self.section_twists(&at.solved.pose, rates, accelerations);
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);

@@ -70,22 +70,13 @@ pub enum ConstraintError {
         /// The mobility that one constraining leg for each section would leave.
         determined: usize,
     },
-    /// A leg of a mechanism with a Schoenflies section has too few freedoms.
-    #[error(
-        "leg {leg} has fewer freedoms than the motion of the platform, which closed forms do not cover where a section \
-         is a Schoenflies one"
-    )]
-    Height {
-        /// The leg's name.
-        leg: String,
-    },
 }
 
 impl ConstraintError {
     /// The name of the first leg that it is about.
     pub fn leg(&self) -> Option<&str> {
         match self {
-            Self::Singular { leg, .. } | Self::Height { leg } => Some(leg),
+            Self::Singular { leg, .. } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
         }
     }
@@ -139,14 +130,6 @@ impl Dependent {
         mobility: usize,
         size: f64,
     ) -> Result<Option<Self>, ConstraintError> {
-        if task.height.is_some() {
-            let partial =
-                |leg: &CompiledLeg| [&leg.lower, &leg.upper].iter().any(|s| s.partial.is_some());
-            return match legs.iter().position(partial) {
-                Some(leg) => Err(ConstraintError::Height { leg: names[leg].to_owned() }),
-                None => Ok(None),
-            };
-        }
         let mut steps: Vec<Closed> = Vec::new();
         let mut checks = Vec::new();
         for section in order(task) {
@@ -267,14 +250,6 @@ impl Dependent {
     }
 }
 
-/// The numbers of a section's coordinates.
-fn coordinates_of(task: &Task, section: Section) -> Vec<usize> {
-    match section {
-        Section::Lower => (0..task.lower_count).collect(),
-        Section::Upper => (task.lower_count..task.coordinates.len()).collect(),
-    }
-}
-
 /// How the constraints of a leg's section determine coordinates; `None` if they determine none at home.
 fn closed(
     task: &Task,
@@ -288,7 +263,7 @@ fn closed(
         Section::Upper => (&legs[leg].upper, &task.upper),
     };
     let partial = compiled.partial?;
-    let coordinates = coordinates_of(task, section);
+    let coordinates: Vec<usize> = task.in_plane(section, task.range(section)).collect();
     let bridge = legs[leg].imaginary_joint().filter(|_| legs[leg].split_section == section);
     let modulo = task.shared().is_some() && order(task)[0] == section;
     let (first, second) = partial.free();

@@ -78,14 +78,14 @@ impl Manipulator {
         buffer: &'a mut ActuatedJoints,
     ) -> Result<Option<&'a ActuatedJoints>, PoseError> {
         self.check_pose(pose)?;
-        let (v, b) = match &self.dependent {
-            None => self.task.sections(pose),
+        let ((v, b), rise) = match &self.dependent {
+            None => (self.task.sections(pose), self.task.rise(pose)),
             Some(dependent) => {
                 let all = &mut buffer.all;
                 if dependent.complete_from_home(self, mode, pose, all).is_err() {
                     return Ok(None);
                 }
-                self.task.sections(all)
+                (self.task.sections(all), self.task.rise(all))
             }
         };
         buffer.within_limits = true;
@@ -111,7 +111,7 @@ impl Manipulator {
             }
         }
         for lift in self.lifts() {
-            let (value, within) = self.lifted(lift, self.task.rise(pose));
+            let (value, within) = self.lifted(lift, rise);
             buffer.within_limits &= within;
             if let Some(actuated) = lift.coordinate.actuated {
                 buffer.actuated[actuated] = value;

@@ -31,8 +31,8 @@ pub(super) struct OneJoint {
     pub section: Section,
     /// The numbers of the dependent coordinates.
     pub coordinates: Vec<usize>,
-    /// The number of the section's first coordinate.
-    first: usize,
+    /// The numbers of the section's coordinates, but that of a height.
+    all: Vec<usize>,
     motion: Motion,
 }
 
@@ -63,9 +63,7 @@ impl OneJoint {
         section: Section,
         free: Option<LocalTwist>,
     ) -> Option<Self> {
-        let (subspace, first) = of(task, section);
-        let count = subspace.dimension();
-        let (motion, given) = match (subspace.kind, free) {
+        let (motion, given) = match (subspace(task, section).kind, free) {
             (_, None) => (Motion::None, None),
             (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (Motion::Turn(s), Some(2)),
             (SubspaceKind::Planar, Some(s)) => {
@@ -84,15 +82,16 @@ impl OneJoint {
                 Some(_),
             ) => return None,
         };
-        let coordinates = (0..count).filter(|i| Some(*i) != given).map(|i| first + i).collect();
-        Some(Self { leg, section, coordinates, first, motion })
+        let all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
+        let given = given.map(|i| all[i]);
+        let coordinates = all.iter().copied().filter(|i| Some(*i) != given).collect();
+        Some(Self { leg, section, coordinates, all, motion })
     }
 
     /// A rotation about the third direction, and one about the axis `s`.
     pub fn last_angle(task: &Task, leg: usize, section: Section, s: LocalTwist) -> Self {
-        let (_, first) = of(task, section);
-        let motion = Motion::LastAngle(s);
-        Self { leg, section, coordinates: vec![first + 2], first, motion }
+        let all: Vec<usize> = task.range(section).collect();
+        Self { leg, section, coordinates: vec![all[2]], all, motion: Motion::LastAngle(s) }
     }
 
     /// Whether two displacements of the joint belong to a value of the coordinate that tells it.
@@ -105,16 +104,16 @@ impl OneJoint {
     /// share it. Elsewhere there are two triples, and the one is chosen that belongs to the branch `sign`.
     pub fn choose_angles(&self, manipulator: &Manipulator, sign: f64, pose: &mut [f64]) {
         let task = manipulator.task();
-        let home = |i: usize| task.coordinates[self.first + i].home;
+        let home = |i: usize| task.coordinates[self.all[i]].home;
         match self.motion {
             Motion::None | Motion::Turn(_) | Motion::Slide(..) => {}
             Motion::Third => {
                 let (v, b) = task.sections(pose);
                 let displacement = if self.section == Section::Lower { v } else { b };
-                pose[self.first] = near(of_displacement(&displacement, home)[0], home(0));
+                pose[self.all[0]] = near(of_displacement(&displacement, home)[0], home(0));
             }
             Motion::Axis(s) | Motion::LastAngle(s) => {
-                let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[self.first + i]);
+                let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[self.all[i]]);
                 let other = [near(zeta + PI, home(0)), -xi, near(psi + PI, home(2))];
                 let off = |[_, xi, psi]: [f64; 3]| {
                     let found = angles(task, &s, xi, sign);
@@ -125,7 +124,8 @@ impl OneJoint {
                 // Near their singularity only the sum of the two angles is known, or their difference.
                 let follows = angles(task, &s, xi, sign).map_or(psi, |found| near(found[2], psi));
                 let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
-                pose[self.first..self.first + 3].copy_from_slice(&[zeta + rest, xi, follows]);
+                let chosen = [zeta + rest, xi, follows];
+                self.all.iter().zip(chosen).for_each(|(&i, angle)| pose[i] = angle);
             }
         }
     }
@@ -143,10 +143,10 @@ impl OneJoint {
         pose: &mut [f64],
     ) -> Result<(), ReachDeficit> {
         let task = manipulator.task();
-        let home = |i: usize| task.coordinates[self.first + i].home;
-        let from_home = |i: usize| pose[self.first + i] - home(i);
+        let home = |i: usize| task.coordinates[self.all[i]].home;
+        let from_home = |i: usize| pose[self.all[i]] - home(i);
         // g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
-        let subspace = of(task, self.section).0;
+        let subspace = subspace(task, self.section);
         let shifted = |motion: Displacement| {
             let leg = &manipulator.legs[self.leg];
             match self.section {
@@ -183,12 +183,12 @@ impl OneJoint {
             }
             Motion::Third => {
                 for i in [1, 2] {
-                    pose[self.first + i] = home(i);
+                    pose[self.all[i]] = home(i);
                 }
                 return Ok(());
             }
             Motion::Axis(s) | Motion::LastAngle(s) => {
-                let xi = pose[self.first + 1];
+                let xi = pose[self.all[1]];
                 let mut found = angles(task, &s, xi, sign)?;
                 found[0] += match still() {
                     Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
@@ -197,8 +197,10 @@ impl OneJoint {
                 found
             }
         };
-        for &coordinate in &self.coordinates {
-            let value = found[coordinate - self.first];
+        for (&coordinate, value) in self.all.iter().zip(found) {
+            if !self.coordinates.contains(&coordinate) {
+                continue;
+            }
             let c = &task.coordinates[coordinate];
             pose[coordinate] = match c.quantity {
                 Quantity::Angle if subspace.kind != SubspaceKind::Cylindrical => {
@@ -211,11 +213,10 @@ impl OneJoint {
     }
 }
 
-/// A section's subspace, and the number of its first coordinate.
-fn of(task: &Task, section: Section) -> (&Subspace, usize) {
+fn subspace(task: &Task, section: Section) -> &Subspace {
     match section {
-        Section::Lower => (&task.lower, 0),
-        Section::Upper => (&task.upper, task.lower_count),
+        Section::Lower => &task.lower,
+        Section::Upper => &task.upper,
     }
 }
 
