@@ -2,13 +2,14 @@
 
 use opm_core::Section;
 use opm_core::decomposition::{Freedom, LegSplit};
+use opm_core::group::JointDisplacement;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::joint::JointKind;
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, TaskCoordinate};
 
-/// Whether every slider along the direction of a Schoenflies section is within its limits, for the values of the
+/// Whether every joint that carries the height of a Schoenflies section is within its limits, for the values of the
 /// section's coordinates. All other sections have no height.
 pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
     let d = m.decomposition();
@@ -32,9 +33,13 @@ pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
         part(split).iter().filter(|freedom| is_lift(leg, **freedom, class)).all(|freedom| {
             let joint = &leg.joints[freedom.joint];
             let c = &joint.coordinates[0];
-            let value = c.home + joint.axis.dot(&up).signum() * rise;
-            // A value on a limit is within it, whatever the rounding.
-            c.limits.is_none_or(|[low, high]| (low - 1e-9..=high + 1e-9).contains(&value))
+            let advance = match joint.kind {
+                JointKind::Helical { pitch } => pitch * joint.axis.dot(&up),
+                _ => joint.axis.dot(&up),
+            };
+            // Limits include what rounding may change.
+            let limits = c.displacement_limits(m.characteristic_length());
+            limits.admits(JointDisplacement::Value(rise / advance))
         })
     })
 }
@@ -43,5 +48,6 @@ pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
 pub fn is_lift(leg: &Leg, freedom: Freedom, class: &SubspaceClass) -> bool {
     let SubspaceClass::Schoenflies { axis } = class else { return false };
     let joint = &leg.joints[freedom.joint];
-    joint.kind == JointKind::Prismatic && joint.axis.dot(axis).abs() > 0.5
+    let carries = matches!(joint.kind, JointKind::Prismatic | JointKind::Helical { .. });
+    carries && joint.axis.dot(axis).abs() > 0.5
 }

@@ -155,7 +155,7 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
         (Kind::TranslationalPlane, None) => &["PP"],
         (Kind::TranslationalPlane, Some(_)) => &["P"],
-        // A slider more, anywhere.
+        // A slider more, anywhere; a screw may take its place.
         (Kind::Schoenflies(_), None) => &[
             "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
             "RPPP", "PPRP", "PPPR",
@@ -230,18 +230,79 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         redundancy: 0,
         deviation: 0.0,
     };
-    let mechanism = Mechanism {
+    let mut mechanism = Mechanism {
         name: format!("{pair:?}"),
         legs,
         platform: displacement * Point3::from(vector(rng)),
         task: TaskHints::default(),
     };
+    let classes = [&decomposition.lower, &decomposition.upper];
+    let has_height = |class: &&SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });
+    if classes.iter().any(has_height) && rng.bool() {
+        lean(rng, &mut mechanism, &decomposition);
+    }
     (mechanism, decomposition)
+}
+
+/// The joint of a leg that carries a height, and its direction; `None` without a height.
+fn lift<'a>(
+    leg: &'a mut Leg,
+    split: &LegSplit,
+    decomposition: &Decomposition,
+) -> Option<(&'a mut Joint, Unit<Vector3<f64>>)> {
+    let sections = [(&decomposition.lower, &split.lower), (&decomposition.upper, &split.upper)];
+    sections
+        .into_iter()
+        .find_map(|(class, freedoms)| {
+            let SubspaceClass::Schoenflies { axis } = class else { return None };
+            Some((freedoms.iter().find(|freedom| is_lift(leg, **freedom, class))?.joint, *axis))
+        })
+        .map(|(joint, axis)| (&mut leg.joints[joint], axis))
+}
+
+/// Replaces a joint by one of another kind, about or along `axis`.
+fn replace(joint: &mut Joint, kind: JointKind, axis: Unit<Vector3<f64>>) {
+    let mut other = Joint::new(joint.name.clone(), kind, axis, joint.point);
+    other.actuated = joint.actuated;
+    for (new, old) in other.coordinates.iter_mut().zip(&joint.coordinates) {
+        (new.home, new.limits) = (old.home, old.limits);
+    }
+    *joint = other;
+}
+
+/// Puts an inclined slider or a screw in the place of most joints that carry a height.
+fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposition) {
+    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        let Some((joint, up)) = lift(leg, split, decomposition) else { continue };
+        let aside = beside(&up).0 * rng.f64();
+        let pitch = (0.2 + rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
+        match rng.usize(..3) {
+            0 => {}
+            1 => joint.axis = Unit::new_normalize(joint.axis.into_inner() + aside),
+            _ => replace(joint, JointKind::Helical { pitch }, joint.axis),
+        }
+    }
+}
+
+/// The mechanism with sliders along the direction in the place of all joints that carry a height: bounds and sections
+/// alone need them.
+pub fn straight(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
+    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        straighten(leg, split, decomposition);
+    }
+    mechanism
+}
+
+fn straighten(leg: &mut Leg, split: &LegSplit, decomposition: &Decomposition) {
+    if let Some((joint, up)) = lift(leg, split, decomposition) {
+        replace(joint, JointKind::Prismatic, up);
+    }
 }
 
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
 /// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
-/// joints, or some with several freedoms. A joint that carries a height is kept.
+/// joints, or some with several freedoms. A joint that carries a height is kept, as a
+/// slider along its direction.
 pub fn constrained(
     rng: &mut Rng,
     pair: [Kind; 2],
@@ -250,6 +311,7 @@ pub fn constrained(
     options: Options,
 ) -> Option<(Mechanism, Decomposition)> {
     let (mut mechanism, mut decomposition) = mechanism(rng, pair, options);
+    straighten(&mut mechanism.legs[0], &decomposition.legs[0], &decomposition);
     let (leg, split) = (&mut mechanism.legs[0], &mut decomposition.legs[0]);
     if leg.joints.iter().any(|joint| joint.freedoms() > 1) {
         return None;

@@ -11,7 +11,7 @@ use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_tests::newton::{Closure, displacement};
-use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders};
+use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders, straight};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
@@ -142,9 +142,10 @@ fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
         assert!(tally.compared < 40 * POSES, "{pair:?} {above}: {:?}, {expected:?}", tally.orders);
         let (mechanism, decomposition) =
             mechanism(rng, pair, Options { limited: 0.0, balls: true });
+        let listed = straight(mechanism.clone(), &decomposition);
         for (number, split) in decomposition.legs.iter().enumerate() {
             let found =
-                [&split.lower, &split.upper].map(|section| order(&mechanism.legs[number], section));
+                [&split.lower, &split.upper].map(|section| order(&listed.legs[number], section));
             let new = found.iter().zip(&tally.orders).any(|(order, seen)| !seen.contains(order));
             if split.imaginary != above || (tally.compared >= POSES && !new) {
                 continue;

@@ -8,7 +8,7 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Options, PAIRS, mechanism, straight};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
     Visits, boundary, mask_boundary,
@@ -77,6 +77,7 @@ fn the_whole_is_what_both_sections_reach() {
             let limited = if round % 2 == 0 { 0.0 } else { 0.3 };
             let options = Options { limited, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let mechanism = straight(mechanism, &decomposition);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut all = manipulator.all_modes();
             let mut solution = manipulator.solution();
@@ -125,6 +126,7 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
         for pair in PAIRS {
             let options = Options { limited: 0.2, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+            let mechanism = straight(mechanism, &decomposition);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let lower = manipulator.task().lower_count;
             let coordinates = Sections::Lower.coordinates(&manipulator);

@@ -6,7 +6,7 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{Options, PAIRS, mechanism, straight};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
 };
@@ -152,7 +152,8 @@ fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> 
 /// what counts.
 fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
     let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
-    let (mut mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let (mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let mut mechanism = straight(mechanism, &decomposition);
     let task = Task::new(&mechanism, &decomposition).unwrap();
     for coordinate in &task.coordinates {
         if rng.bool() {

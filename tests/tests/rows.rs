@@ -9,7 +9,7 @@ use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism, order};
+use opm_tests::random::{Options, PAIRS, mechanism, order, straight};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -82,6 +82,7 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
         let pair = PAIRS[round % PAIRS.len()];
         let options = Options { limited: [0.0, 0.3, 0.7, 1.0][rng.usize(..4)], balls: rng.bool() };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = straight(mechanism, &decomposition);
         let mechanism = match rng.u8(..3) {
             0 => without_limits_on_angles(mechanism),
             1 => with_free_upper_sections(mechanism, &decomposition),
@@ -157,7 +158,8 @@ fn limits_that_lie_on_poses_are_no_exception() {
     for round in 0..400 {
         let pair = PAIRS[round % PAIRS.len()];
         let options = Options { limited: 0.0, balls: false };
-        let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mut mechanism = straight(mechanism, &decomposition);
         let free = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
         let free = free.unwrap();
         let axes = free.task_coordinates().iter().zip([41, 9, 3, 3, 3, 2]).map(|(c, count)| {
@@ -236,6 +238,7 @@ fn legs_independent_of_the_slice_are_joined() {
         let pair = PAIRS[0];
         let options = Options { limited: 0.7, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = straight(mechanism, &decomposition);
         let mechanism =
             without_limits_on_angles(with_free_upper_sections(mechanism, &decomposition));
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
@@ -278,6 +281,7 @@ fn fine_grids_are_no_exception() {
         let pair = [PAIRS[0], PAIRS[3], PAIRS[7], PAIRS[8], PAIRS[10]][round % 5];
         let options = Options { limited: 0.3, balls: false };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = straight(mechanism, &decomposition);
         let mechanism = without_limits_on_angles(mechanism);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let modes = Modes::One(manipulator.home_mode());
@@ -331,6 +335,7 @@ fn rows_that_touch_a_boundary_are_no_exception() {
         let pair = [PAIRS[0], PAIRS[3]][round % 2];
         let options = Options { limited: 0.0, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let mechanism = straight(mechanism, &decomposition);
         let mechanism = with_free_upper_sections(mechanism, &decomposition);
         let rings: Vec<usize> = (0..mechanism.legs.len())
             .filter(|&leg| {

@@ -210,7 +210,7 @@ impl Manipulator {
         let home = self.task().coordinates[height.coordinate].home;
         let rise = coordinates[height.coordinate - first].minus(home);
         self.lift_limits().fold(Share::ALL, |share, (lift, limits)| {
-            share.and(within(limits, &Enclosed::Value(rise * lift.sign)))
+            share.and(within(limits, &Enclosed::Value(rise * lift.rate)))
         })
     }
 }

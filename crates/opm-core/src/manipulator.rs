@@ -34,6 +34,7 @@ pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
+pub(crate) use lift::{Lean, Lift};
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;

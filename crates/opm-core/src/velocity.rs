@@ -66,9 +66,10 @@ pub use jacobian::Jacobians;
 pub use singularity::{Cause, Measures, Singularities};
 
 use crate::group::{JointDisplacement, LocalTwist};
-use crate::manipulator::{LARGEST, LegSolution, Manipulator, Section, Solution};
+use crate::manipulator::{LARGEST, LegSolution, Lift, Manipulator, Section, Solution};
 use nalgebra::Vector3;
 use section::Differential;
+use std::borrow::Cow;
 
 /// A measure of singularity below this counts as zero, and there are no rates. At a singular pose, where two
 /// solutions coincide, a chain takes the square root of a number that is zero up to rounding, some 1e-15 or
@@ -186,6 +187,8 @@ struct SectionTwists {
     v: [LocalTwist; 2],
     /// The twist `ḃ b⁻¹` of the upper section.
     b: [LocalTwist; 2],
+    /// The rate of a height, and its derivative; zeros where there is none.
+    rise: [f64; 2],
 }
 
 /// The motion of a leg: rates, then accelerations.
@@ -282,13 +285,10 @@ impl Manipulator {
             }
             self.write_motion(number, &motion, out);
         }
-        if let Some(height) = &self.task().height {
-            for lift in self.lifts() {
-                let number = lift.coordinate.number;
-                out.joint_rates[number] = lift.displacement(rates[height.coordinate]);
-                out.joint_accelerations[number] =
-                    lift.displacement(accelerations[height.coordinate]);
-            }
+        for lift in self.lifts() {
+            let [rate, acceleration] = twists.rise.map(|rise| lift.displacement(rise));
+            let number = lift.coordinate.number;
+            (out.joint_rates[number], out.joint_accelerations[number]) = (rate, acceleration);
         }
         Ok(out.singular.is_empty())
     }
@@ -325,6 +325,7 @@ impl Manipulator {
         SectionTwists {
             v: twists(&task.lower_screws(pose), Section::Lower),
             b: twists(&task.upper_screws(pose), Section::Upper),
+            rise: [rates, accelerations].map(|all| task.height_rate(all)),
         }
     }
 
@@ -372,6 +373,8 @@ impl Manipulator {
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
         let (leg, solved) = (&self.legs[number], &at.legs[number]);
+        // A leg that is solved at a height exists there.
+        let leg = leg.at(self.task().rise(&at.solved.pose)).unwrap_or(Cow::Borrowed(leg));
         let (task, length) = (self.task(), self.characteristic_length());
         let coordinates = self.coordinates();
         let vector = |first: usize| {
@@ -394,23 +397,29 @@ impl Manipulator {
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
-        let solve = |section: &Differential, [twist, derivative]: [LocalTwist; 2]| {
+        let solve = |section: &Differential, of: Section, target: [LocalTwist; 2]| {
+            let [twist, derivative] = match &leg.lift {
+                Some(Lift { lean: Some(lean), .. }) if lean.section == of => {
+                    section.behind(leg, lean, solved.section(of), target, twists.rise)
+                }
+                _ => target,
+            };
             let rates = section.rates(&twist);
             [rates, section.accelerations(&twist, &derivative, &rates)]
         };
         match leg.split_section {
             Section::Upper => {
-                let upper = solve(upper, twists.b);
+                let upper = solve(upper, Section::Upper, twists.b);
                 let tau = upper.map(|u| leg.imaginary_joint().map_or(0.0, |joint| u[joint]));
                 let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
                 let [twist, derivative] = twists.v;
                 let along_rate = task.lower.kind.bracket(&twist, &along);
                 let target =
                     [twist + along * tau[0], derivative + along * tau[1] + along_rate * tau[0]];
-                LegMotion { lower: solve(lower, target), upper, tau }
+                LegMotion { lower: solve(lower, Section::Lower, target), upper, tau }
             }
             Section::Lower => {
-                let lower = solve(lower, twists.v);
+                let lower = solve(lower, Section::Lower, twists.v);
                 let last = leg.lower.chain.freedoms() - 1;
                 let along_rates = lower.map(|l| l[last]);
                 let kind = task.upper.kind;
@@ -423,7 +432,8 @@ impl Manipulator {
                     along * along_rates[0] + twist,
                     along * along_rates[1] + derivative + twist_rate * along_rates[0],
                 ];
-                LegMotion { lower, upper: solve(upper, target), tau: along_rates.map(|c| -c) }
+                let upper = solve(upper, Section::Upper, target);
+                LegMotion { lower, upper, tau: along_rates.map(|c| -c) }
             }
         }
     }

@@ -270,7 +270,7 @@ fn planar(joints: &[PlanarJoint; 3], held: usize, displacement: JointDisplacemen
     let none = PlanarDisplacement::IDENTITY;
     let (before, first, second, after) = match held {
         0 => (known, joints[1], joints[2], none),
-        1 => (none, joints[0], carried(&known, &joints[2]), known),
+        1 => (none, joints[0], joints[2].carried(&known), known),
         _ => (none, joints[0], joints[1], known),
     };
     let inner = after.inverse();
@@ -292,15 +292,6 @@ fn planar(joints: &[PlanarJoint; 3], held: usize, displacement: JointDisplacemen
         (PlanarJoint::Prismatic { .. }, PlanarJoint::Prismatic { .. }) => {
             Condition::Heading { rotation: before.rotation * after.rotation }
         }
-    }
-}
-
-fn carried(g: &PlanarDisplacement, joint: &PlanarJoint) -> PlanarJoint {
-    match *joint {
-        PlanarJoint::Revolute { at, reversed } => {
-            PlanarJoint::Revolute { at: g.apply(at), reversed }
-        }
-        PlanarJoint::Prismatic { along } => PlanarJoint::Prismatic { along: g.rotation * along },
     }
 }
 

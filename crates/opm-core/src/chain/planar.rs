@@ -56,6 +56,14 @@ impl PlanarJoint {
             }
         }
     }
+
+    /// The joint displaced by `g`.
+    pub(crate) fn carried(&self, g: &PlanarDisplacement) -> Self {
+        match *self {
+            Self::Revolute { at, reversed } => Self::Revolute { at: g.apply(at), reversed },
+            Self::Prismatic { along } => Self::Prismatic { along: g.rotation * along },
+        }
+    }
 }
 
 /// A revolute joint as the closed forms need it: its position, and its sense.

@@ -36,11 +36,12 @@ impl Track {
     }
 
     /// The track of a chain with every joint held except joint number `free`; `None` for chains that have no
-    /// such track.
+    /// such track. `foot` is where the axis meets the plane while the chain is at home, metres.
     pub fn of_chain(
         chain: &Chain,
         free: usize,
         displacements: &[JointDisplacement; 3],
+        foot: Complex<f64>,
     ) -> Option<Self> {
         match chain {
             Chain::Rigid => None,
@@ -52,7 +53,7 @@ impl Track {
                     })
                 };
                 let (before, after) = (held(0..free), held(free + 1..3));
-                let foot = after.translation;
+                let foot = after.apply(foot);
                 Some(match joints[free] {
                     PlanarJoint::Revolute { at, .. } => {
                         Self::Circle { centre: before.apply(at), radius: (foot - at).norm() }

@@ -10,10 +10,11 @@ use crate::chain::track::Track;
 use crate::chain::{Branch, Chain, ReachDeficit, planar};
 use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind};
 use crate::manipulator::plan::{Anchor, Plan};
-use crate::manipulator::{Manipulator, Section, Solution};
+use crate::manipulator::{CompiledLeg, Manipulator, Section, Solution};
 use crate::numeric::angle::unit;
 use crate::numeric::angle::whole_turns;
 use nalgebra::Complex;
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// The possible values of a leg's displacement τ along the intersection motion.
@@ -36,6 +37,8 @@ pub(super) struct Search<'a> {
     pub directions: Vec<Complex<f64>>,
     /// The height above home, metres: that of the first actuated lift.
     pub rise: f64,
+    /// The legs at that height.
+    pub legs: Vec<Cow<'a, CompiledLeg>>,
     /// A buffer for inverse kinematics.
     pub solution: Solution,
     /// The assemblies found so far.
@@ -56,12 +59,16 @@ fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item
 
 impl<'a> Search<'a> {
     pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
+        let rise = rises(manipulator, displacements).next().unwrap_or(0.0);
+        // A leg that reaches nothing there does not close in any case.
+        let at = |leg: &'a CompiledLeg| leg.at(rise).unwrap_or(Cow::Borrowed(leg));
         Self {
             manipulator,
             plan,
             displacements,
             directions: displacements.iter().map(|&value| unit(value)).collect(),
-            rise: rises(manipulator, displacements).next().unwrap_or(0.0),
+            rise,
+            legs: manipulator.legs.iter().map(at).collect(),
             solution: manipulator.solution(),
             out: Assemblies::default(),
             least: None,
@@ -136,7 +143,7 @@ impl<'a> Search<'a> {
             Anchor::CoupledLegs { functional, legs } => {
                 let mut known = unknown;
                 let mut conditions = Vec::new();
-                for (number, (leg, held)) in m.legs.iter().zip(&plan.legs).enumerate() {
+                for (number, held) in plan.legs.iter().enumerate() {
                     if legs.contains(&number) {
                         let tau = self.coupled_tau(number, functional);
                         known[number] = Some(tau);
@@ -146,7 +153,7 @@ impl<'a> Search<'a> {
                             .iter()
                             .filter_map(|joint| self.lower_condition(number, *joint));
                         conditions.extend(own.map(|c| c.before(&along)));
-                    } else if leg.split_section == Section::Lower {
+                    } else if self.legs[number].split_section == Section::Lower {
                         let own = held
                             .lower
                             .iter()
@@ -171,26 +178,29 @@ impl<'a> Search<'a> {
 
     /// The displacement of a joint of a leg's chain; zero if that joint is not actuated.
     fn displacement(&self, leg: usize, section: Section, joint: usize) -> JointDisplacement {
-        let coordinate = self.manipulator.legs[leg].section(section).coordinates[joint];
+        let coordinate = self.legs[leg].section(section).coordinates[joint];
         let actuated = coordinate.and_then(|coordinate| coordinate.actuated);
         JointDisplacement::Value(actuated.map_or(0.0, |number| self.displacements[number]))
     }
 
     /// The condition that an actuated joint of the lower section puts on `v`, or on `v · exp(I τ)`.
     fn lower_condition(&self, leg: usize, joint: usize) -> Option<Condition> {
-        let chain = &self.manipulator.legs[leg].lower.chain;
-        Condition::new(chain, joint, self.displacement(leg, Section::Lower, joint))
+        self.legs[leg].lower.condition(joint, self.displacement(leg, Section::Lower, joint))
     }
 
     /// The track on which a leg keeps the axis of the intersection motion.
     fn track(&self, leg: usize, joint: usize) -> Option<Track> {
-        let compiled = &self.manipulator.legs[leg];
+        let compiled = &self.legs[leg];
         match compiled.split_section {
             Section::Lower => Track::of_condition(&self.lower_condition(leg, joint)?),
             Section::Upper => {
                 let displacements =
                     [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
-                Track::of_chain(&compiled.lower.chain, joint, &displacements)
+                let foot = match &compiled.lower.offset {
+                    None => Complex::ZERO,
+                    Some(offset) => offset.inverse().planar().translation,
+                };
+                Track::of_chain(&compiled.lower.chain, joint, &displacements, foot)
             }
         }
     }
@@ -198,7 +208,8 @@ impl<'a> Search<'a> {
     /// The displacement of the lower section of a leg whose lower joints are all actuated.
     fn actuated_lower_section(&self, leg: usize) -> Displacement {
         let q = [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
-        match &self.manipulator.legs[leg].lower.chain {
+        let lower = &self.legs[leg].lower;
+        let reached = match &lower.chain {
             Chain::Rigid => SubspaceKind::Identity.identity(),
             Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
             Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&q)),
@@ -207,6 +218,10 @@ impl<'a> Search<'a> {
             Chain::Translational(chain) => {
                 Displacement::Translational(chain.forward(&[q[0], q[1]]))
             }
+        };
+        match &lower.offset {
+            None => reached,
+            Some(offset) => reached.after(&offset.inverse()),
         }
     }
 
@@ -214,7 +229,7 @@ impl<'a> Search<'a> {
     fn coupled_tau(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
         let held = self.plan.legs[leg].upper.first();
         let driven = held.and_then(|&joint| {
-            let chain = &self.manipulator.legs[leg].upper.chain;
+            let chain = &self.legs[leg].upper.chain;
             let [p, q] = flat_joints(chain)?[joint];
             let value = self.displacement(leg, Section::Upper, joint).value();
             Some(-(functional[0] * p + functional[1] * q) * value)
@@ -265,7 +280,7 @@ impl<'a> Search<'a> {
     /// The possible values of a leg's τ, with `v` known.
     fn taus(&self, number: usize, v: &Displacement) -> Taus {
         let m = self.manipulator;
-        let (leg, held) = (&m.legs[number], &self.plan.legs[number]);
+        let (leg, held) = (&self.legs[number], &self.plan.legs[number]);
         match leg.split_section {
             Section::Upper => {
                 for &joint in &held.lower {
@@ -309,10 +324,10 @@ impl<'a> Search<'a> {
         let upper = m.task().upper.kind;
         let mut conditions = Vec::with_capacity(2 * taus.len());
         let slider_angle = self.slider_angle(taus);
-        for (number, (leg, tau)) in m.legs.iter().zip(taus).enumerate() {
+        for (number, (leg, tau)) in self.legs.iter().zip(taus).enumerate() {
             let chain = &leg.upper.chain;
             let own = self.plan.legs[number].upper.iter().filter_map(|&joint| {
-                Condition::new(chain, joint, self.displacement(number, Section::Upper, joint))
+                leg.upper.condition(joint, self.displacement(number, Section::Upper, joint))
             });
             match (leg.split_section, tau) {
                 (Section::Upper, Some(tau)) => {
@@ -327,7 +342,7 @@ impl<'a> Search<'a> {
                         }
                         JointDisplacement::Direction(_) | JointDisplacement::Value(_) => *tau,
                     };
-                    conditions.extend(Condition::new(chain, 0, tau));
+                    conditions.extend(leg.upper.condition(0, tau));
                     conditions.extend(own);
                 }
                 (Section::Upper, None) => conditions.extend(own),
@@ -352,7 +367,7 @@ impl<'a> Search<'a> {
     /// The angle of a platform on a cylinder, as a leg whose upper joint only slides fixes it. The angles of
     /// screws are then taken within π of it. Zero if there is no such leg.
     fn slider_angle(&self, taus: &[Option<JointDisplacement>]) -> f64 {
-        let legs = self.manipulator.legs.iter().zip(taus);
+        let legs = self.legs.iter().zip(taus);
         let slider_angle = legs.filter_map(|(leg, tau)| match (leg.split_section, tau) {
             (Section::Upper, Some(tau)) if only_slides(&leg.upper.chain) => Some(tau.value()),
             _ => None,
@@ -363,7 +378,7 @@ impl<'a> Search<'a> {
     /// The full revolutions, as an angle in radians, that the actuated revolute joints of a planar section
     /// pass on to a screw.
     fn whole_turns(&self, leg: usize) -> f64 {
-        let Chain::Planar(chain) = &self.manipulator.legs[leg].lower.chain else { return 0.0 };
+        let Chain::Planar(chain) = &self.legs[leg].lower.chain else { return 0.0 };
         let joints = chain.joints();
         let revolutions = |&joint: &usize| match joints[joint] {
             PlanarJoint::Revolute { reversed, .. } => {

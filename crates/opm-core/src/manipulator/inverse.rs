@@ -91,6 +91,7 @@ impl Manipulator {
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
+            let Ok(leg) = leg.at(rise) else { return Ok(None) };
             let tau = if leg.upper_constrains {
                 let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
                     return Ok(None);
@@ -162,10 +163,11 @@ impl Manipulator {
         let SolvedPose { v, b, .. } = out.solved;
         out.unreachable.clear();
         out.within_limits = true;
+        let rise = self.task.rise(&out.solved.pose);
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
             let near = revolutions.near(out.taus[number], 0.0);
-            match leg.solve(&self.task, [&v, &b], branches, near) {
+            match leg.at(rise).and_then(|leg| leg.solve(&self.task, [&v, &b], branches, near)) {
                 Ok(solution) => self.write(number, &solution, out, revolutions),
                 Err((section, deficit)) => {
                     out.unreachable.push(Unreachable { leg: number, section, deficit });

@@ -1,12 +1,13 @@
 //! One leg, split into two closed-form chains.
 
-use super::lift::{self, Lift};
+use super::lift::{self, Lean, Lift, Separated};
+use crate::chain::condition::Condition;
 use crate::chain::limits::Limits;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
 use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
-use crate::decomposition::{Freedom, HeightMiss, LegSplit};
+use crate::decomposition::{Freedom, HeightMiss, HeightReason, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
@@ -32,7 +33,7 @@ pub enum RefusedLeg {
         /// Whether the two subspaces share a motion.
         bridged: bool,
     },
-    /// The height of a Schoenflies section is not that of one slider along its direction.
+    /// Not exactly one joint of a Schoenflies section changes the height.
     #[error("{}", .0.of_leg())]
     Height(#[from] HeightMiss),
     /// One of the leg's sections has no closed form.
@@ -97,6 +98,9 @@ pub(crate) struct CompiledSection {
     /// The joints that move, where these are fewer than the subspace has dimensions; then the chain is completed
     /// by locked joints.
     pub partial: Option<PartialChain>,
+    /// What the section's displacement is multiplied by, on its right, to be what the chain has to reach: see
+    /// [`lift`](super::lift). `None` where that is the displacement itself.
+    pub offset: Option<Displacement>,
 }
 
 /// A leg, split into two sections.
@@ -144,6 +148,14 @@ pub(crate) struct LegSolution {
 }
 
 impl LegSolution {
+    /// The displacements of a section's joints.
+    pub fn section(&self, section: Section) -> &[JointDisplacement; 3] {
+        match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        }
+    }
+
     /// All joints at home.
     pub const HOME: Self = {
         let none = JointDisplacement::Value(0.0);
@@ -161,8 +173,7 @@ impl CompiledLeg {
     ) -> Result<Self, RefusedLeg> {
         let task = context.task;
         let separated = lift::separate(leg, split, first, context)?;
-        let lift = separated.as_ref().map(|(lift, _)| *lift);
-        let split = separated.as_ref().map_or(split, |(_, rest)| rest);
+        let split = separated.as_ref().map_or(split, |separated| &separated.rest);
         let (dim_lower, dim_upper) = (task.lower.dimension(), task.upper.dimension());
         let (lower, upper) = (split.lower.len(), split.upper.len());
         let bridged = task.intersection.is_some();
@@ -197,7 +208,20 @@ impl CompiledLeg {
             }
             found => found,
         };
-        found.map(|compiled| Self { lift, ..compiled })
+        let mut compiled = found?;
+        let Some(Separated { mut lift, joint, .. }) = separated else { return Ok(compiled) };
+        if let Some(Lean { section, before, .. }) = &mut lift.lean {
+            if compiled.section(*section).partial.is_some() {
+                // What its locked joints demand would depend on the height.
+                let reason = HeightReason::Constraining(leg.joints[joint].name.clone());
+                return Err(HeightMiss { leg: leg.name.clone(), reason }.into());
+            }
+            *before += usize::from(
+                compiled.bridge() == Some(Section::Upper) && *section == Section::Upper,
+            );
+        }
+        compiled.lift = Some(lift);
+        Ok(compiled)
     }
 
     /// The same for a given section that the imaginary joint belongs to.
@@ -251,6 +275,7 @@ impl CompiledLeg {
                 limited: own().any(|c| limits[c.number].any()),
                 driven: partial.is_some() || own().any(|c| c.actuated.is_some()),
                 partial,
+                offset: None,
             })
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
@@ -448,9 +473,10 @@ impl CompiledSection {
         target: &Displacement,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        match &self.partial {
-            None => self.chain.inverse(target, branch),
-            Some(partial) => Ok(partial.inverse(target)),
+        match (&self.partial, &self.offset) {
+            (None, None) => self.chain.inverse(target, branch),
+            (None, Some(offset)) => self.chain.inverse(&target.after(offset), branch),
+            (Some(partial), _) => Ok(partial.inverse(target)),
         }
     }
 
@@ -464,10 +490,21 @@ impl CompiledSection {
         target: &Displacement,
         branch: Branch,
     ) -> Result<JointDisplacement, ReachDeficit> {
-        match &self.partial {
-            None => self.chain.first(target, branch),
-            Some(partial) => Ok(partial.inverse(target)[0]),
+        match (&self.partial, &self.offset) {
+            (None, None) => self.chain.first(target, branch),
+            (None, Some(offset)) => self.chain.first(&target.after(offset), branch),
+            (Some(partial), _) => Ok(partial.inverse(target)[0]),
         }
+    }
+
+    /// The condition on the section's displacement that one of its joints imposes, held at a displacement: see
+    /// [`Condition::new`].
+    pub fn condition(&self, joint: usize, displacement: JointDisplacement) -> Option<Condition> {
+        let condition = Condition::new(&self.chain, joint, displacement)?;
+        Some(match &self.offset {
+            None => condition,
+            Some(offset) => condition.before(offset),
+        })
     }
 
     /// Whether a target has two solutions.

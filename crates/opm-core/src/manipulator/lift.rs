@@ -1,39 +1,97 @@
 //! Lifts: the joints that carry the height of a Schoenflies section.
 //!
-//! A Schoenflies displacement is a planar one followed by a translation along the plane's normal, and the two commute
-//! ([`Height`](crate::task::Task)). One slider of each leg's section moves along the normal, the *lift*, and the others
-//! only move in the plane or about its normals. Then the lift's displacement is the height, wherever in the leg it is,
-//! and the other joints are a chain in the plane.
+//! A Schoenflies displacement is a planar one and a translation along the plane's normal, which commute
+//! ([`Height`](crate::task::Task)). One joint of each leg's section changes the height, the *lift*, and the others only
+//! move in the plane or about its normals. So the height tells the lift's displacement, wherever in the leg it is, and
+//! the other joints are a chain in the plane.
+//!
+//! A slider along the normal does nothing in the plane. A screw also turns what follows it, and an inclined slider moves
+//! that: these lifts *lean*. At one height the displacement `D` in the plane that a lift makes is known, and the chain
+//!
+//! ```text
+//! E₁ … Eₖ · D · Eₖ₊₁ … Eₙ = E₁ … Eₖ · (D Eₖ₊₁ D⁻¹) … (D Eₙ D⁻¹) · D
+//! ```
+//!
+//! has the joints behind the lift displaced by `D`. It has to reach the target times `D⁻¹`.
 
-use super::leg::{ChainCoordinate, CompileContext, RefusedLeg, coordinate_number};
+use super::leg::{ChainCoordinate, CompileContext, CompiledLeg, RefusedLeg, coordinate_number};
 use super::{Manipulator, Section};
 use crate::chain::limits::Limits;
+use crate::chain::planar::PlanarChain;
+use crate::chain::screws::screw;
+use crate::chain::{Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, LegSplit, height};
-use crate::group::JointDisplacement;
+use crate::group::subspace::TOLERANCE;
+use crate::group::{JointDisplacement, LocalTwist, Planar, PlanarDisplacement, Subgroup, Subspace};
+use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
+use nalgebra::Unit;
+use std::borrow::Cow;
 
 /// The joint that carries the height of a leg's section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lift {
     pub coordinate: ChainCoordinate,
-    /// Its displacement for a unit of height: 1, or -1 where it moves down.
-    pub sign: f64,
+    /// Its displacement for a unit of height: 1, or -1 where it moves down, for a slider along the direction.
+    pub rate: f64,
+    /// What it does in the plane; `None` for a slider along the direction.
+    pub lean: Option<Lean>,
+}
+
+/// The motion of a lift in the plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lean {
+    /// The section.
+    pub section: Section,
+    /// The number of joints before the lift in the section's chain.
+    pub before: usize,
+    /// Its screw at home, for a unit of height, in the plane's frame.
+    pub screw: LocalTwist,
 }
 
 impl Lift {
     /// The displacement of the joint at a height above home, metres.
     #[inline]
     pub fn displacement(&self, rise: f64) -> f64 {
-        self.sign * rise
+        self.rate * rise
     }
 
     /// The height above home at a displacement of the joint, metres.
     pub fn rise(&self, displacement: f64) -> f64 {
-        self.sign * displacement
+        displacement / self.rate
     }
 }
 
-/// The joint of a leg that carries the height, and the split of the leg's other joints; `None` without a height.
+impl Lean {
+    /// The displacement in the plane that the lift makes at a height above home, metres.
+    fn displacement(&self, rise: f64) -> PlanarDisplacement {
+        Planar::exponential(&(self.screw * rise))
+    }
+
+    /// The lift's screw for a unit of height, where the joints of its section's chain have these displacements.
+    pub fn moved_screw(
+        &self,
+        leg: &CompiledLeg,
+        displacements: &[JointDisplacement; 3],
+    ) -> LocalTwist {
+        let joints = leg.section(self.section).screws.iter().zip(displacements);
+        let before = joints.take(self.before).fold(Planar::IDENTITY, |g, (screw, step)| {
+            g.after(&PlanarDisplacement::along_screw(screw, *step))
+        });
+        Planar::adjoint(&before, &self.screw)
+    }
+}
+
+/// A leg without its lift.
+pub(super) struct Separated {
+    pub lift: Lift,
+    /// The number of the lift among the leg's joints.
+    pub joint: usize,
+    /// The split of the leg's other joints.
+    pub rest: LegSplit,
+}
+
+/// Separates a leg from the joint that carries the height; `None` without a height.
 ///
 /// # Errors
 /// There is no such joint, or several joints have a part in the height.
@@ -42,22 +100,92 @@ pub(super) fn separate(
     split: &LegSplit,
     first: usize,
     context: CompileContext<'_>,
-) -> Result<Option<(Lift, LegSplit)>, RefusedLeg> {
+) -> Result<Option<Separated>, RefusedLeg> {
     let Some(height) = &context.task.height else { return Ok(None) };
-    let freedoms = match height.section {
-        Section::Lower => &split.lower,
-        Section::Upper => &split.upper,
+    let (freedoms, subspace) = match height.section {
+        Section::Lower => (&split.lower, &context.task.lower),
+        Section::Upper => (&split.upper, &context.task.upper),
     };
-    let (lift, sign) = height::lift(leg, freedoms, &height.up, context.size)?;
-    let others = |list: &[Freedom]| list.iter().copied().filter(|f| *f != lift).collect();
+    let (lift, advance) = height::lift(leg, freedoms, &height.up, context.size)?;
+    let others: Vec<Freedom> = freedoms.iter().copied().filter(|f| *f != lift).collect();
+    let lean = in_plane(leg, lift, subspace, height.section)?.map(|screw| Lean {
+        section: height.section,
+        before: freedoms.iter().take_while(|f| **f != lift).count(),
+        screw: screw / advance,
+    });
     let mut rest = split.clone();
     match height.section {
-        Section::Lower => rest.lower = others(&split.lower),
-        Section::Upper => rest.upper = others(&split.upper),
+        Section::Lower => rest.lower = others,
+        Section::Upper => rest.upper = others,
     }
     let number = first + coordinate_number(leg, lift);
     let coordinate = ChainCoordinate { number, actuated: context.actuated[number] };
-    Ok(Some((Lift { coordinate, sign }, rest)))
+    let joint = lift.joint;
+    Ok(Some(Separated { lift: Lift { coordinate, rate: advance.recip(), lean }, joint, rest }))
+}
+
+/// The screw in the plane's frame of what a lift does in the plane; `None` for a slider along the direction.
+fn in_plane(
+    leg: &Leg,
+    lift: Freedom,
+    subspace: &Subspace,
+    section: Section,
+) -> Result<Option<LocalTwist>, RefusedLeg> {
+    let joint = &leg.joints[lift.joint];
+    let refused = |error| RefusedLeg::Chain { section, error };
+    match joint.kind {
+        JointKind::Helical { .. } => {
+            let turn = ChainJoint::Screw { axis: joint.axis, point: joint.point, pitch: 0.0 };
+            screw(subspace, &turn).map(Some).map_err(refused)
+        }
+        _ => {
+            let up = subspace.axes.column(2);
+            let part = joint.axis.into_inner() - up * up.dot(&joint.axis);
+            let Some((along, length)) = Unit::try_new_and_get(part, TOLERANCE) else {
+                return Ok(None);
+            };
+            let slide = screw(subspace, &ChainJoint::Slide { axis: along }).map_err(refused)?;
+            Ok(Some(slide * length))
+        }
+    }
+}
+
+impl CompiledLeg {
+    /// The leg as it is at a height above home, metres: as it is always, unless its lift leans.
+    ///
+    /// # Errors
+    /// The joints of its section are dependent at this height, so that it reaches nothing.
+    #[inline]
+    pub fn at(&self, rise: f64) -> Result<Cow<'_, Self>, (Section, ReachDeficit)> {
+        match &self.lift {
+            Some(Lift { lean: Some(lean), .. }) => self.raised(lean, rise).map(Cow::Owned),
+            Some(Lift { lean: None, .. }) | None => Ok(Cow::Borrowed(self)),
+        }
+    }
+
+    /// The leg at a height above home, metres, with a lift that leans.
+    #[cold]
+    fn raised(&self, lean: &Lean, rise: f64) -> Result<Self, (Section, ReachDeficit)> {
+        let step = lean.displacement(rise);
+        let mut leg = self.clone();
+        let section = match lean.section {
+            Section::Lower => &mut leg.lower,
+            Section::Upper => &mut leg.upper,
+        };
+        let Chain::Planar(chain) = &section.chain else { return Ok(leg) };
+        let mut joints = chain.joints();
+        for joint in &mut joints[lean.before..] {
+            *joint = joint.carried(&step);
+        }
+        let chain = PlanarChain::new(joints)
+            .map_err(|_| (lean.section, ReachDeficit::length(f64::INFINITY)))?;
+        section.chain = Chain::Planar(chain);
+        for screw in &mut section.screws[lean.before..] {
+            *screw = Planar::adjoint(&step, screw);
+        }
+        section.offset = Some(step.inverse().into());
+        Ok(leg)
+    }
 }
 
 impl Manipulator {
@@ -66,6 +194,20 @@ impl Manipulator {
     pub(crate) fn lifts(&self) -> impl Iterator<Item = &Lift> {
         let any = self.task().height.is_some();
         self.legs.iter().take(if any { usize::MAX } else { 0 }).filter_map(|leg| leg.lift.as_ref())
+    }
+
+    /// The names of the joints that carry the height of a Schoenflies section and also move their legs in the plane:
+    /// inclined sliders and screws. Where there are any, legs have other chains at every height, and sweeps decide each
+    /// pose by itself.
+    pub fn leaning_joints(&self) -> impl Iterator<Item = &str> {
+        let leaning = self.lifts().filter(|lift| lift.lean.is_some());
+        leaning.map(|lift| self.coordinates()[lift.coordinate.number].name.as_str())
+    }
+
+    /// Whether the legs' chains are the same at every height.
+    #[doc(hidden)]
+    pub fn lifts_straight(&self) -> bool {
+        self.leaning_joints().next().is_none()
     }
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.

@@ -10,6 +10,7 @@ use crate::chain::track::Track;
 use crate::group::{JointDisplacement, MotionType, SubspaceKind};
 use crate::task::Task;
 use flat::Flat;
+use nalgebra::Complex;
 
 /// Why a mechanism's forward kinematics have no closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -211,7 +212,7 @@ fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> 
     // A held joint of a chain with the imaginary joint does not always constrain the axis.
     let displacements = [JointDisplacement::Value(0.0); 3];
     let track = match leg.split_section {
-        Section::Upper => Track::of_chain(&leg.lower.chain, joint, &displacements),
+        Section::Upper => Track::of_chain(&leg.lower.chain, joint, &displacements, Complex::ZERO),
         Section::Lower => {
             let condition = Condition::new(&leg.lower.chain, joint, displacements[0])?;
             Track::of_condition(&condition)

@@ -42,6 +42,13 @@ impl Task {
         })
     }
 
+    /// The component of the height among rates or accelerations of all task coordinates, m/s or m/s²; zero where there is
+    /// no height.
+    #[inline]
+    pub(crate) fn height_rate(&self, rates: &[f64]) -> f64 {
+        self.height.as_ref().map_or(0.0, |height| rates[height.coordinate])
+    }
+
     /// A displacement `v · b` of the platform, raised by `rise` metres along the direction of the Schoenflies section.
     pub(crate) fn raised(&self, rise: f64, g: Isometry3<f64>) -> Isometry3<f64> {
         match &self.height {

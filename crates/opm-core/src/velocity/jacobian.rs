@@ -4,7 +4,7 @@
 use super::dependent::System;
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
-use crate::manipulator::{Manipulator, Section, Solution};
+use crate::manipulator::{Lean, Manipulator, Section, Solution};
 use crate::task::{Height, Task};
 use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 
@@ -58,7 +58,7 @@ pub struct Jacobians {
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`]) from
     /// the rates along the intersection motion, in the order of the rows of [`Jacobians::upper`], and the lower section's
-    /// twist. The joints that carry a height follow it alone, and have no row here.
+    /// twist, at constant height. The joints that carry a height follow it alone, and have no row here.
     pub lower: DMatrix<f64>,
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
     /// twist. For the actuated joints of the lower section `q̇ = J_p [J_s upper; lower]`.
@@ -91,6 +91,9 @@ pub struct Jacobians {
     basis: Basis,
     /// The differentials of every leg.
     pub(super) legs: Vec<LegDifferential>,
+    /// For each leg, the displaced screw of what its lift does in the plane for a unit of height; zeros where it does
+    /// nothing there.
+    pub(super) leans: Vec<LocalTwist>,
     /// The displacement of the lower section.
     pub(super) v: Displacement,
     /// Every leg's displacement along the intersection motion.
@@ -229,6 +232,7 @@ impl Manipulator {
             driven,
             basis,
             legs: (0..self.legs.len()).map(|number| self.leg_differential(&home, number)).collect(),
+            leans: vec![LocalTwist::zeros(); self.legs.len()],
             v: home.solved.v,
             taus: home.legs.iter().map(|leg| leg.tau).collect(),
         }
@@ -259,18 +263,67 @@ impl Manipulator {
             out.legs[number] = differential;
             out.taus[number] = at.legs[number].tau;
         }
-        if self.task().height.is_some() {
+        for (number, leg) in self.legs.iter().enumerate() {
+            let Some(lift) = &leg.lift else { continue };
             let column = out.basis.in_base.len() - 1;
-            for lift in self.lifts() {
-                let number = lift.coordinate.number;
-                out.joints.row_mut(number).fill(0.0);
-                out.joints[(number, column)] = lift.displacement(1.0);
+            let row = lift.coordinate.number;
+            out.joints.row_mut(row).fill(0.0);
+            out.joints[(row, column)] = lift.displacement(1.0);
+            if let Some(lean) = &lift.lean {
+                self.lean_column(at, number, lean, &moved, out);
             }
         }
         self.pose_columns(at, out);
         self.platform_columns(at, out);
         self.independent_columns(out);
         Ok(out.singular.is_empty())
+    }
+
+    /// Computes the rates of a leg's joints for a unit rate of the height, where its lift leans: the other joints of the
+    /// section take back what the lift does in the plane.
+    #[cold]
+    fn lean_column(
+        &self,
+        at: &Solution,
+        number: usize,
+        lean: &Lean,
+        moved: &Moved,
+        out: &mut Jacobians,
+    ) {
+        let (leg, column) = (&self.legs[number], out.basis.in_base.len() - 1);
+        let LegDifferential { lower, upper } = out.legs[number];
+        let none = LocalTwist::zeros();
+        out.leans[number] = lean.moved_screw(leg, at.legs[number].section(lean.section));
+        let own = -out.leans[number];
+        let [own_lower, own_upper] = match lean.section {
+            Section::Lower => [own, none],
+            Section::Upper => [none, own],
+        };
+        let [lower, upper] = match leg.split_section {
+            Section::Upper => {
+                let rates = upper.rates(&own_upper);
+                let tau = leg.imaginary_joint().map_or(0.0, |joint| rates[joint]);
+                [lower.rates(&(own_lower + moved.along * tau)), rates]
+            }
+            Section::Lower => {
+                let rates = lower.rates(&own_lower);
+                let along = self.task().upper_intersection.unit_twist();
+                let step = leg.imaginary_joint().map_or(0.0, |joint| rates[joint]);
+                [rates, upper.rates(&(own_upper + along * step))]
+            }
+        };
+        for (section, rates) in [(&leg.lower, &lower), (&leg.upper, &upper)] {
+            for (coordinate, rate) in section.coordinates.iter().zip(rates) {
+                let Some(coordinate) = coordinate else { continue };
+                out.joints[(coordinate.number, column)] = *rate;
+            }
+        }
+        let locked = self.dependent.iter().flat_map(|dependent| dependent.locked(&self.legs));
+        for (row, (_, section, joint)) in locked.enumerate().filter(|(_, (leg, ..))| *leg == number)
+        {
+            let rates = if section == Section::Lower { &lower } else { &upper };
+            out.locked[(row, column)] = rates[joint];
+        }
     }
 
     /// Fills the rows of a leg with zeros.

@@ -6,7 +6,7 @@ use super::{SINGULAR, SingularCause};
 use crate::chain::Chain;
 use crate::chain::partial::PartialChain;
 use crate::group::{JointDisplacement, LocalTwist, SubspaceKind};
-use crate::manipulator::CompiledSection;
+use crate::manipulator::{CompiledLeg, CompiledSection, Lean};
 use nalgebra::Matrix3;
 
 /// The displaced screws of a section at one configuration, and the reciprocal screws.
@@ -110,6 +110,37 @@ impl Differential {
     #[inline]
     pub fn rate(&self, joint: usize, twist: &LocalTwist) -> f64 {
         self.reciprocal[joint].dot(twist)
+    }
+
+    /// The part of a section's twist and of its derivative that is left to the joints of its chain, in a leg with a lift
+    /// that leans. `rise` has the rate and the acceleration of the height, and `displacements` are the joints'.
+    ///
+    /// With the lift's displaced screw `s` between the others, `V = Σ sₖ q̇ₖ + s ḣ`, and the derivative has brackets of
+    /// `s ḣ` with the joints before it and behind it.
+    #[cold]
+    pub fn behind(
+        &self,
+        leg: &CompiledLeg,
+        lean: &Lean,
+        displacements: &[JointDisplacement; 3],
+        [twist, derivative]: [LocalTwist; 2],
+        [rate, acceleration]: [f64; 2],
+    ) -> [LocalTwist; 2] {
+        let screw = lean.moved_screw(leg, displacements);
+        let own = screw * rate;
+        let twist = twist - own;
+        let rates = self.rates(&twist);
+        let parts = self.screws.moved.iter().zip(&rates).map(|(screw, rate)| screw * *rate);
+        let (before, behind) = parts.enumerate().fold(
+            (LocalTwist::zeros(), LocalTwist::zeros()),
+            |(before, behind), (joint, part)| match joint < lean.before {
+                true => (before + part, behind),
+                false => (before, behind + part),
+            },
+        );
+        let kind = self.screws.kind;
+        let brackets = kind.bracket(&before, &own) + kind.bracket(&own, &behind);
+        [twist, derivative - screw * acceleration - brackets]
     }
 
     /// The accelerations of the section's joints, for a twist of its outer link, the derivative of the twist,

@@ -288,7 +288,11 @@ impl Manipulator {
     }
 
     /// Computes the closure.
-    fn fill_closure(&self, Jacobians { legs, v, taus, .. }: &Jacobians, out: &mut Singularities) {
+    fn fill_closure(
+        &self,
+        Jacobians { legs, v, taus, leans, .. }: &Jacobians,
+        out: &mut Singularities,
+    ) {
         let Singularities { closure, layout, .. } = out;
         closure.fill(0.0);
         let task = self.task();
@@ -300,6 +304,11 @@ impl Manipulator {
         if let Some((column, rows)) = layout.height_block(lifts) {
             rows.for_each(|row| closure[(row, column)] = 1.0);
         }
+        let height = |section: Section| {
+            let block = layout.height_block(lifts).filter(|_| layout.height == Some(section));
+            block.map(|(column, _)| column)
+        };
+        let [height_below, height_above] = [Section::Lower, Section::Upper].map(height);
         let mut row = 0;
         for (number, (leg, differential)) in self.legs.iter().zip(legs).enumerate() {
             let kind = task.lower.kind;
@@ -318,6 +327,9 @@ impl Manipulator {
                 for (i, twist) in layout.lower_basis.iter().enumerate() {
                     closure[(row, layout.along_count + i)] =
                         w.dot(&v.adjoint(twist)) * twist_unit(kind, twist, length);
+                }
+                if let Some(column) = height_below {
+                    closure[(row, column)] = -w.dot(&leans[number]);
                 }
                 row += 1;
             }
@@ -343,6 +355,9 @@ impl Manipulator {
                         }
                     };
                     closure[(row, split + i)] = w.dot(&carried) * twist_unit(kind, twist, length);
+                }
+                if let Some(column) = height_above {
+                    closure[(row, column)] = -w.dot(&leans[number]);
                 }
                 row += 1;
             }

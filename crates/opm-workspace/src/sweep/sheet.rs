@@ -47,8 +47,9 @@ pub enum SheetKind {
     Regions,
     /// Some leg has several branches, or one that is no region: branches are decided one by one.
     Branches,
-    /// Some task coordinates follow from those of the grid: poses are decided one by one.
-    Dependent,
+    /// Some task coordinates follow from those of the grid, or chains depend on the height: poses are decided one by
+    /// one.
+    Single,
 }
 
 /// The lengths of rows, in the units in which they are clipped.
@@ -161,8 +162,8 @@ impl<'a> Sheet<'a> {
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
         self.open = true;
-        if !manipulator.dependent_coordinates().is_empty() {
-            self.kind = SheetKind::Dependent;
+        if !manipulator.dependent_coordinates().is_empty() || !manipulator.lifts_straight() {
+            self.kind = SheetKind::Single;
             return;
         }
         let mode = sweep.modes.one();
@@ -208,7 +209,7 @@ impl<'a> Sheet<'a> {
             fill(&axes[2..], self.number, &mut first[2..axes.len()]);
             self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
         }
-        if self.kind == SheetKind::Dependent {
+        if self.kind == SheetKind::Single {
             return;
         }
         if !sweep.manipulator.height_admitted(Section::Lower, &first[..axes.len()]) {

@@ -51,7 +51,7 @@ struct HitPoses {
     hits: Vec<f64>,
 }
 
-/// A pose of a mechanism with dependent coordinates, and buffers for its solutions.
+/// A pose that is decided by itself, and buffers for its solutions.
 struct OnePose {
     pose: Vec<f64>,
     all: AllModes,
@@ -165,7 +165,7 @@ impl<'a> Worker<'a> {
             self.take_slice(found, hit);
             return;
         }
-        if self.sheet.kind == SheetKind::Dependent {
+        if self.sheet.kind == SheetKind::Single {
             for number in numbers {
                 found.reachable += self.decide_poses(number, window, found, hit);
             }

@@ -198,6 +198,7 @@ impl Manipulator {
         let bridge = leg.split_section;
         let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: bridge, deficit };
         let (task, branches) = (self.task(), self.branches(mode, number));
+        let leg = leg.at(task.rise(pose)).map_err(|(_, deficit)| missed(deficit))?;
         match bridge {
             Section::Lower => {
                 let v = task.lower(pose);

@@ -1,0 +1,108 @@
+//! Joints that carry the height of a Schoenflies section and lean, compared with geometry: behind an inclined slider or
+//! a screw at the base, a leg is the same leg from a base that the lift has moved.
+
+use opm_core::Manipulator;
+use opm_core::mechanism::examples;
+
+/// The shipped mechanism with another first joint of its first leg.
+fn with_lift(lift: &str) -> Manipulator {
+    let text = examples::find("schoenflies-column-4dof").unwrap().text;
+    let start = text.find("  { name = \"S1\"").unwrap();
+    let end = start + text[start..].find('\n').unwrap();
+    Manipulator::read(&format!("{}{lift}{}", &text[..start], &text[end..])).unwrap()
+}
+
+/// Compares the first leg at random poses with that of the shipped mechanism at a pose that `moved` gives, whose lift
+/// has a value that `lifted` gives for the height above home.
+fn compare(lift: &str, moved: impl Fn([f64; 4]) -> [f64; 4], lifted: impl Fn(f64) -> f64) {
+    let (leaning, straight) =
+        (with_lift(lift), Manipulator::example("schoenflies-column-4dof").unwrap());
+    assert_eq!(leaning.leaning_joints().collect::<Vec<_>>(), ["S1"]);
+    let mut rng = fastrand::Rng::with_seed(15);
+    let mut random = |size: f64| size * (2.0 * rng.f64() - 1.0);
+    let [mut one, mut other] = [&leaning, &straight].map(Manipulator::solution);
+    let mut compared = 0;
+    for _ in 0..500 {
+        let pose = [random(0.05), random(0.05), 0.2 + random(0.1), random(0.5)];
+        for mode in leaning.modes() {
+            // Other legs may be out of reach there.
+            leaning.inverse(&pose, mode, &mut one).unwrap();
+            straight.inverse(&moved(pose), mode, &mut other).unwrap();
+            let reached = |solution: &opm_core::manipulator::Solution| {
+                solution.unreachable().iter().all(|missed| missed.leg != 0)
+            };
+            assert_eq!(reached(&one), reached(&other), "{pose:?}");
+            if !one.unreachable().is_empty() || !reached(&other) {
+                continue;
+            }
+            compared += 1;
+            let value = lifted(pose[2] - 0.2);
+            assert!(
+                (one.joints()[0] - value).abs() < 1e-14,
+                "{pose:?}: {} {value}",
+                one.joints()[0]
+            );
+            for i in 1..4 {
+                let apart = one.joints()[i] - other.joints()[i];
+                assert!(apart.abs() < 1e-11, "{pose:?} {i}: {apart:e}");
+            }
+        }
+    }
+    assert!(compared > 1_000, "{compared}");
+}
+
+#[test]
+fn an_inclined_slider_moves_the_base_of_its_leg() {
+    // 3 to the side for 4 up, so that 5 along the slider are 4 up.
+    compare(
+        "  { name = \"S1\", type = \"prismatic\", axis = [0.6, 0, 0.8], point = [0, 300, 100], actuated = true, home = 0 },",
+        |[x, y, z, theta]| [x - 0.75 * (z - 0.2), y, z, theta],
+        |rise| 1.25 * rise,
+    );
+}
+
+#[test]
+fn a_screw_turns_the_base_of_its_leg() {
+    // 0.2 m for one radian, about an axis through (0.1, 0.3).
+    compare(
+        "  { name = \"S1\", type = \"helical\", pitch = 200, axis = [0, 0, 1], point = [100, 300, 100], actuated = true, home = 0 },",
+        |[x, y, z, theta]| {
+            let turn = -(z - 0.2) / 0.2;
+            let (sin, cos) = turn.sin_cos();
+            let (u, v) = (x - 0.1, y - 0.3);
+            [0.1 + cos * u - sin * v, 0.3 + sin * u + cos * v, z, theta + turn]
+        },
+        |rise| rise / 0.2,
+    );
+}
+
+/// Where an inclined slider brings the axes of two revolute joints together, the leg reaches nothing, and says so.
+#[test]
+fn a_link_that_vanishes_at_a_height_reaches_nothing_there() {
+    let text = "format = 1\nname = \"scissors\"\nunits = { length = \"m\", angle = \"rad\" }\n\
+        [platform]\npoint = [0, 0, 0]\n[[leg]]\nname = \"one\"\njoints = [\n\
+        { name = \"a\", type = \"revolute\", axis = [0, 0, 1], point = [0, 0, 0], actuated = true },\n\
+        { name = \"s\", type = \"prismatic\", axis = [0.6, 0, 0.8], actuated = true },\n\
+        { name = \"b\", type = \"revolute\", axis = [0, 0, 1], point = [-0.3, 0, 0], actuated = true },\n\
+        { name = \"c\", type = \"revolute\", axis = [0, 0, 1], point = [0.5, 0.6, 0], actuated = true },\n]\n\
+        [[leg]]\nname = \"two\"\njoints = [\n\
+        { name = \"t\", type = \"prismatic\", axis = [0, 0, 1] },\n\
+        { name = \"d\", type = \"revolute\", axis = [0, 0, 1], point = [0, 1, 0] },\n\
+        { name = \"e\", type = \"revolute\", axis = [0, 0, 1], point = [1, 1, 0] },\n\
+        { name = \"f\", type = \"revolute\", axis = [0, 0, 1], point = [0.5, 0.6, 0] },\n]\n";
+    let m = Manipulator::read(text).unwrap();
+    let names: Vec<_> = m.task_coordinates().iter().map(|c| c.name).collect();
+    assert_eq!(names, ["x", "y", "z", "theta"]);
+    let mut solution = m.solution();
+    // 0.4 up are 0.3 to the side: then the axes of a and b are one.
+    for (rise, expected) in [(0.0, true), (0.4, false), (0.8, true)] {
+        let pose = [0.1, 0.0, rise, 0.2];
+        let reached = m.inverse(&pose, m.home_mode(), &mut solution).unwrap().is_some();
+        assert_eq!(reached, expected, "{rise}: {:?}", solution.unreachable());
+        if !expected {
+            assert_eq!(solution.unreachable()[0].leg, 0);
+            assert_eq!(solution.unreachable()[0].deficit.excess, f64::INFINITY);
+        }
+    }
+    assert!(m.forward(&[0.0, 0.5, 0.0, 0.0]).unwrap().list.is_empty());
+}
