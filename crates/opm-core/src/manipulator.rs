@@ -34,7 +34,7 @@ pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::{RefusedLeg, Section};
 pub(crate) use leg::{chain_joints, coordinate_number};
-pub(crate) use lift::{Lean, Lift};
+pub(crate) use lift::Lean;
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
@@ -339,7 +339,7 @@ impl Manipulator {
         let (v, b) = self.task.sections(&home);
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
-            match self.legs[number].solve(&self.task, [&v, &b], branches, 0.0) {
+            match self.legs[number].solve(&self.task, [&v, &b], 0.0, branches, 0.0) {
                 Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
                 Err(_) => f64::INFINITY,
             }

@@ -66,10 +66,9 @@ pub use jacobian::Jacobians;
 pub use singularity::{Cause, Measures, Singularities};
 
 use crate::group::{JointDisplacement, LocalTwist};
-use crate::manipulator::{LARGEST, LegSolution, Lift, Manipulator, Section, Solution};
+use crate::manipulator::{CompiledLeg, LARGEST, Lean, LegSolution, Manipulator, Section, Solution};
 use nalgebra::Vector3;
 use section::Differential;
-use std::borrow::Cow;
 
 /// A measure of singularity below this counts as zero, and there are no rates. At a singular pose, where two
 /// solutions coincide, a chain takes the square root of a number that is zero up to rounding, some 1e-15 or
@@ -285,10 +284,12 @@ impl Manipulator {
             }
             self.write_motion(number, &motion, out);
         }
-        for lift in self.lifts() {
-            let [rate, acceleration] = twists.rise.map(|rise| lift.displacement(rise));
-            let number = lift.coordinate.number;
-            (out.joint_rates[number], out.joint_accelerations[number]) = (rate, acceleration);
+        if self.task().height.is_some() {
+            for lift in self.lifts() {
+                let [rate, acceleration] = twists.rise.map(|rise| lift.displacement(rise));
+                let number = lift.coordinate.number;
+                (out.joint_rates[number], out.joint_accelerations[number]) = (rate, acceleration);
+            }
         }
         Ok(out.singular.is_empty())
     }
@@ -325,7 +326,7 @@ impl Manipulator {
         SectionTwists {
             v: twists(&task.lower_screws(pose), Section::Lower),
             b: twists(&task.upper_screws(pose), Section::Upper),
-            rise: [rates, accelerations].map(|all| task.height_rate(all)),
+            rise: task.height_rates([rates, accelerations]),
         }
     }
 
@@ -372,9 +373,32 @@ impl Manipulator {
     /// The differentials of a leg's sections at a solution.
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
-        let (leg, solved) = (&self.legs[number], &at.legs[number]);
+        let leg = &self.legs[number];
+        match leg.lean() {
+            None => self.differential_of(leg, at, number),
+            Some(lean) => self.raised_differential(leg, lean, at, number),
+        }
+    }
+
+    /// The same for a leg with a lift that leans.
+    #[cold]
+    #[inline(never)]
+    fn raised_differential(
+        &self,
+        leg: &CompiledLeg,
+        lean: &Lean,
+        at: &Solution,
+        number: usize,
+    ) -> LegDifferential {
         // A leg that is solved at a height exists there.
-        let leg = leg.at(self.task().rise(&at.solved.pose)).unwrap_or(Cow::Borrowed(leg));
+        let raised = leg.raised(lean, self.task().rise(&at.solved.pose));
+        self.differential_of(raised.as_ref().unwrap_or(leg), at, number)
+    }
+
+    /// The differentials of the sections of a leg, which is `leg` at the height of a solution.
+    #[inline(always)]
+    fn differential_of(&self, leg: &CompiledLeg, at: &Solution, number: usize) -> LegDifferential {
+        let solved = &at.legs[number];
         let (task, length) = (self.task(), self.characteristic_length());
         let coordinates = self.coordinates();
         let vector = |first: usize| {
@@ -392,18 +416,52 @@ impl Manipulator {
         &self,
         at: &Solution,
         number: usize,
+        differential: &LegDifferential,
+        twists: &SectionTwists,
+    ) -> LegMotion {
+        match self.legs[number].lean() {
+            None => self.chain_motion(at, number, differential, twists, |_, target| target),
+            Some(lean) => self.raised_motion(at, number, differential, twists, lean),
+        }
+    }
+
+    /// The same for a leg with a lift that leans.
+    #[cold]
+    #[inline(never)]
+    fn raised_motion(
+        &self,
+        at: &Solution,
+        number: usize,
+        differential: &LegDifferential,
+        twists: &SectionTwists,
+        lean: &Lean,
+    ) -> LegMotion {
+        let (leg, displacements) = (&self.legs[number], at.legs[number].section(lean.section));
+        let section = differential.section(lean.section);
+        self.chain_motion(at, number, differential, twists, |of, target| {
+            if of == lean.section {
+                section.behind(leg, lean, displacements, target, twists.rise)
+            } else {
+                target
+            }
+        })
+    }
+
+    /// Rates and accelerations of the joints of a leg's chains. `left` gives the part of a section's twist, and of its
+    /// derivative, that is left to them.
+    #[inline(always)]
+    fn chain_motion(
+        &self,
+        at: &Solution,
+        number: usize,
         LegDifferential { lower, upper }: &LegDifferential,
         twists: &SectionTwists,
+        left: impl Fn(Section, [LocalTwist; 2]) -> [LocalTwist; 2],
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
         let solve = |section: &Differential, of: Section, target: [LocalTwist; 2]| {
-            let [twist, derivative] = match &leg.lift {
-                Some(Lift { lean: Some(lean), .. }) if lean.section == of => {
-                    section.behind(leg, lean, solved.section(of), target, twists.rise)
-                }
-                _ => target,
-            };
+            let [twist, derivative] = left(of, target);
             let rates = section.rates(&twist);
             [rates, section.accelerations(&twist, &derivative, &rates)]
         };

@@ -172,7 +172,9 @@ impl Search<'_> {
                     continue;
                 }
             }
-            let Ok(solution) = compiled.solve(m.task(), pose, branches, 0.0) else { continue };
+            let Ok(solution) = compiled.solve(m.task(), pose, self.rise, branches, 0.0) else {
+                continue;
+            };
             let error = self.leg_error(leg, &solution);
             least = least.min(error);
             if error <= MATCH {

@@ -83,15 +83,13 @@ impl Manipulator {
             let (v, b) = (solved.v, solved.b);
             let rise = self.task.rise(&solved.pose);
             for (number, (leg, modes)) in self.legs.iter().zip(legs).enumerate() {
-                let leg = leg.at(rise);
                 let own = self.modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
                 for (part, mode) in self.modes.leg_modes(number).enumerate() {
                     if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
                         continue;
                     }
                     let branches = self.modes.branches(mode, number);
-                    let solution = (leg.as_ref().map_err(|missed| *missed))
-                        .and_then(|leg| leg.solve(&self.task, [&v, &b], branches, 0.0));
+                    let solution = leg.solve(&self.task, [&v, &b], rise, branches, 0.0);
                     modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
                         leg: number,
                         section,

@@ -91,16 +91,16 @@ impl Manipulator {
         buffer.within_limits = true;
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
-            let Ok(leg) = leg.at(rise) else { return Ok(None) };
             let tau = if leg.upper_constrains {
-                let Ok(solution) = leg.solve(&self.task, [&v, &b], branches, 0.0) else {
+                let Ok(solution) = leg.solve(&self.task, [&v, &b], rise, branches, 0.0) else {
                     return Ok(None);
                 };
                 self.write_actuated(&leg.upper, &solution.upper, buffer);
                 self.write_actuated(&leg.lower, &solution.lower, buffer);
                 solution.tau
             } else {
-                let Ok((lower, tau)) = leg.solve_actuated(&self.task, [&v, &b], branches) else {
+                let Ok((lower, tau)) = leg.solve_actuated(&self.task, [&v, &b], rise, branches)
+                else {
                     return Ok(None);
                 };
                 self.write_actuated(&leg.lower, &lower, buffer);
@@ -167,7 +167,7 @@ impl Manipulator {
         for (number, leg) in self.legs.iter().enumerate() {
             let branches = self.modes.branches(mode, number);
             let near = revolutions.near(out.taus[number], 0.0);
-            match leg.at(rise).and_then(|leg| leg.solve(&self.task, [&v, &b], branches, near)) {
+            match leg.solve(&self.task, [&v, &b], rise, branches, near) {
                 Ok(solution) => self.write(number, &solution, out, revolutions),
                 Err((section, deficit)) => {
                     out.unreachable.push(Unreachable { leg: number, section, deficit });

@@ -353,14 +353,19 @@ impl CompiledLeg {
     }
 
     /// The lower joints' displacements and that along the intersection motion, within π where revolutions are
-    /// counted. This suffices for a leg that its upper section does not constrain.
+    /// counted, at a height above home, metres. This suffices for a leg that its upper section does not constrain.
     #[inline(always)]
     pub fn solve_actuated(
         &self,
         task: &Task,
         [v, b]: [&Displacement; 2],
+        rise: f64,
         branches: LegBranches,
     ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
+        if self.lean().is_some() {
+            let solution = self.solve_raised(task, [v, b], rise, branches, 0.0);
+            return solution.map(|found| (found.lower, found.tau)).map_err(|(_, missed)| missed);
+        }
         match self.split_section {
             Section::Upper => {
                 let tau = self.unwound(self.first_step(b, branches.upper)?, 0.0);
@@ -374,16 +379,20 @@ impl CompiledLeg {
         }
     }
 
-    /// Solves the closure for `v · b`. Where revolutions are counted, the displacement along the intersection
-    /// motion is taken nearest to `near`.
+    /// Solves the closure for `v · b`, at a height above home, metres. Where revolutions are counted, the displacement
+    /// along the intersection motion is taken nearest to `near`.
     #[inline(always)]
     pub fn solve(
         &self,
         task: &Task,
         [v, b]: [&Displacement; 2],
+        rise: f64,
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        if self.lean().is_some() {
+            return self.solve_raised(task, [v, b], rise, branches, near);
+        }
         let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
         match self.split_section {
             Section::Upper => {
@@ -403,6 +412,20 @@ impl CompiledLeg {
                 Ok(LegSolution { lower, upper, tau: step.inverse() })
             }
         }
+    }
+
+    /// The same for a leg whose lift leans.
+    #[cold]
+    #[inline(never)]
+    fn solve_raised(
+        &self,
+        task: &Task,
+        [v, b]: [&Displacement; 2],
+        rise: f64,
+        branches: LegBranches,
+        near: f64,
+    ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        self.at(rise)?.solve(task, [v, b], rise, branches, near)
     }
 
     /// The region in which the lower section closes, if it is a region of the plane.

@@ -155,19 +155,26 @@ impl CompiledLeg {
     ///
     /// # Errors
     /// The joints of its section are dependent at this height, so that it reaches nothing.
-    #[inline]
     pub fn at(&self, rise: f64) -> Result<Cow<'_, Self>, (Section, ReachDeficit)> {
-        match &self.lift {
-            Some(Lift { lean: Some(lean), .. }) => self.raised(lean, rise).map(Cow::Owned),
-            Some(Lift { lean: None, .. }) | None => Ok(Cow::Borrowed(self)),
+        match self.lean() {
+            Some(lean) => self.raised(lean, rise).map(Cow::Owned),
+            None => Ok(Cow::Borrowed(self)),
         }
     }
 
-    /// The leg at a height above home, metres, with a lift that leans.
+    /// The motion of its lift in the plane, where that leans.
+    #[inline(always)]
+    pub fn lean(&self) -> Option<&Lean> {
+        self.lift.as_ref().and_then(|lift| lift.lean.as_ref())
+    }
+
+    /// The leg with a lift that leans at a height above home, metres, as one without such a lift.
     #[cold]
-    fn raised(&self, lean: &Lean, rise: f64) -> Result<Self, (Section, ReachDeficit)> {
+    #[inline(never)]
+    pub fn raised(&self, lean: &Lean, rise: f64) -> Result<Self, (Section, ReachDeficit)> {
         let step = lean.displacement(rise);
         let mut leg = self.clone();
+        leg.lift = leg.lift.map(|lift| Lift { lean: None, ..lift });
         let section = match lean.section {
             Section::Lower => &mut leg.lower,
             Section::Upper => &mut leg.upper,

@@ -199,7 +199,7 @@ impl Manipulator {
                 .inverse(v, branch.branches.lower)
                 .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
             (None, Some(b)) => {
-                leg.solve(&self.task, [v, b], branch.branches, 0.0).is_ok_and(|solution| {
+                leg.solve(&self.task, [v, b], 0.0, branch.branches, 0.0).is_ok_and(|solution| {
                     leg.lower.admits(&self.limits, &solution.lower)
                         && leg.upper.admits(&self.limits, &solution.upper)
                 })

@@ -42,11 +42,11 @@ impl Task {
         })
     }
 
-    /// The component of the height among rates or accelerations of all task coordinates, m/s or m/s²; zero where there is
-    /// no height.
+    /// The components of the height among rates and accelerations of all task coordinates, m/s and m/s²; zeros where
+    /// there is no height.
     #[inline]
-    pub(crate) fn height_rate(&self, rates: &[f64]) -> f64 {
-        self.height.as_ref().map_or(0.0, |height| rates[height.coordinate])
+    pub(crate) fn height_rates(&self, all: [&[f64]; 2]) -> [f64; 2] {
+        self.height.as_ref().map_or([0.0; 2], |height| all.map(|values| values[height.coordinate]))
     }
 
     /// A displacement `v · b` of the platform, raised by `rise` metres along the direction of the Schoenflies section.
