@@ -1,7 +1,7 @@
 //! Random mechanisms of every pair of subspaces, with the decomposition from which they were built.
 
 use fastrand::Rng;
-use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
 use opm_core::group::subspace::SubspaceClass;
@@ -12,8 +12,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
 /// motion, and every subspace alone.
-pub const PAIRS: [[Kind; 2]; 34] = {
-    use Kind::{Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane};
+pub const PAIRS: [[Kind; 2]; 39] = {
+    use Kind::{
+        Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane,
+        TranslationalSpace,
+    };
     use Meet::{Nothing, Rotation, Translation};
     [
         [Planar(Rotation), Spherical],
@@ -50,6 +53,11 @@ pub const PAIRS: [[Kind; 2]; 34] = {
         [Schoenflies(Translation), Cylindrical(Translation)],
         [Cylindrical(Translation), Schoenflies(Translation)],
         [Schoenflies(Nothing), Identity],
+        [TranslationalSpace(Nothing), Identity],
+        [TranslationalSpace(Nothing), Spherical],
+        [Spherical, TranslationalSpace(Nothing)],
+        [TranslationalSpace(Translation), Cylindrical(Translation)],
+        [Cylindrical(Translation), TranslationalSpace(Translation)],
     ]
 };
 
@@ -78,6 +86,8 @@ pub enum Kind {
     Cylindrical(Meet),
     /// A translational plane that contains z.
     TranslationalPlane,
+    /// All translations. It contains that along z in any case.
+    TranslationalSpace(Meet),
     /// A Schoenflies group with its direction along z, or perpendicular to it.
     Schoenflies(Meet),
 }
@@ -87,7 +97,7 @@ impl Kind {
     pub fn dimension(self) -> usize {
         match self {
             Self::Identity => 0,
-            Self::Planar(_) | Self::Spherical => 3,
+            Self::Planar(_) | Self::Spherical | Self::TranslationalSpace(_) => 3,
             Self::Cylindrical(_) | Self::TranslationalPlane => 2,
             Self::Schoenflies(_) => 4,
         }
@@ -102,7 +112,10 @@ impl Kind {
     fn meet(self) -> Meet {
         match self {
             Self::Identity => Meet::Nothing,
-            Self::Planar(meet) | Self::Cylindrical(meet) | Self::Schoenflies(meet) => meet,
+            Self::Planar(meet)
+            | Self::Cylindrical(meet)
+            | Self::TranslationalSpace(meet)
+            | Self::Schoenflies(meet) => meet,
             Self::Spherical => Meet::Rotation,
             Self::TranslationalPlane => Meet::Translation,
         }
@@ -159,6 +172,8 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
         (Kind::TranslationalPlane, None) => &["PP"],
         (Kind::TranslationalPlane, Some(_)) => &["P"],
+        (Kind::TranslationalSpace(_), None) => &["PPP"],
+        (Kind::TranslationalSpace(_), Some(_)) => &["PP"],
         // A slider more, anywhere.
         (Kind::Schoenflies(_), None) => &[
             "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
@@ -343,6 +358,7 @@ pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>)
         }
         SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
         SubspaceClass::Schoenflies { axis } => SubspaceClass::Schoenflies { axis: g * axis },
+        SubspaceClass::TranslationalSpace => SubspaceClass::TranslationalSpace,
         SubspaceClass::Identity => SubspaceClass::Identity,
         other => panic!("{other}: not a subspace of these mechanisms"),
     };
@@ -360,6 +376,7 @@ fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
         Kind::Identity
         | Kind::Planar(Meet::Rotation | Meet::Nothing)
         | Kind::Schoenflies(Meet::Rotation | Meet::Nothing)
+        | Kind::TranslationalSpace(_)
         | Kind::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
         // Its axis passes z at a distance of one, and is not parallel to any of the planes.
         Kind::Cylindrical(Meet::Nothing) => {
@@ -386,6 +403,7 @@ impl Place {
             Kind::Spherical => SubspaceClass::Spherical { centre: point },
             Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
             Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
+            Kind::TranslationalSpace(_) => SubspaceClass::TranslationalSpace,
             Kind::Schoenflies(_) => SubspaceClass::Schoenflies { axis: normal },
         }
     }
@@ -523,6 +541,15 @@ fn section_joints(
                 })
                 .collect()
         }
+        Kind::TranslationalSpace(_) => loop {
+            let mut slides = [Vector3::z(); 3];
+            slides[..count].fill_with(|| direction(rng).into_inner());
+            // The sliders, and the imaginary one, are well apart from one plane.
+            if Matrix3::from_columns(&slides).determinant().abs() > 0.3 {
+                let slider = |axis: &Vector3<f64>| joint(prismatic, *axis, Point3::origin());
+                break slides[..count].iter().map(slider).collect();
+            }
+        },
     }
 }
 

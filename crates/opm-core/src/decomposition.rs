@@ -304,8 +304,13 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     let (lambda, mobility) = (report.lambda, report.mobility);
     let mut found = search(mechanism, lambda, mobility, 1).0;
-    if found.is_empty() {
-        found.extend(one_subspace(mechanism, lambda, mobility));
+    // Three translations and a cylinder make a Schoenflies group, which keeps its own closed forms where it has some. The
+    // condition holds, too, where nothing is found.
+    let translates = |class: &SubspaceClass| matches!(class, SubspaceClass::TranslationalSpace);
+    if found.iter().all(|pair| translates(&pair.lower) || translates(&pair.upper))
+        && let Some(alone) = one_subspace(mechanism, lambda, mobility)
+    {
+        found = vec![alone];
     }
     if found.is_empty() {
         found = search(mechanism, lambda, mobility, 0).0;
