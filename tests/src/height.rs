@@ -8,6 +8,9 @@ use opm_core::mechanism::joint::JointKind;
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, TaskCoordinate};
 
+/// A value on a limit is within it, whatever the rounding: metres.
+const ROUNDING: f64 = 3e-12;
+
 /// Whether every slider along the direction of a Schoenflies section is within its limits, for the values of the
 /// section's coordinates. All other sections have no height.
 pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
@@ -33,8 +36,9 @@ pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
             let joint = &leg.joints[freedom.joint];
             let c = &joint.coordinates[0];
             let value = c.home + joint.axis.dot(&up).signum() * rise;
-            // A value on a limit is within it, whatever the rounding.
-            c.limits.is_none_or(|[low, high]| (low - 1e-9..=high + 1e-9).contains(&value))
+            let within =
+                |[low, high]: [f64; 2]| (low - ROUNDING..=high + ROUNDING).contains(&value);
+            c.limits.is_none_or(within)
         })
     })
 }

@@ -21,6 +21,7 @@ mod imaginary;
 pub mod mobility;
 mod near;
 mod odd;
+mod order;
 mod search;
 mod survey;
 
@@ -303,18 +304,7 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 /// The decompositions of a mechanism that moves, the preferred one first.
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     let (lambda, mobility) = (report.lambda, report.mobility);
-    let mut found = search(mechanism, lambda, mobility, 1).0;
-    // Three translations and a cylinder make a Schoenflies group, which keeps its own closed forms where it has some. The
-    // condition holds, too, where nothing is found.
-    let translates = |class: &SubspaceClass| matches!(class, SubspaceClass::TranslationalSpace);
-    if found.iter().all(|pair| translates(&pair.lower) || translates(&pair.upper))
-        && let Some(alone) = one_subspace(mechanism, lambda, mobility)
-    {
-        found = vec![alone];
-    }
-    if found.is_empty() {
-        found = search(mechanism, lambda, mobility, 0).0;
-    }
+    let mut found = order::first(mechanism, lambda, mobility);
     if found.is_empty() {
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);

@@ -87,7 +87,7 @@ pub fn flat_joints(chain: &Chain) -> Option<[LocalTwist; 3]> {
             let [p, q] = chain.slides().map(|slide| LocalTwist::new(slide.re, slide.im, 0.0));
             Some([p, q, LocalTwist::z()])
         }
-        Chain::Spatial(chain) => Some(chain.slides()),
+        Chain::Spatial(chain) => Some(*chain.slides()),
         Chain::Rigid | Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
     }
 }

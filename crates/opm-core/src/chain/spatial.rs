@@ -3,15 +3,17 @@
 use super::surface::Surface;
 use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
 use crate::group::JointDisplacement;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// Three sliders in space, in any three independent directions. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialChain {
-    /// The sliders' unit directions as columns, base first.
-    slides: Matrix3<f64>,
-    /// The inverse of that matrix. Its rows are perpendicular to the other two sliders.
-    inverse: Matrix3<f64>,
+    /// The sliders' unit directions, base first.
+    slides: [Vector3<f64>; 3],
+    /// Perpendicular to the first slider, and one along the second.
+    second: Vector3<f64>,
+    /// Perpendicular to the first two sliders, and one along the third.
+    third: Vector3<f64>,
 }
 
 impl SpatialChain {
@@ -20,46 +22,63 @@ impl SpatialChain {
     /// # Errors
     /// Two sliders are parallel, or all three are in one plane.
     pub fn new(slides: [Vector3<f64>; 3]) -> Result<Self, ChainError> {
-        let [u, v, w] = &slides;
+        let [u, v, w] = slides;
         // The sines of the angles between the sliders.
-        if [u.cross(v), v.cross(w), w.cross(u)].iter().any(|sine| sine.norm() <= DEGENERATE) {
+        if [u.cross(&v), v.cross(&w), w.cross(&u)].iter().any(|sine| sine.norm() <= DEGENERATE) {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
-        let volume = u.cross(v).dot(w);
-        if volume.abs() <= DEGENERATE {
+        // An orthonormal basis, of which the first one and two vectors span what the sliders do. Of sliders that are
+        // nearly parallel, the first difference has few digits: the second one makes it perpendicular again.
+        let outside = |v: Vector3<f64>| (v - u * u.dot(&v)).normalize();
+        let across = outside(outside(v));
+        let normal = u.cross(&across);
+        let height = normal.dot(&w);
+        if height.abs() <= DEGENERATE {
             return Err(ChainError::Dependent("three sliders are in one plane"));
         }
-        let rows = [v.cross(w), w.cross(u), u.cross(v)].map(|row| (row / volume).transpose());
-        Ok(Self { slides: Matrix3::from_columns(&slides), inverse: Matrix3::from_rows(&rows) })
+        Ok(Self { slides, second: across / across.dot(&v), third: normal / height })
     }
 
     /// The sliders' unit directions, base first.
-    pub fn slides(&self) -> [Vector3<f64>; 3] {
-        [0, 1, 2].map(|joint| self.slides.column(joint).into_owned())
+    pub fn slides(&self) -> &[Vector3<f64>; 3] {
+        &self.slides
     }
 
-    /// The matrix that takes a translation to the sliders' displacements.
-    pub(crate) fn coefficients(&self) -> &Matrix3<f64> {
-        &self.inverse
+    /// The coefficients of the sliders' displacements: the products of these vectors with a target.
+    pub(crate) fn coefficients(&self) -> [Vector3<f64>; 3] {
+        let ([u, v, w], third) = (self.slides, self.third);
+        let second = self.second - third * self.second.dot(&w);
+        [u - second * u.dot(&v) - third * u.dot(&w), second, third]
     }
 
     /// The targets at which slider number `joint` is held at `displacement`, measured across the other two.
     pub(super) fn held(&self, joint: usize, displacement: JointDisplacement) -> Surface {
-        let row = self.inverse.row(joint).transpose();
-        let length = row.norm();
-        Surface::Slab { across: row / length, at: displacement.value() / length }
+        let [u, v, w] = &self.slides;
+        let across = match joint {
+            0 => v.cross(w),
+            1 => w.cross(u),
+            _ => u.cross(v),
+        };
+        Surface::Slab { across, at: displacement.value() * across.dot(&self.slides[joint]) }
     }
 
-    /// The sliders' displacements that translate the outer link by `target`, metres.
+    /// The sliders' displacements that translate the outer link by `target`, metres. Each is computed from the rounded
+    /// ones after it, so that their sum is the target even where the sliders are nearly parallel.
     #[inline(always)]
     pub fn inverse(&self, target: &Vector3<f64>) -> [JointDisplacement; 3] {
-        let found = self.inverse * target;
-        [found.x, found.y, found.z].map(JointDisplacement::Value)
+        let [u, v, w] = &self.slides;
+        let third = self.third.dot(target);
+        let rest = target - w * third;
+        let second = self.second.dot(&rest);
+        let first = u.dot(&(rest - v * second));
+        [first, second, third].map(JointDisplacement::Value)
     }
 
     /// The translation of the outer link.
     pub fn forward(&self, displacements: &[JointDisplacement; 3]) -> Vector3<f64> {
-        self.slides * Vector3::from(displacements.map(JointDisplacement::value))
+        let [a, b, c] = displacements.map(JointDisplacement::value);
+        let [u, v, w] = &self.slides;
+        u * a + v * b + w * c
     }
 }
 

@@ -94,7 +94,7 @@ pub enum Surface {
     },
     /// `across · g = at` in space: two sliders remain.
     Slab {
-        /// A unit vector, perpendicular to the two sliders.
+        /// A vector of length at most one, perpendicular to the two sliders.
         across: Vector3<f64>,
         /// The value of the left side, metres.
         at: f64,

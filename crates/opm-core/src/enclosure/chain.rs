@@ -60,8 +60,7 @@ pub fn displacements<const N: usize>(
             [Enclosed::Value(m), Enclosed::Value(n), none]
         }
         Chain::Spatial(chain) => {
-            let rows = chain.coefficients();
-            [0, 1, 2].map(|i| Enclosed::Value(dot(&rows.row(i).transpose(), target.spatial())))
+            chain.coefficients().map(|row| Enclosed::Value(dot(&row, target.spatial())))
         }
     }
 }
