@@ -35,6 +35,7 @@ DRAWN = (
     ("agile-eye", "agile-eye", (22, 35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("five-bar", "five-bar", (58, -75), {}),
     ("schoenflies-column-4dof", "schoenflies-column", (32, -60), {}),
+    ("cartesian-wrist-6dof", "cartesian-wrist", (24, -35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("orbita", "orbita", (18, -60), {"leg1": 60, "leg2": 60, "leg3": 60}),
 )
 
