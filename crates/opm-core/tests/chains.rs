@@ -354,7 +354,7 @@ fn three_sliders_along_axes_and_diagonals() {
         for v in &axes {
             for w in &axes {
                 let volume = Matrix3::from_columns(&[*u, *v, *w]).determinant();
-                let slides = [u, v, w].map(|axis| axis.normalize());
+                let slides = [u, v, w].map(Vector3::normalize);
                 let chain = SpatialChain::new(slides);
                 assert_eq!(chain.is_ok(), volume != 0.0, "{slides:?}");
                 let Ok(chain) = chain else { continue };

@@ -90,3 +90,41 @@ impl ClosedForm for SpatialChain {
         Attempt::decided(self.inverse(target), true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::group::Path;
+    use nalgebra::Matrix3;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = Vector3<f64>> {
+        [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0].prop_map(Vector3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(5_000))]
+
+        /// Where a joint has a value, by the linear system of the sliders, a path of targets meets the surface of that
+        /// joint held there.
+        #[test]
+        fn held_joints_are_met_where_they_have_the_value(
+            slides in [vector(), vector(), vector()], start in vector(), rate in vector(), t in -1.0..1.0_f64,
+        ) {
+            let slides = slides.map(|slide| slide.normalize());
+            let matrix = Matrix3::from_columns(&slides);
+            prop_assume!(matrix.determinant().abs() > 0.05);
+            let chain = SpatialChain::new(slides).expect("they are independent");
+            let at = matrix.lu().solve(&(start + rate * t)).expect("they are independent");
+            for joint in 0..3 {
+                let surface = chain.held(joint, JointDisplacement::Value(at[joint]));
+                let Surface::Slab { across, at } = surface else { unreachable!() };
+                prop_assert!((across.dot(&(start + rate * t)) - at).abs() < 1e-13);
+                let slope = across.dot(&rate);
+                let roots = surface.along(&Path::Spatial { start, rate }).roots();
+                prop_assert_eq!(roots.len(), 1);
+                prop_assert!(((roots[0].value() - t) * slope).abs() < 1e-13);
+            }
+        }
+    }
+}
