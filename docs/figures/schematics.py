@@ -183,12 +183,13 @@ def legend(figure, found):
     if found["upper"] is None:
         sections = [(line(LOWER, linewidth=2), f"one subspace: {found['lower']['subspace']}")]
     else:
-        shared = f"imaginary: {found['intersection']['kind']}"
         sections = [
             (line(LOWER, linewidth=2), f"lower: {found['lower']['subspace']}"),
             (line(UPPER, linewidth=2), f"upper: {found['upper']['subspace']}"),
-            (line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared),
         ]
+        if found["intersection"] is not None:
+            shared = f"imaginary: {found['intersection']['kind']}"
+            sections.append((line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared))
     entries = [
         *sections,
         (line(INK, marker="o", linestyle="", markersize=7), "driven"),

@@ -40,7 +40,7 @@ pub enum RefusedLeg {
     Chain {
         /// The section.
         section: Section,
-        /// The names of its joints, base first.
+        /// The names of its joints, base first, and "the imaginary joint" if it belongs to the section.
         joints: Vec<String>,
         /// Why it has no closed form.
         error: ChainError,
@@ -229,6 +229,9 @@ impl CompiledLeg {
                 let mut joints: Vec<String> =
                     freedoms.iter().map(|f| leg.joints[f.joint].name.clone()).collect();
                 joints.dedup();
+                if bridged && section == split_section {
+                    joints.push("the imaginary joint".into());
+                }
                 RefusedLeg::Chain { section, joints, error }
             };
             let bridge = imaginary_joint.filter(|_| section == split_section);
