@@ -271,6 +271,55 @@ fn pairs_displace_as_their_names_say() {
     }
 }
 
+/// A leg of two sliders keeps the platform in a plane, alone and below a sphere: one coordinate follows from the others.
+#[test]
+fn a_leg_of_two_sliders_keeps_the_plane() {
+    let mut rng = Rng::with_seed(6);
+    let centre = Point3::new(0.2, 0.1, -0.3);
+    for round in 0..40 {
+        let axes = [oblique(&mut rng), oblique(&mut rng), oblique(&mut rng)];
+        let normal = axes[0][0].cross(&axes[0][1]);
+        let mut legs: Vec<Vec<Joint>> = (0..3).map(|i| sliders(i, axes[i])).collect();
+        legs[0].truncate(2);
+        let below_a_sphere = round % 2 == 0;
+        if below_a_sphere {
+            for (i, leg) in legs.iter_mut().enumerate() {
+                for (j, axis) in AXES.iter().enumerate() {
+                    let axis = Rotation3::from_euler_angles(0.3, 0.4 * i as f64, 0.5) * axis;
+                    let joint = joint(&format!("w{i}{j}"), JointKind::Revolute, axis, centre);
+                    leg.push(Joint { actuated: i == 0, ..joint });
+                }
+            }
+        }
+        let m = read(mechanism(legs));
+        let [dependent] = m.dependent_coordinates() else { panic!("one coordinate follows") };
+        assert_eq!(m.task_coordinates().len(), if below_a_sphere { 5 } else { 2 });
+        let (mut solution, mode) = (m.solution(), m.home_mode());
+        for _ in 0..20 {
+            let home = m.home_pose();
+            let pose: Vec<f64> = home.iter().map(|q| q + 0.4 * (rng.f64() - 0.5)).collect();
+            let follows = m.dependent_values(&pose, mode).unwrap().unwrap()[0];
+            let mut moved = Vector3::zeros();
+            let directions = ["x", "y", "z"];
+            let place = |name: &str| directions.iter().position(|other| *other == name);
+            moved[place(dependent.name).unwrap()] = follows - dependent.home;
+            for (c, (q, home)) in m.task_coordinates().iter().zip(pose.iter().zip(&home)) {
+                if let Some(i) = place(c.name) {
+                    moved[i] = q - home;
+                }
+            }
+            assert!(normal.dot(&moved).abs() < 10.0 * ROUNDING, "{moved}");
+            if m.inverse(&pose, mode, &mut solution).unwrap().is_none() {
+                continue;
+            }
+            // The sliders of the leg add up to the displacement of the place.
+            let joints = solution.joints();
+            let sum = axes[0][0] * joints[0] + axes[0][1] * joints[1];
+            assert!((sum - moved).norm() < 10.0 * ROUNDING, "{sum} {moved}");
+        }
+    }
+}
+
 /// A leg of dependent sliders is refused, and named with its sliders.
 #[test]
 fn dependent_sliders_are_refused() {
