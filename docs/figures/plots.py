@@ -30,6 +30,10 @@ def draw():
         "schoenflies-column-4dof", "gallery-schoenflies-column.png", panels="slices",
         x="-75mm:75mm:7", y="-75mm:105mm:361", theta="-100deg:100deg:201",
     )  # fmt: skip
+    workspace(
+        "cartesian-wrist-6dof", "gallery-cartesian-wrist.png", panels="slices", x="0", y="0", z="400mm",
+        zeta="-180deg:180deg:361", xi="0:80deg:161", psi="-150deg:150deg:6",
+    )  # fmt: skip
 
 
 def motion(mechanism, name, picture):

@@ -35,6 +35,7 @@ DRAWN = (
     ("agile-eye", "agile-eye", (22, 35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("five-bar", "five-bar", (58, -75), {}),
     ("schoenflies-column-4dof", "schoenflies-column", (32, -60), {}),
+    ("cartesian-wrist-6dof", "cartesian-wrist", (24, -35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("orbita", "orbita", (18, -60), {"leg1": 60, "leg2": 60, "leg3": 60}),
 )
 
@@ -182,12 +183,13 @@ def legend(figure, found):
     if found["upper"] is None:
         sections = [(line(LOWER, linewidth=2), f"one subspace: {found['lower']['subspace']}")]
     else:
-        shared = f"imaginary: {found['intersection']['kind']}"
         sections = [
             (line(LOWER, linewidth=2), f"lower: {found['lower']['subspace']}"),
             (line(UPPER, linewidth=2), f"upper: {found['upper']['subspace']}"),
-            (line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared),
         ]
+        if found["intersection"] is not None:
+            shared = f"imaginary: {found['intersection']['kind']}"
+            sections.append((line(IMAGINARY, linewidth=2, linestyle=(0, (3, 1.6))), shared))
     entries = [
         *sections,
         (line(INK, marker="o", linestyle="", markersize=7), "driven"),

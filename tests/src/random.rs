@@ -2,7 +2,7 @@
 
 use crate::height::is_lift;
 use fastrand::Rng;
-use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
 use opm_core::group::subspace::SubspaceClass;
@@ -13,8 +13,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
 /// motion, and every subspace alone.
-pub const PAIRS: [[Kind; 2]; 34] = {
-    use Kind::{Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane};
+pub const PAIRS: [[Kind; 2]; 39] = {
+    use Kind::{
+        Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane,
+        TranslationalSpace,
+    };
     use Meet::{Nothing, Rotation, Translation};
     [
         [Planar(Rotation), Spherical],
@@ -51,6 +54,11 @@ pub const PAIRS: [[Kind; 2]; 34] = {
         [Schoenflies(Translation), Cylindrical(Translation)],
         [Cylindrical(Translation), Schoenflies(Translation)],
         [Schoenflies(Nothing), Identity],
+        [TranslationalSpace(Nothing), Identity],
+        [TranslationalSpace(Nothing), Spherical],
+        [Spherical, TranslationalSpace(Nothing)],
+        [TranslationalSpace(Translation), Cylindrical(Translation)],
+        [Cylindrical(Translation), TranslationalSpace(Translation)],
     ]
 };
 
@@ -79,6 +87,8 @@ pub enum Kind {
     Cylindrical(Meet),
     /// A translational plane that contains z.
     TranslationalPlane,
+    /// All translations. It contains that along z in any case.
+    TranslationalSpace(Meet),
     /// A Schoenflies group with its direction along z, or perpendicular to it.
     Schoenflies(Meet),
 }
@@ -88,7 +98,7 @@ impl Kind {
     pub fn dimension(self) -> usize {
         match self {
             Self::Identity => 0,
-            Self::Planar(_) | Self::Spherical => 3,
+            Self::Planar(_) | Self::Spherical | Self::TranslationalSpace(_) => 3,
             Self::Cylindrical(_) | Self::TranslationalPlane => 2,
             Self::Schoenflies(_) => 4,
         }
@@ -98,7 +108,10 @@ impl Kind {
     fn meet(self) -> Meet {
         match self {
             Self::Identity => Meet::Nothing,
-            Self::Planar(meet) | Self::Cylindrical(meet) | Self::Schoenflies(meet) => meet,
+            Self::Planar(meet)
+            | Self::Cylindrical(meet)
+            | Self::TranslationalSpace(meet)
+            | Self::Schoenflies(meet) => meet,
             Self::Spherical => Meet::Rotation,
             Self::TranslationalPlane => Meet::Translation,
         }
@@ -155,6 +168,8 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
         (Kind::TranslationalPlane, None) => &["PP"],
         (Kind::TranslationalPlane, Some(_)) => &["P"],
+        (Kind::TranslationalSpace(_), None) => &["PPP"],
+        (Kind::TranslationalSpace(_), Some(_)) => &["PP"],
         // A slider more, anywhere; a screw may take its place.
         (Kind::Schoenflies(_), None) => &[
             "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
@@ -399,6 +414,7 @@ pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>)
         }
         SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
         SubspaceClass::Schoenflies { axis } => SubspaceClass::Schoenflies { axis: g * axis },
+        SubspaceClass::TranslationalSpace => SubspaceClass::TranslationalSpace,
         SubspaceClass::Identity => SubspaceClass::Identity,
         other => panic!("{other}: not a subspace of these mechanisms"),
     };
@@ -416,6 +432,7 @@ fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
         Kind::Identity
         | Kind::Planar(Meet::Rotation | Meet::Nothing)
         | Kind::Schoenflies(Meet::Rotation | Meet::Nothing)
+        | Kind::TranslationalSpace(_)
         | Kind::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
         // Its axis passes z at a distance of one, and is not parallel to any of the planes.
         Kind::Cylindrical(Meet::Nothing) => {
@@ -442,6 +459,7 @@ impl Place {
             Kind::Spherical => SubspaceClass::Spherical { centre: point },
             Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
             Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
+            Kind::TranslationalSpace(_) => SubspaceClass::TranslationalSpace,
             Kind::Schoenflies(_) => SubspaceClass::Schoenflies { axis: normal },
         }
     }
@@ -579,6 +597,15 @@ fn section_joints(
                 })
                 .collect()
         }
+        Kind::TranslationalSpace(_) => loop {
+            let mut slides = [Vector3::z(); 3];
+            slides[..count].fill_with(|| direction(rng).into_inner());
+            // The sliders, and the imaginary one, are well apart from one plane.
+            if Matrix3::from_columns(&slides).determinant().abs() > 0.3 {
+                let slider = |axis: &Vector3<f64>| joint(prismatic, *axis, Point3::origin());
+                break slides[..count].iter().map(slider).collect();
+            }
+        },
     }
 }
 

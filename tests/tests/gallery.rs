@@ -143,6 +143,15 @@ const PAGES: &[Page] = &[
         coordinates: "x y z theta",
         ..PLANAR
     },
+    Page {
+        name: "cartesian-wrist-6dof",
+        numbers: [6, 6, 0, 3],
+        subspaces: ["translational space", "spherical"],
+        legs: "3|3 3|3 3|3",
+        active: 3,
+        coordinates: "x y z zeta xi psi",
+        ..PLANAR
+    },
 ];
 
 /// Three legs of three joints in one plane: nothing to split.

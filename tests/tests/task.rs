@@ -110,18 +110,29 @@ fn each_coordinate_moves_along_its_own_screw() {
                     SubspaceClass::Spherical { centre } => {
                         (axis.unwrap_or(Vector3::z_axis()), centre)
                     }
+                    SubspaceClass::TranslationalSpace => {
+                        (axis.unwrap_or(Vector3::z_axis()), reference)
+                    }
                     _ => (axis.unwrap(), reference),
                 };
                 let [first, second] = in_plane(third);
                 let (amount, at_home) = (0.1 + 0.1 * rng.f64(), coordinate.home);
-                let w = match (axis, plane) {
-                    (Some(axis), Some(normal)) => upward(Unit::new_normalize(normal.cross(&axis))),
+                let w = match (axis, plane, class) {
+                    (Some(axis), Some(normal), _) => {
+                        upward(Unit::new_normalize(normal.cross(&axis)))
+                    }
+                    (_, _, SubspaceClass::TranslationalSpace) => first,
+                    _ => third,
+                };
+                let h = match class {
+                    SubspaceClass::TranslationalSpace => second,
                     _ => third,
                 };
                 let (expected, measured) = match coordinate.name {
                     "x" => (along(first, amount), first.dot(&origin.coords)),
                     "y" => (along(second, amount), second.dot(&origin.coords)),
-                    "z" | "h" => (along(third, amount), third.dot(&origin.coords)),
+                    "z" => (along(third, amount), third.dot(&origin.coords)),
+                    "h" => (along(h, amount), h.dot(&origin.coords)),
                     "w" => (along(w, amount), w.dot(&origin.coords)),
                     "theta" | "phi" | "zeta" | "psi" => (about(third, origin, amount), 0.0),
                     "mu" => (about(first, origin, amount), 0.0),
@@ -358,9 +369,10 @@ fn a_small_turn_turns_no_coordinate_round() {
 fn hints(frame: &Subspace, names: &[&str], shared: Option<MotionType>) -> FrameHints {
     let axis = |number: usize| Some(frame.axes.column(number).into_owned());
     let plane = matches!(frame.kind, SubspaceKind::Planar | SubspaceKind::TranslationalPlane);
+    let space = frame.kind == SubspaceKind::TranslationalSpace;
     let has = |name| names.contains(&name);
     FrameHints {
-        x: axis(0).filter(|_| has("x") || has("mu") || has("zeta")),
+        x: axis(0).filter(|_| has("x") || has("mu") || has("zeta") || space),
         w: axis(1).filter(|_| plane && has("w")),
         axis: axis(2).filter(|_| !plane && shared.is_none() && !names.is_empty()),
         normal: axis(2).filter(|_| plane && shared != Some(MotionType::Rotation) && names != ["w"]),

@@ -31,6 +31,7 @@ pub(crate) mod screws;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod shape;
+pub mod spatial;
 pub mod spherical;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
@@ -43,11 +44,12 @@ pub use joint::ChainJoint;
 use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
 use cylindrical::CylindricalChain;
-use joint::{coaxial_joint, each, planar_joint, slide, spherical_axis};
+use joint::{coaxial_joint, each, planar_joint, slide, spatial_slide, spherical_axis};
 use limits::Limits;
 use nalgebra::Complex;
 use planar::PlanarChain;
 use shape::Shape;
+use spatial::SpatialChain;
 use spherical::{Ball, SphericalChain};
 use surface::Surface;
 use translational::TranslationalChain;
@@ -214,6 +216,8 @@ pub enum Chain {
     Cylindrical(CylindricalChain),
     /// Two sliders in a plane.
     Translational(TranslationalChain),
+    /// Three sliders in space.
+    Spatial(SpatialChain),
 }
 
 impl Chain {
@@ -252,6 +256,11 @@ impl Chain {
                 TranslationalChain::new(each(joints, |joint| slide(subspace, joint))?)
                     .map(Self::Translational)
             }
+            SubspaceKind::TranslationalSpace => {
+                let joints: &[_; 3] = joints.try_into().map_err(|_| needs(3))?;
+                SpatialChain::new(each(joints, |joint| spatial_slide(subspace, joint))?)
+                    .map(Self::Spatial)
+            }
         }
     }
 
@@ -263,7 +272,11 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.shape(branch, limits),
             Self::Translational(chain) => Some(chain.shape(limits)),
-            Self::Rigid | Self::Spherical(_) | Self::Ball(_) | Self::Cylindrical(_) => None,
+            Self::Rigid
+            | Self::Spherical(_)
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Spatial(_) => None,
         }
     }
 
@@ -272,7 +285,11 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.has_choice(),
             Self::Spherical(_) => true,
-            Self::Rigid | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => false,
+            Self::Rigid
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => false,
         }
     }
 
@@ -284,7 +301,8 @@ impl Chain {
             | Self::Planar(_)
             | Self::Spherical(_)
             | Self::Ball(_)
-            | Self::Translational(_) => false,
+            | Self::Translational(_)
+            | Self::Spatial(_) => false,
         }
     }
 
@@ -292,7 +310,7 @@ impl Chain {
     pub fn freedoms(&self) -> usize {
         match self {
             Self::Rigid => 0,
-            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) => 3,
+            Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) | Self::Spatial(_) => 3,
             Self::Cylindrical(_) | Self::Translational(_) => 2,
         }
     }
@@ -319,6 +337,7 @@ impl Chain {
             Self::Ball(ball) => Ok(ball.inverse(target.spherical())),
             Self::Cylindrical(chain) => Ok(pad(chain.inverse(target.cylindrical()))),
             Self::Translational(chain) => Ok(pad(chain.inverse(*target.translational()))),
+            Self::Spatial(chain) => Ok(chain.inverse(target.spatial())),
         }
     }
 
@@ -340,7 +359,8 @@ impl Chain {
             | Self::Planar(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
-            | Self::Translational(_) => {
+            | Self::Translational(_)
+            | Self::Spatial(_) => {
                 self.inverse(target, branch).map(|displacements| displacements[0])
             }
         }
@@ -358,6 +378,7 @@ impl Chain {
             Self::Rigid | Self::Ball(_) => None,
             Self::Cylindrical(chain) => Some(chain.held(joint, displacement)),
             Self::Translational(chain) => Some(chain.held(joint, displacement)),
+            Self::Spatial(chain) => Some(chain.held(joint, displacement)),
         }
     }
 
@@ -366,9 +387,11 @@ impl Chain {
         let middle = match self {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
-            Self::Rigid | Self::Ball(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                Vec::new()
-            }
+            Self::Rigid
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => Vec::new(),
         };
         middle.into_iter().filter_map(|displacement| self.held(1, displacement)).collect()
     }
@@ -378,7 +401,7 @@ impl Chain {
         let rotation = match self {
             Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
-            Self::Rigid | Self::Ball(_) | Self::Translational(_) => false,
+            Self::Rigid | Self::Ball(_) | Self::Translational(_) | Self::Spatial(_) => false,
             Self::Cylindrical(chain) => chain.is_rotation(joint),
         };
         if rotation { limits.direction_ends() } else { limits.value_ends() }
@@ -389,7 +412,11 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.size(),
             Self::Cylindrical(chain) => chain.joints().iter().map(|j| j.advance.abs()).sum(),
-            Self::Rigid | Self::Spherical(_) | Self::Ball(_) | Self::Translational(_) => 0.0,
+            Self::Rigid
+            | Self::Spherical(_)
+            | Self::Ball(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => 0.0,
         }
     }
 }

@@ -21,6 +21,7 @@ mod imaginary;
 pub mod mobility;
 mod near;
 mod odd;
+mod order;
 mod search;
 mod survey;
 
@@ -303,13 +304,7 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 /// The decompositions of a mechanism that moves, the preferred one first.
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     let (lambda, mobility) = (report.lambda, report.mobility);
-    let mut found = search(mechanism, lambda, mobility, 1).0;
-    if found.is_empty() {
-        found.extend(one_subspace(mechanism, lambda, mobility));
-    }
-    if found.is_empty() {
-        found = search(mechanism, lambda, mobility, 0).0;
-    }
+    let mut found = order::first(mechanism, lambda, mobility);
     if found.is_empty() {
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);

@@ -11,6 +11,7 @@
 //! | spherical, `SO(3)` | `spherical.rs` | a rotation matrix | `ω` |
 //! | cylindrical | `cylindrical.rs` | an angle and an advance | `(ω, v, 0)` |
 //! | translational plane | `translational_plane.rs` | a complex number | `(vx, vy, 0)` |
+//! | translational space | `translational_space.rs` | a vector | `(vx, vy, vz)` |
 //!
 //! A planar twist has the velocity of the point at the frame's origin; a twist of fewer than three
 //! numbers is padded with zeros.
@@ -34,6 +35,7 @@ mod spherical;
 mod subgroup;
 pub mod subspace;
 mod translational_plane;
+mod translational_space;
 
 pub use cylindrical::{CylindricalDisplacement, CylindricalMotion};
 pub use displacement::Displacement;
@@ -47,12 +49,14 @@ pub use planar::{PlanarDisplacement, PlanarMotion};
 pub use spherical::SphericalMotion;
 pub(crate) use subgroup::{LocalTwist, Subgroup};
 pub use translational_plane::TranslationalMotion;
+pub use translational_space::SpatialMotion;
 
 pub(crate) use cylindrical::Cylindrical;
 pub(crate) use identity::Identity;
 pub(crate) use planar::{Planar, angular_and_linear, linear, quarter};
 pub(crate) use spherical::{Spherical, rotated, rotation_about, rotation_vector};
 pub(crate) use translational_plane::TranslationalPlane;
+pub(crate) use translational_space::TranslationalSpace;
 
 /// Panics, since objects of two different subgroups are combined. [`Displacement`]s,
 /// [`IntersectionMotion`]s and [`Path`]s carry their subgroup, and every caller pairs those of one

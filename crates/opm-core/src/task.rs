@@ -12,11 +12,14 @@
 //! | Schoenflies | `x y z` | `x y z theta` | `x y z theta` | `x y z phi` | `w h phi` | |
 //! | cylindrical | `z` | `theta z` | `theta z` | `phi z` | `phi` | `phi w` |
 //! | translational plane | | `x y` | `x y` | | `w` | `x y` |
+//! | translational space | | `x y z` | `x y z` | | `w h` | `x y z` |
 //!
 //! A Schoenflies section is a planar one at a height along the plane's normal: `z`, or `h` above a cylinder, which has
 //! a `z`.
 //!
-//! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis;
+//! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis; in a
+//! translational space, `x y z` move it along the frame's directions, and `w h` along the first two, where the third
+//! one is that of `I`;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
 //! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
@@ -35,9 +38,9 @@
 //!   about the third direction.
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
-//! * `w` points up.
+//! * `w` points up in a plane.
 //! * Without `I`, the third direction is a plane's normal, a cylinder's axis, which points up, or the base's z
-//!   for a sphere.
+//!   for a sphere and for a translational space. The latter has the direction of a translation `I` as its third.
 //! * The reference point is the platform's, moved to the axis of `I` where that is a rotation, to a
 //!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin.
 //!
@@ -47,8 +50,8 @@
 //! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can override these rules: the sense of
 //! `d`, of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; the
 //! values at home change accordingly. Where `I` is a rotation about a plane's normal, that normal cannot be
-//! chosen: it is `axis`. Without `I`, `axis` of a section is the third direction of a sphere's frame, or the
-//! sense of a cylinder's axis.
+//! chosen: it is `axis`. Without `I`, `axis` of a section is the third direction of the frame of a sphere or of a
+//! translational space, or the sense of a cylinder's axis.
 
 mod coordinate;
 mod displacement;
@@ -300,6 +303,7 @@ impl Task {
                 Path::Cylindrical { start, rate: CylindricalDisplacement { angle, advance } }
             }
             Displacement::Translational(start) => Path::Translational { start, rate },
+            Displacement::Spatial(start) => Path::Spatial { start, rate: Vector3::x() },
         }
     }
 

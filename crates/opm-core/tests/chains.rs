@@ -5,6 +5,7 @@
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain};
 use opm_core::chain::planar::{PlanarChain, PlanarJoint, forward};
+use opm_core::chain::spatial::SpatialChain;
 use opm_core::chain::spherical::{Ball, SphericalChain};
 use opm_core::chain::translational::TranslationalChain;
 use opm_core::chain::{Branch, ChainError};
@@ -306,6 +307,79 @@ proptest! {
     }
 }
 
+/// The displacements of three sliders solve the linear system of their directions.
+fn check_spatial(slides: [Vector3<f64>; 3], target: Vector3<f64>) -> Result<(), TestCaseError> {
+    let Ok(chain) = SpatialChain::new(slides) else {
+        return Err(TestCaseError::reject("dependent"));
+    };
+    let amounts = chain.inverse(&target);
+    let values = Vector3::from(amounts.map(JointDisplacement::value));
+    let matrix = Matrix3::from_columns(&slides);
+    let size = values.amax().max(3.0);
+    prop_assert!((matrix * values - target).norm() < TOLERANCE * size);
+    prop_assert!((chain.forward(&amounts) - target).norm() < TOLERANCE * size);
+    let solved = matrix.lu().solve(&target).expect("the sliders are independent");
+    let volume = matrix.determinant().abs();
+    prop_assert!(
+        (solved - values).norm() * volume * volume < TOLERANCE * size,
+        "{values} {solved}"
+    );
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(CASES))]
+    #[test]
+    fn three_sliders(
+        slides in [[-1.0..1.0, -1.0..1.0, -1.0..1.0_f64], [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64],
+            [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64]],
+        target in [-3.0..3.0, -3.0..3.0, -3.0..3.0_f64],
+    ) {
+        let slides = slides.map(|slide| Vector3::from(slide).normalize());
+        check_spatial(slides, Vector3::from(target))?;
+    }
+}
+
+/// Three sliders along the axes give the coordinates themselves, in any order and sense; others along axes and
+/// diagonals solve the linear system.
+#[test]
+fn three_sliders_along_axes_and_diagonals() {
+    let target = Vector3::new(0.25, -1.5, 3.0);
+    let mut along_axes = 0;
+    let axes: Vec<Vector3<f64>> = (0..27)
+        .map(|n| Vector3::new((n % 3) as f64 - 1.0, (n / 3 % 3) as f64 - 1.0, (n / 9) as f64 - 1.0))
+        .filter(|axis| axis.norm() > 0.0)
+        .collect();
+    for u in &axes {
+        for v in &axes {
+            for w in &axes {
+                let volume = Matrix3::from_columns(&[*u, *v, *w]).determinant();
+                let slides = [u, v, w].map(Vector3::normalize);
+                let chain = SpatialChain::new(slides);
+                assert_eq!(chain.is_ok(), volume != 0.0, "{slides:?}");
+                let Ok(chain) = chain else { continue };
+                check_spatial(slides, target).unwrap();
+                if [u, v, w].iter().all(|axis| axis.norm() == 1.0) {
+                    along_axes += 1;
+                    let expected = slides.map(|slide| slide.dot(&target));
+                    assert_eq!(chain.inverse(&target).map(JointDisplacement::value), expected);
+                }
+            }
+        }
+    }
+    assert_eq!(along_axes, 48);
+}
+
+#[test]
+fn dependent_sliders_are_told_apart() {
+    let [x, y] = [Vector3::x(), Vector3::y()];
+    let reason = |slides| SpatialChain::new(slides).unwrap_err().to_string();
+    for slides in [[x, x, y], [x, y, -x], [y, x, x]] {
+        assert_eq!(reason(slides), "two sliders are parallel");
+    }
+    assert_eq!(reason([x, y, (x - y).normalize()]), "three sliders are in one plane");
+}
+
 /// Sliders that are nearly parallel close the loop as well as others: digits lost in their
 /// difference are not lost in their sum.
 #[test]
@@ -332,6 +406,17 @@ fn sliders_next_to_parallel_close() {
         let chain = TranslationalChain::new([e(u), e(v)]).unwrap();
         let target = chain.forward(&made);
         assert!((chain.forward(&chain.inverse(target)) - target).norm() < 1e-14);
+        let made = [made[0], made[1], JointDisplacement::Value(0.4)];
+        let [u, v] = [u, v].map(|angle| Vector3::new(angle.cos(), angle.sin(), 0.0));
+        // Nearly parallel sliders first, last, and at both ends; and three that are nearly in one plane.
+        let other = Vector3::new(0.3, -0.5, 0.8).normalize();
+        let flat = (u + v - other + Vector3::z() * apart).normalize();
+        for slides in [[u, v, other], [other, u, v], [u, other, v], [other, flat, u]] {
+            let chain = SpatialChain::new(slides).unwrap();
+            let target = chain.forward(&made);
+            let off = (chain.forward(&chain.inverse(&target)) - target).norm();
+            assert!(off < 1e-14, "{slides:?}: off by {off:e}");
+        }
     }
 }
 

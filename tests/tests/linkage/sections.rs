@@ -30,11 +30,12 @@ pub enum Section {
     Spherical,
     Cylindrical,
     Translational,
+    TranslationalSpace,
 }
 
 /// Every combination, in one order of the sections; the other one is drawn at random.
-pub const COMBINATIONS: [(Shared, [Section; 2]); 10] = {
-    use Section::{Cylindrical, Planar, Spherical, Translational};
+pub const COMBINATIONS: [(Shared, [Section; 2]); 11] = {
+    use Section::{Cylindrical, Planar, Spherical, Translational, TranslationalSpace};
     use Shared::{Rotation, Translation};
     [
         (Rotation, [Spherical, Spherical]),
@@ -47,6 +48,7 @@ pub const COMBINATIONS: [(Shared, [Section; 2]); 10] = {
         (Translation, [Planar, Translational]),
         (Translation, [Cylindrical, Translational]),
         (Translation, [Translational, Translational]),
+        (Translation, [Cylindrical, TranslationalSpace]),
     ]
 };
 
@@ -60,6 +62,7 @@ impl Section {
             (Self::Cylindrical, Shared::Rotation) => &["hp", "ph", "hh"],
             (Self::Cylindrical, Shared::Translation) => &["rh", "hr", "hh"],
             (Self::Translational, _) => &["pp"],
+            (Self::TranslationalSpace, _) => &["ppp"],
         }
     }
 
@@ -107,6 +110,9 @@ impl Section {
                 }
                 (Self::Planar, 'r') => {
                     Joint::new(name, JointKind::Revolute, along(normal), place(rng))
+                }
+                (Self::TranslationalSpace, _) => {
+                    Joint::new(name, JointKind::Prismatic, direction(rng), place(rng))
                 }
                 (Self::Planar | Self::Translational, _) => {
                     Joint::new(name, JointKind::Prismatic, in_plane(rng), place(rng))

@@ -8,7 +8,8 @@
 use crate::chain::planar::PlanarJoint;
 use crate::chain::{Chain, ReachDeficit};
 use crate::group::{
-    Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind, mismatch, rotation_about,
+    Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, SubspaceKind, mismatch,
+    rotation_about,
 };
 use nalgebra::{Complex, Vector3};
 
@@ -67,20 +68,26 @@ pub enum Condition {
     /// A linear equation on a displacement of a commutative subspace: `normal · g = value`.
     Flat {
         /// The coefficients, for the coordinates of the displacement's logarithm.
-        normal: [f64; 2],
+        normal: LocalTwist,
         /// The value, in the units of `normal · g`.
         value: f64,
     },
 }
 
 /// The coordinates of the displacement that one unit of each joint makes, for a chain in a commutative
-/// subspace; `None` for other chains.
-pub fn flat_joints(chain: &Chain) -> Option<[[f64; 2]; 2]> {
+/// subspace; `None` for other chains. A chain of two joints has the third unit vector as a third one.
+pub fn flat_joints(chain: &Chain) -> Option<[LocalTwist; 3]> {
     match chain {
         Chain::Cylindrical(chain) => {
-            Some(chain.joints().map(|joint| [joint.rotation, joint.advance]))
+            let [p, q] =
+                chain.joints().map(|joint| LocalTwist::new(joint.rotation, joint.advance, 0.0));
+            Some([p, q, LocalTwist::z()])
         }
-        Chain::Translational(chain) => Some(chain.slides().map(|slide| [slide.re, slide.im])),
+        Chain::Translational(chain) => {
+            let [p, q] = chain.slides().map(|slide| LocalTwist::new(slide.re, slide.im, 0.0));
+            Some([p, q, LocalTwist::z()])
+        }
+        Chain::Spatial(chain) => Some(*chain.slides()),
         Chain::Rigid | Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
     }
 }
@@ -93,14 +100,16 @@ impl Condition {
             Chain::Planar(chain) => Some(planar(&chain.joints(), held, displacement)),
             Chain::Spherical(chain) => Some(spherical(chain.axes(), held, displacement)),
             Chain::Rigid | Chain::Ball(_) => None,
-            Chain::Cylindrical(_) | Chain::Translational(_) => {
+            Chain::Cylindrical(_) | Chain::Translational(_) | Chain::Spatial(_) => {
                 let joints = flat_joints(chain)?;
-                let ([a, b], [p, q]) = (joints[held], joints[1 - held]);
-                let normal = [q, -p];
-                Some(Self::Flat {
-                    normal,
-                    value: (normal[0] * a + normal[1] * b) * displacement.value(),
-                })
+                let others: [usize; 2] = match held {
+                    0 => [1, 2],
+                    1 => [0, 2],
+                    _ => [0, 1],
+                };
+                let [p, q] = others.map(|joint| joints[joint]);
+                let normal = p.cross(&q);
+                Some(Self::Flat { normal, value: normal.dot(&joints[held]) * displacement.value() })
             }
         }
     }
@@ -146,10 +155,7 @@ impl Condition {
             }
             Self::Heading { rotation } => (rotation.conj() * g.planar().rotation).im,
             Self::Cone { fixed, carried, cosine } => fixed.dot(&(g.spherical() * carried)) - cosine,
-            Self::Flat { normal, value } => {
-                let [a, b] = g.sum();
-                normal[0] * a + normal[1] * b - value
-            }
+            Self::Flat { normal, value } => normal.dot(&g.sum()) - value,
         }
     }
 
@@ -218,8 +224,7 @@ impl Condition {
                 Self::Cone { fixed, carried: h.spherical() * carried, cosine }
             }
             Self::Flat { normal, value } => {
-                let [a, b] = h.sum();
-                Self::Flat { normal, value: value - normal[0] * a - normal[1] * b }
+                Self::Flat { normal, value: value - normal.dot(&h.sum()) }
             }
         }
     }
@@ -246,8 +251,7 @@ impl Condition {
                 Self::Cone { fixed: h.spherical() * fixed, carried, cosine }
             }
             Self::Flat { normal, value } => {
-                let [a, b] = h.sum();
-                Self::Flat { normal, value: value + normal[0] * a + normal[1] * b }
+                Self::Flat { normal, value: value + normal.dot(&h.sum()) }
             }
         }
     }

@@ -88,6 +88,17 @@ pub(super) fn slide(subspace: &Subspace, joint: &ChainJoint) -> Result<Complex<f
     }
 }
 
+/// The unit direction of a slider in the frame of a translational space.
+pub(crate) fn spatial_slide(
+    subspace: &Subspace,
+    joint: &ChainJoint,
+) -> Result<Vector3<f64>, ChainError> {
+    match joint {
+        ChainJoint::Slide { axis } => Ok(subspace.direction(axis).normalize()),
+        _ => Err(ChainError::Foreign("translational")),
+    }
+}
+
 /// The unit direction in the plane of a direction given in base coordinates.
 pub(crate) fn in_plane(
     subspace: &Subspace,

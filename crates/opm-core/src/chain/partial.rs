@@ -107,6 +107,7 @@ impl PartialChain {
             // The angle of a helical joint counts full revolutions.
             Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle * s.x),
             Displacement::Translational(t) => JointDisplacement::Value(dot(linear_of(s), *t)),
+            Displacement::Spatial(t) => JointDisplacement::Value(s.dot(t)),
         }
     }
 
@@ -115,6 +116,7 @@ impl PartialChain {
         match g {
             Displacement::Planar(g) => planar(s, t, g),
             Displacement::Spherical(r) => spherical(s, t, r),
+            Displacement::Spatial(g) => spatial(s, t, g),
             Displacement::Identity(_)
             | Displacement::Cylindrical(_)
             | Displacement::Translational(_) => {
@@ -157,6 +159,13 @@ fn spherical(s: &LocalTwist, t: &LocalTwist, r: &Matrix3<f64>) -> [JointDisplace
     let first = about(s, t, &(r * t));
     let rest = rotation_about(s, first).tr_mul(r);
     [first, about(t, s, &(rest * s))].map(JointDisplacement::Direction)
+}
+
+/// The displacements of two sliders, in the plane that they span: `s p + t q = g`.
+fn spatial(s: &LocalTwist, t: &LocalTwist, g: &Vector3<f64>) -> [JointDisplacement; 2] {
+    let normal = s.cross(t);
+    let square = normal.norm_squared();
+    [g.cross(t), s.cross(g)].map(|part| JointDisplacement::Value(part.dot(&normal) / square))
 }
 
 /// The direction of the angle about `axis` that takes one vector to another.
@@ -203,9 +212,10 @@ fn units(kind: SubspaceKind, size: f64) -> Vector3<f64> {
     match kind {
         SubspaceKind::Planar => Vector3::new(1.0, size, size),
         SubspaceKind::Cylindrical => Vector3::new(1.0, size, 1.0),
-        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => {
-            Vector3::repeat(1.0)
-        }
+        SubspaceKind::Identity
+        | SubspaceKind::Spherical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => Vector3::repeat(1.0),
     }
 }
 
@@ -240,5 +250,6 @@ fn joint(subspace: &Subspace, s: &Vector3<f64>, size: f64) -> ChainJoint {
         SubspaceKind::Identity | SubspaceKind::TranslationalPlane => {
             ChainJoint::Slide { axis: base(Vector3::new(s.x, s.y, 0.0)) }
         }
+        SubspaceKind::TranslationalSpace => ChainJoint::Slide { axis: base(*s) },
     }
 }

@@ -1,13 +1,14 @@
 //! The screws of a chain's joints at home, in the frame of its subspace.
 
-use super::joint::{coaxial_joint, planar_joint, slide, spherical_axis};
+use super::joint::{coaxial_joint, planar_joint, slide, spatial_slide, spherical_axis};
 use super::planar::PlanarJoint;
 use super::{ChainError, ChainJoint};
 use crate::group::{LocalTwist, Subspace, SubspaceKind, angular_and_linear, linear, quarter};
 use nalgebra::Vector3;
 
 /// The screws of a chain's joints at home, in the order from the base, in the frame of their subspace:
-/// `(ω, vx, vy)` in a plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane.
+/// `(ω, vx, vy)` in a plane, `ω` in a sphere, `(ω, v)` on a cylinder's axis, `(vx, vy)` in a translational plane,
+/// `(vx, vy, vz)` in a translational space.
 /// Screws with fewer components end in zeros, and a chain of fewer joints gets unit vectors as further screws: so
 /// the three screws are always a square matrix, whose determinant is that of the chain.
 ///
@@ -56,6 +57,7 @@ pub(crate) fn screw(subspace: &Subspace, joint: &ChainJoint) -> Result<LocalTwis
             let along = slide(subspace, joint)?;
             Vector3::new(along.re, along.im, 0.0)
         }
+        SubspaceKind::TranslationalSpace => spatial_slide(subspace, joint)?,
     })
 }
 
@@ -64,7 +66,10 @@ pub(crate) fn screw(subspace: &Subspace, joint: &ChainJoint) -> Result<LocalTwis
 /// pivots. On an axis the determinant is constant, and is its own unit.
 pub(crate) fn determinant_scale(kind: SubspaceKind, home: &[LocalTwist; 3], size: f64) -> f64 {
     match kind {
-        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity
+        | SubspaceKind::Spherical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => 1.0,
         SubspaceKind::Cylindrical => home[0].cross(&home[1]).z.abs(),
         SubspaceKind::Planar => {
             let pivot = |s: &LocalTwist| (s.x != 0.0).then(|| quarter(linear(s)) * s.x);

@@ -92,6 +92,13 @@ pub enum Surface {
         /// The value of the left side, metres.
         at: f64,
     },
+    /// `across · g = at` in space: two sliders remain.
+    Slab {
+        /// A vector of length at most one, perpendicular to the two sliders.
+        across: Vector3<f64>,
+        /// The value of the left side, metres.
+        at: f64,
+    },
 }
 
 impl Surface {
@@ -109,7 +116,9 @@ impl Surface {
     ) {
         let scale = match *self {
             Self::Circle { .. } => size * size,
-            Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } => size,
+            Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } | Self::Slab { .. } => {
+                size
+            }
             Self::Rotation { .. } | Self::Cone { .. } => 1.0,
             Self::Coaxial { rotation, advance, at, .. } => {
                 (rotation.abs() + advance.abs()) * size.max(1.0) + at.abs()
@@ -185,6 +194,10 @@ impl Surface {
             Self::Band { across, at } => {
                 let [start, rate] = path.translational();
                 Equation::Polynomial([dot(across, *start) - at, dot(across, *rate), 0.0])
+            }
+            Self::Slab { across, at } => {
+                let [start, rate] = path.spatial();
+                Equation::Polynomial([across.dot(start) - at, across.dot(rate), 0.0])
             }
         }
     }

@@ -75,7 +75,10 @@ impl Track {
                 let cosine = axes[free].dot(&axis);
                 Some(Self::Cone { axis: held(0..free) * axes[free], cosine })
             }
-            Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => None,
+            Chain::Ball(_)
+            | Chain::Cylindrical(_)
+            | Chain::Translational(_)
+            | Chain::Spatial(_) => None,
         }
     }
 

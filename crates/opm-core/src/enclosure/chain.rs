@@ -22,10 +22,13 @@ pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
         Chain::Planar(chain) => planar_closes(&chain.joints(), target.planar()),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
-        // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution everywhere.
-        Chain::Rigid | Chain::Ball(_) | Chain::Cylindrical(_) | Chain::Translational(_) => {
-            Share::ALL
-        }
+        // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution
+        // everywhere.
+        Chain::Rigid
+        | Chain::Ball(_)
+        | Chain::Cylindrical(_)
+        | Chain::Translational(_)
+        | Chain::Spatial(_) => Share::ALL,
     }
 }
 
@@ -55,6 +58,9 @@ pub fn displacements<const N: usize>(
         Chain::Translational(chain) => {
             let [m, n] = along(*chain.slides(), *target.translational());
             [Enclosed::Value(m), Enclosed::Value(n), none]
+        }
+        Chain::Spatial(chain) => {
+            chain.coefficients().map(|row| Enclosed::Value(dot(&row, target.spatial())))
         }
     }
 }

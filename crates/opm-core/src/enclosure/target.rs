@@ -2,8 +2,8 @@
 
 use super::affine::{Affine, Plane};
 use crate::group::{
-    CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
-    TranslationalMotion, mismatch,
+    CylindricalMotion, IntersectionMotion, PlanarMotion, SpatialMotion, SphericalMotion,
+    SubspaceKind, TranslationalMotion, mismatch,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -61,6 +61,8 @@ pub enum Target<const N: usize> {
     /// The angle and the advance about and along an axis.
     Cylindrical(Affine<N>, Affine<N>),
     Translational(Plane<N>),
+    /// A translation in space.
+    Spatial([Affine<N>; 3]),
 }
 
 impl<const N: usize> Target<N> {
@@ -71,6 +73,7 @@ impl<const N: usize> Target<N> {
             Self::Spherical(_) => SubspaceKind::Spherical,
             Self::Cylindrical(..) => SubspaceKind::Cylindrical,
             Self::Translational(_) => SubspaceKind::TranslationalPlane,
+            Self::Spatial(_) => SubspaceKind::TranslationalSpace,
         }
     }
 
@@ -81,7 +84,8 @@ impl<const N: usize> Target<N> {
             Self::Identity
             | Self::Spherical(_)
             | Self::Cylindrical(..)
-            | Self::Translational(_) => mismatch(SubspaceKind::Planar, self.kind()),
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(SubspaceKind::Planar, self.kind()),
         }
     }
 
@@ -89,9 +93,11 @@ impl<const N: usize> Target<N> {
     pub fn spherical(&self) -> &Rotation<N> {
         match self {
             Self::Spherical(r) => r,
-            Self::Identity | Self::Planar(_) | Self::Cylindrical(..) | Self::Translational(_) => {
-                mismatch(SubspaceKind::Spherical, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Cylindrical(..)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(SubspaceKind::Spherical, self.kind()),
         }
     }
 
@@ -99,9 +105,11 @@ impl<const N: usize> Target<N> {
     pub fn cylindrical(&self) -> [Affine<N>; 2] {
         match *self {
             Self::Cylindrical(angle, advance) => [angle, advance],
-            Self::Identity | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
-                mismatch(SubspaceKind::Cylindrical, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(SubspaceKind::Cylindrical, self.kind()),
         }
     }
 
@@ -109,9 +117,23 @@ impl<const N: usize> Target<N> {
     pub fn translational(&self) -> &Plane<N> {
         match self {
             Self::Translational(t) => t,
-            Self::Identity | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(..) => {
-                mismatch(SubspaceKind::TranslationalPlane, self.kind())
-            }
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(..)
+            | Self::Spatial(_) => mismatch(SubspaceKind::TranslationalPlane, self.kind()),
+        }
+    }
+
+    /// The target, which must be a translation in space.
+    pub fn spatial(&self) -> &[Affine<N>; 3] {
+        match self {
+            Self::Spatial(t) => t,
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(..)
+            | Self::Translational(_) => mismatch(SubspaceKind::TranslationalSpace, self.kind()),
         }
     }
 }
@@ -195,6 +217,10 @@ pub fn after<const N: usize>(
             let step = Plane::constant(along).scaled(tau.number());
             Target::Translational(*v.translational() + step)
         }
+        IntersectionMotion::Spatial(SpatialMotion::Translation) => {
+            let [x, y, z] = *v.spatial();
+            Target::Spatial([x, y, z + tau.number()])
+        }
     }
 }
 
@@ -229,7 +255,8 @@ pub fn before<const N: usize>(
         // There is no motion, or displacements commute.
         IntersectionMotion::None(_)
         | IntersectionMotion::Cylindrical(_)
-        | IntersectionMotion::Translational(_) => after(motion, b, tau),
+        | IntersectionMotion::Translational(_)
+        | IntersectionMotion::Spatial(_) => after(motion, b, tau),
     }
 }
 
@@ -314,6 +341,7 @@ pub mod task {
             IntersectionMotion::Translational(_) => {
                 Target::Translational(Plane { re: q(0), im: q(1) })
             }
+            IntersectionMotion::Spatial(_) => Target::Spatial([q(0), q(1), q(2)]),
         }
     }
 
@@ -343,6 +371,7 @@ pub mod task {
             IntersectionMotion::Translational(_) => {
                 Target::Translational(Plane { re: none, im: q(0) })
             }
+            IntersectionMotion::Spatial(_) => Target::Spatial([q(0), q(1), none]),
         }
     }
 
@@ -364,6 +393,7 @@ pub mod task {
             SubspaceKind::Spherical => orientation(task, pose),
             SubspaceKind::Cylindrical => Target::Cylindrical(q(0), q(1)),
             SubspaceKind::TranslationalPlane => Target::Translational(Plane { re: q(0), im: q(1) }),
+            SubspaceKind::TranslationalSpace => Target::Spatial([q(0), q(1), q(2)]),
         }
     }
 

@@ -108,9 +108,8 @@ pub fn along(
             }
         },
         Condition::Flat { normal, value } => {
-            let ([a, b], [p, q]) = (v.sum(), motion.sum());
-            let scale = normal[0].hypot(normal[1]) * size.max(1.0);
-            translation(normal[0] * p + normal[1] * q, normal[0] * a + normal[1] * b - value, scale)
+            let scale = normal.norm() * size.max(1.0);
+            translation(normal.dot(&motion.sum()), normal.dot(&v.sum()) - value, scale)
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::chain::condition::{Condition, VERGE, flat_joints};
 use crate::chain::planar::PlanarJoint;
 use crate::chain::track::Track;
 use crate::chain::{Branch, Chain, ReachDeficit, planar};
-use crate::group::{Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind};
+use crate::group::{Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, SubspaceKind};
 use crate::manipulator::plan::{Anchor, Plan};
 use crate::manipulator::{CompiledLeg, Manipulator, Section, Solution};
 use crate::numeric::angle::unit;
@@ -131,13 +131,11 @@ impl<'a> Search<'a> {
                 }
             }
             Anchor::Level { leg, joint } => {
-                let Some(Condition::Flat { normal: [a, b], value }) =
-                    self.lower_condition(*leg, *joint)
+                let Some(Condition::Flat { normal, value }) = self.lower_condition(*leg, *joint)
                 else {
                     return;
                 };
-                let share = value / (a * a + b * b);
-                let v = m.task().lower.kind.of_sum([a * share, b * share]);
+                let v = m.task().lower.kind.of_sum(&(normal * (value / normal.norm_squared())));
                 self.with_lower(&v, &unknown);
             }
             Anchor::CoupledLegs { functional, legs } => {
@@ -218,6 +216,7 @@ impl<'a> Search<'a> {
             Chain::Translational(chain) => {
                 Displacement::Translational(chain.forward(&[q[0], q[1]]))
             }
+            Chain::Spatial(chain) => Displacement::Spatial(chain.forward(&q)),
         };
         match &lower.offset {
             None => reached,
@@ -226,13 +225,13 @@ impl<'a> Search<'a> {
     }
 
     /// The τ of one of several coupled legs, where the functional of `b` that couples them is zero.
-    fn coupled_tau(&self, leg: usize, functional: &[f64; 2]) -> JointDisplacement {
+    fn coupled_tau(&self, leg: usize, functional: &LocalTwist) -> JointDisplacement {
         let held = self.plan.legs[leg].upper.first();
         let driven = held.and_then(|&joint| {
             let chain = &self.legs[leg].upper.chain;
-            let [p, q] = flat_joints(chain)?[joint];
+            let moved = flat_joints(chain)?[joint];
             let value = self.displacement(leg, Section::Upper, joint).value();
-            Some(-(functional[0] * p + functional[1] * q) * value)
+            Some(-functional.dot(&moved) * value)
         });
         JointDisplacement::Value(driven.unwrap_or(0.0))
     }
@@ -396,9 +395,9 @@ impl<'a> Search<'a> {
         let size = self.manipulator.closure.size;
         match kind {
             SubspaceKind::Identity => Some(vec![SubspaceKind::Identity.identity()]),
-            SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
-                crossing(kind, conditions, size).map(|g| vec![g])
-            }
+            SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalPlane
+            | SubspaceKind::TranslationalSpace => crossing(kind, conditions, size).map(|g| vec![g]),
             SubspaceKind::Planar => {
                 first_independent(conditions, size, three::planar, |g: PlanarDisplacement| {
                     let translation = g.translation * size;
@@ -453,39 +452,43 @@ fn only_slides(chain: &Chain) -> bool {
         | Chain::Planar(_)
         | Chain::Spherical(_)
         | Chain::Ball(_)
-        | Chain::Translational(_) => false,
+        | Chain::Translational(_)
+        | Chain::Spatial(_) => false,
     }
 }
 
-/// The point where two of several lines meet: the two that are most nearly perpendicular. `None` if all are
-/// parallel.
+/// The displacement of a commutative subspace that satisfies as many of several linear conditions as the subspace has
+/// dimensions, two or three: those whose normals are most nearly perpendicular. `None` if too few are independent.
 fn crossing(kind: SubspaceKind, conditions: &[Condition], size: f64) -> Option<Displacement> {
-    // The units of the two coordinates: radians, or lengths over the size.
+    // The units of the coordinates: radians, or lengths over the size.
     let scale = kind.sum_units(size);
-    let rows: Vec<([f64; 2], f64)> = conditions
+    let rows: Vec<(LocalTwist, f64)> = conditions
         .iter()
         .filter_map(|condition| match condition {
-            Condition::Flat { normal: [a, b], value } => {
-                let (a, b) = (a * scale[0], b * scale[1]);
-                let length = a.hypot(b);
-                Some(([a / length, b / length], value / length))
+            Condition::Flat { normal, value } => {
+                let normal = normal.component_mul(&scale);
+                let length = normal.norm();
+                Some((normal / length, value / length))
             }
             _ => None,
         })
         .collect();
-    let cross = |[a, b]: [f64; 2], [p, q]: [f64; 2]| a * q - b * p;
-    let mut best: Option<(f64, usize, usize)> = None;
-    for j in 0..rows.len() {
-        for i in 0..j {
-            let determinant = cross(rows[i].0, rows[j].0);
-            if best.is_none_or(|(most, ..)| determinant.abs() > most.abs()) {
-                best = Some((determinant, i, j));
+    // Two conditions are completed by one on the third number, which is zero.
+    let padding = [(LocalTwist::z(), 0.0)];
+    let mut best: Option<(f64, [(LocalTwist, f64); 3])> = None;
+    for (k, &third) in rows.iter().enumerate() {
+        for (j, &second) in rows[..k].iter().enumerate() {
+            let firsts = if kind.dimension() == 3 { &rows[..j] } else { &padding };
+            for &first in firsts {
+                let determinant = first.0.dot(&second.0.cross(&third.0));
+                if best.is_none_or(|(most, _)| determinant.abs() > most.abs()) {
+                    best = Some((determinant, [first, second, third]));
+                }
             }
         }
     }
-    let (determinant, i, j) = best.filter(|(determinant, ..)| determinant.abs() > VERGE)?;
-    let (([a, b], m), ([p, q], n)) = (rows[i], rows[j]);
-    let x = (m * q - b * n) / determinant;
-    let y = (a * n - m * p) / determinant;
-    Some(kind.of_sum([x * scale[0], y * scale[1]]))
+    let (determinant, [(a, p), (b, q), (c, r)]) =
+        best.filter(|(determinant, _)| determinant.abs() > VERGE)?;
+    let sum = (b.cross(&c) * p + c.cross(&a) * q + a.cross(&b) * r) / determinant;
+    Some(kind.of_sum(&sum.component_mul(&scale)))
 }

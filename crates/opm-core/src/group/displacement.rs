@@ -4,7 +4,7 @@
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{
     Cylindrical, CylindricalDisplacement, Identity, IdentityDisplacement, Planar,
-    PlanarDisplacement, Spherical, SubspaceKind, TranslationalPlane, mismatch,
+    PlanarDisplacement, Spherical, SubspaceKind, TranslationalPlane, TranslationalSpace, mismatch,
 };
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
@@ -21,6 +21,8 @@ pub enum Displacement {
     Cylindrical(CylindricalDisplacement),
     /// A translation in a plane, metres.
     Translational(Complex<f64>),
+    /// A translation in space, metres.
+    Spatial(Vector3<f64>),
 }
 
 /// Calls a function of [`Subgroup`] for the subgroup of a kind, `G`.
@@ -45,6 +47,10 @@ macro_rules! of_kind {
             }
             SubspaceKind::TranslationalPlane => {
                 type $G = TranslationalPlane;
+                $call
+            }
+            SubspaceKind::TranslationalSpace => {
+                type $G = TranslationalSpace;
                 $call
             }
         }
@@ -73,6 +79,10 @@ macro_rules! of_displacement {
             }
             Displacement::Translational($g) => {
                 type $G = TranslationalPlane;
+                $call
+            }
+            Displacement::Spatial($g) => {
+                type $G = TranslationalSpace;
                 $call
             }
         }
@@ -125,15 +135,14 @@ impl SubspaceKind {
 
     /// The displacement with a given sum of logarithms, in a subspace whose displacements commute: the
     /// inverse of [`Displacement::sum`].
-    pub(crate) fn of_sum(self, [first, second]: [f64; 2]) -> Displacement {
-        self.exponential(&LocalTwist::new(first, second, 0.0))
+    pub(crate) fn of_sum(self, sum: &LocalTwist) -> Displacement {
+        self.exponential(sum)
     }
 
-    /// The units of the two components of a logarithm: one radian for an angle, `size` (metres) for a
-    /// length.
-    pub(crate) fn sum_units(self, size: f64) -> [f64; 2] {
+    /// The units of the components of a logarithm: one radian for an angle, `size` (metres) for a length.
+    pub(crate) fn sum_units(self, size: f64) -> LocalTwist {
         let unit = |twist: LocalTwist| if self.is_translation(&twist) { size } else { 1.0 };
-        [unit(LocalTwist::x()), unit(LocalTwist::y())]
+        LocalTwist::new(unit(LocalTwist::x()), unit(LocalTwist::y()), unit(LocalTwist::z()))
     }
 
     /// The unit twists: a basis of the subspace's twists.
@@ -161,6 +170,7 @@ impl Displacement {
             Self::Spherical(r) => Spherical::product(r, other.spherical()).into(),
             Self::Cylindrical(g) => Cylindrical::product(g, other.cylindrical()).into(),
             Self::Translational(t) => TranslationalPlane::product(t, other.translational()).into(),
+            Self::Spatial(t) => TranslationalSpace::product(t, other.spatial()).into(),
         }
     }
 
@@ -176,17 +186,17 @@ impl Displacement {
         of_displacement!(self, G, g => G::logarithm(g))
     }
 
-    /// The two components of the logarithm, which add up in products, in a subspace whose displacements
-    /// commute.
+    /// The components of the logarithm, which add up in products, in a subspace whose displacements commute;
+    /// zeros beyond its dimension.
     ///
     /// # Panics
     /// If displacements of this kind do not commute.
-    pub(crate) fn sum(&self) -> [f64; 2] {
+    pub(crate) fn sum(&self) -> LocalTwist {
         match self {
-            Self::Identity(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                let twist = self.logarithm();
-                [twist.x, twist.y]
-            }
+            Self::Identity(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => self.logarithm(),
             Self::Planar(_) | Self::Spherical(_) => mismatch(Cylindrical::KIND, self.kind()),
         }
     }
@@ -227,7 +237,8 @@ impl Displacement {
             Self::Planar(_)
             | Self::Spherical(_)
             | Self::Cylindrical(_)
-            | Self::Translational(_) => mismatch(Identity::KIND, self.kind()),
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Identity::KIND, self.kind()),
         }
     }
 
@@ -239,7 +250,8 @@ impl Displacement {
             Self::Identity(_)
             | Self::Spherical(_)
             | Self::Cylindrical(_)
-            | Self::Translational(_) => mismatch(Planar::KIND, self.kind()),
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Planar::KIND, self.kind()),
         }
     }
 
@@ -248,9 +260,11 @@ impl Displacement {
     pub(crate) fn spherical(&self) -> &Matrix3<f64> {
         match self {
             Self::Spherical(r) => r,
-            Self::Identity(_) | Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                mismatch(Spherical::KIND, self.kind())
-            }
+            Self::Identity(_)
+            | Self::Planar(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Spherical::KIND, self.kind()),
         }
     }
 
@@ -259,9 +273,11 @@ impl Displacement {
     pub(crate) fn cylindrical(&self) -> &CylindricalDisplacement {
         match self {
             Self::Cylindrical(g) => g,
-            Self::Identity(_) | Self::Planar(_) | Self::Spherical(_) | Self::Translational(_) => {
-                mismatch(Cylindrical::KIND, self.kind())
-            }
+            Self::Identity(_)
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Cylindrical::KIND, self.kind()),
         }
     }
 
@@ -270,9 +286,24 @@ impl Displacement {
     pub(crate) fn translational(&self) -> &Complex<f64> {
         match self {
             Self::Translational(t) => t,
-            Self::Identity(_) | Self::Planar(_) | Self::Spherical(_) | Self::Cylindrical(_) => {
-                mismatch(TranslationalPlane::KIND, self.kind())
-            }
+            Self::Identity(_)
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Spatial(_) => mismatch(TranslationalPlane::KIND, self.kind()),
+        }
+    }
+
+    /// The translation in space. Panics if the displacement is of another kind.
+    #[inline(always)]
+    pub(crate) fn spatial(&self) -> &Vector3<f64> {
+        match self {
+            Self::Spatial(t) => t,
+            Self::Identity(_)
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_) => mismatch(TranslationalSpace::KIND, self.kind()),
         }
     }
 }
@@ -309,5 +340,12 @@ impl From<Complex<f64>> for Displacement {
     #[inline(always)]
     fn from(t: Complex<f64>) -> Self {
         Self::Translational(t)
+    }
+}
+
+impl From<Vector3<f64>> for Displacement {
+    #[inline(always)]
+    fn from(t: Vector3<f64>) -> Self {
+        Self::Spatial(t)
     }
 }

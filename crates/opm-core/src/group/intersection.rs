@@ -4,7 +4,8 @@ use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{
     Cylindrical, CylindricalMotion, Displacement, JointDisplacement, Planar, PlanarMotion,
-    Spherical, SphericalMotion, SubspaceKind, TranslationalMotion, TranslationalPlane, mismatch,
+    SpatialMotion, Spherical, SphericalMotion, SubspaceKind, TranslationalMotion,
+    TranslationalPlane, TranslationalSpace, mismatch,
 };
 use nalgebra::Vector3;
 
@@ -28,6 +29,8 @@ pub enum IntersectionMotion {
     Cylindrical(CylindricalMotion),
     /// A translation in a translational plane.
     Translational(TranslationalMotion),
+    /// A translation in space.
+    Spatial(SpatialMotion),
     /// No motion: the two subspaces share the identity alone. This one is of the kind given.
     None(SubspaceKind),
 }
@@ -54,13 +57,18 @@ macro_rules! of_motion {
                 type $G = TranslationalPlane;
                 $call
             }
+            IntersectionMotion::Spatial($m) => {
+                type $G = TranslationalSpace;
+                $call
+            }
         }
     };
 }
 
 impl IntersectionMotion {
     /// The intersection motion in a subspace of a kind. `direction` is a unit vector in the subspace's frame:
-    /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation.
+    /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation. Except in a
+    /// plane, it is the frame's third direction.
     ///
     /// # Panics
     /// If the subspace does not contain such a motion. The trivial one gives [`IntersectionMotion::None`].
@@ -72,6 +80,9 @@ impl IntersectionMotion {
             SubspaceKind::Cylindrical => Self::Cylindrical(Cylindrical::motion(direction, motion)),
             SubspaceKind::TranslationalPlane => {
                 Self::Translational(TranslationalPlane::motion(direction, motion))
+            }
+            SubspaceKind::TranslationalSpace => {
+                Self::Spatial(TranslationalSpace::motion(direction, motion))
             }
         }
     }
@@ -88,7 +99,8 @@ impl IntersectionMotion {
             Self::Planar(_)
             | Self::Spherical(_)
             | Self::Cylindrical(_)
-            | Self::Translational(_) => {
+            | Self::Translational(_)
+            | Self::Spatial(_) => {
                 let translation = self.kind().is_translation(&self.unit_twist());
                 Some(if translation { MotionType::Translation } else { MotionType::Rotation })
             }
@@ -108,9 +120,8 @@ impl IntersectionMotion {
 
     /// What a unit of the motion adds to the logarithm of a displacement, in a subspace whose displacements
     /// commute.
-    pub(crate) fn sum(&self) -> [f64; 2] {
-        let twist = self.unit_twist();
-        [twist.x, twist.y]
+    pub(crate) fn sum(&self) -> LocalTwist {
+        self.unit_twist()
     }
 
     /// Twists that complete the unit twist to a basis of the subspace's twists; a whole basis for no motion.
@@ -130,6 +141,7 @@ impl IntersectionMotion {
             Self::Spherical(m) => Spherical::after(m, v.spherical(), tau).into(),
             Self::Cylindrical(m) => Cylindrical::after(m, v.cylindrical(), tau).into(),
             Self::Translational(m) => TranslationalPlane::after(m, v.translational(), tau).into(),
+            Self::Spatial(m) => TranslationalSpace::after(m, v.spatial(), tau).into(),
         }
     }
 
@@ -145,6 +157,7 @@ impl IntersectionMotion {
             Self::Spherical(m) => Spherical::before(m, b.spherical(), tau).into(),
             Self::Cylindrical(m) => Cylindrical::before(m, b.cylindrical(), tau).into(),
             Self::Translational(m) => TranslationalPlane::before(m, b.translational(), tau).into(),
+            Self::Spatial(m) => TranslationalSpace::before(m, b.spatial(), tau).into(),
         }
     }
 
@@ -159,6 +172,7 @@ impl IntersectionMotion {
             Self::Spherical(m) => Some(Spherical::path(m, b.spherical())),
             Self::Cylindrical(m) => Some(Cylindrical::path(m, b.cylindrical())),
             Self::Translational(m) => Some(TranslationalPlane::path(m, b.translational())),
+            Self::Spatial(m) => Some(TranslationalSpace::path(m, b.spatial())),
         }
     }
 
@@ -180,9 +194,11 @@ impl IntersectionMotion {
     pub(crate) fn planar(&self) -> &PlanarMotion {
         match self {
             Self::Planar(m) => m,
-            Self::None(_) | Self::Spherical(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                mismatch(Planar::KIND, self.kind())
-            }
+            Self::None(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Planar::KIND, self.kind()),
         }
     }
 
@@ -191,9 +207,11 @@ impl IntersectionMotion {
     pub(crate) fn spherical(&self) -> &SphericalMotion {
         match self {
             Self::Spherical(m) => m,
-            Self::None(_) | Self::Planar(_) | Self::Cylindrical(_) | Self::Translational(_) => {
-                mismatch(Spherical::KIND, self.kind())
-            }
+            Self::None(_)
+            | Self::Planar(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => mismatch(Spherical::KIND, self.kind()),
         }
     }
 }

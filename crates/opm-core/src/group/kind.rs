@@ -17,6 +17,8 @@ pub enum SubspaceKind {
     Cylindrical,
     /// The translations in a plane.
     TranslationalPlane,
+    /// All translations of space.
+    TranslationalSpace,
 }
 
 impl SubspaceKind {
@@ -29,10 +31,10 @@ impl SubspaceKind {
             SubspaceClass::Spherical { .. } => Some(Self::Spherical),
             SubspaceClass::Cylindrical { .. } => Some(Self::Cylindrical),
             SubspaceClass::TranslationalPlane { .. } => Some(Self::TranslationalPlane),
+            SubspaceClass::TranslationalSpace => Some(Self::TranslationalSpace),
             SubspaceClass::Rotation { .. }
             | SubspaceClass::Translation { .. }
             | SubspaceClass::Helical { .. }
-            | SubspaceClass::TranslationalSpace
             | SubspaceClass::PlanarHelical { .. }
             | SubspaceClass::Full => None,
         }
@@ -47,6 +49,7 @@ impl fmt::Display for SubspaceKind {
             Self::Spherical => "spherical",
             Self::Cylindrical => "cylindrical",
             Self::TranslationalPlane => "translational plane",
+            Self::TranslationalSpace => "translational space",
         })
     }
 }

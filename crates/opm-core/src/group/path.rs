@@ -2,7 +2,7 @@
 
 use super::{
     Cylindrical, CylindricalDisplacement, Planar, PlanarDisplacement, Spherical, SubspaceKind,
-    TranslationalPlane, mismatch, subgroup::Subgroup,
+    TranslationalPlane, TranslationalSpace, mismatch, subgroup::Subgroup,
 };
 use nalgebra::{Complex, Matrix3, Vector3};
 
@@ -34,6 +34,13 @@ pub enum Path {
         start: Complex<f64>,
         /// The translation for a unit of `t`.
         rate: Complex<f64>,
+    },
+    /// The displacement is a translation in space.
+    Spatial {
+        /// The displacement at `t = 0`.
+        start: Vector3<f64>,
+        /// The translation for a unit of `t`.
+        rate: Vector3<f64>,
     },
 }
 
@@ -69,6 +76,7 @@ impl Path {
             Self::Cylindrical { start, rate } => far(start.angle.abs(), rate.angle.abs())
                 .max(far(start.advance.abs(), rate.advance.abs())),
             Self::Translational { start, rate } => far(start.norm(), rate.norm()),
+            Self::Spatial { start, rate } => far(start.norm(), rate.norm()),
         }
     }
 
@@ -80,6 +88,7 @@ impl Path {
             Self::Spherical { .. } => Spherical::KIND,
             Self::Cylindrical { .. } => Cylindrical::KIND,
             Self::Translational { .. } => TranslationalPlane::KIND,
+            Self::Spatial { .. } => TranslationalSpace::KIND,
         }
     }
 
@@ -90,7 +99,8 @@ impl Path {
             Self::Identity
             | Self::Spherical { .. }
             | Self::Cylindrical { .. }
-            | Self::Translational { .. } => mismatch(Planar::KIND, self.kind()),
+            | Self::Translational { .. }
+            | Self::Spatial { .. } => mismatch(Planar::KIND, self.kind()),
         }
     }
 
@@ -101,7 +111,8 @@ impl Path {
             Self::Identity
             | Self::Planar(_)
             | Self::Cylindrical { .. }
-            | Self::Translational { .. } => mismatch(Spherical::KIND, self.kind()),
+            | Self::Translational { .. }
+            | Self::Spatial { .. } => mismatch(Spherical::KIND, self.kind()),
         }
     }
 
@@ -112,7 +123,8 @@ impl Path {
             Self::Identity
             | Self::Planar(_)
             | Self::Spherical { .. }
-            | Self::Translational { .. } => mismatch(Cylindrical::KIND, self.kind()),
+            | Self::Translational { .. }
+            | Self::Spatial { .. } => mismatch(Cylindrical::KIND, self.kind()),
         }
     }
 
@@ -123,7 +135,20 @@ impl Path {
             Self::Identity
             | Self::Planar(_)
             | Self::Spherical { .. }
-            | Self::Cylindrical { .. } => mismatch(TranslationalPlane::KIND, self.kind()),
+            | Self::Cylindrical { .. }
+            | Self::Spatial { .. } => mismatch(TranslationalPlane::KIND, self.kind()),
+        }
+    }
+
+    /// The start and the rate of a path of translations in space. Panics if the path is of another kind.
+    pub(crate) fn spatial(&self) -> [&Vector3<f64>; 2] {
+        match self {
+            Self::Spatial { start, rate } => [start, rate],
+            Self::Identity
+            | Self::Planar(_)
+            | Self::Spherical { .. }
+            | Self::Cylindrical { .. }
+            | Self::Translational { .. } => mismatch(TranslationalSpace::KIND, self.kind()),
         }
     }
 }

@@ -10,12 +10,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Rounding of a few dozen operations on numbers up to about ten.
 const ROUNDING: f64 = 1e-12;
 
-const KINDS: [SubspaceKind; 5] = [
+const KINDS: [SubspaceKind; 6] = [
     SubspaceKind::Identity,
     SubspaceKind::Planar,
     SubspaceKind::Spherical,
     SubspaceKind::Cylindrical,
     SubspaceKind::TranslationalPlane,
+    SubspaceKind::TranslationalSpace,
 ];
 
 fn kind() -> impl Strategy<Value = SubspaceKind> {
@@ -73,6 +74,9 @@ fn structured(kind: SubspaceKind) -> BoxedStrategy<Displacement> {
             .prop_map(|[angle, advance]| CylindricalDisplacement { angle, advance }.into())
             .boxed(),
         SubspaceKind::TranslationalPlane => translation().prop_map(Displacement::from).boxed(),
+        SubspaceKind::TranslationalSpace => [number(), number(), number()]
+            .prop_map(|numbers| Displacement::from(Vector3::from(numbers)))
+            .boxed(),
     }
 }
 
@@ -113,6 +117,7 @@ fn motion(kind: SubspaceKind) -> BoxedStrategy<IntersectionMotion> {
         SubspaceKind::TranslationalPlane => {
             direction.prop_map(move |along| new(kind, &along, Translation)).boxed()
         }
+        SubspaceKind::TranslationalSpace => Just(new(kind, &Vector3::z(), Translation)).boxed(),
     };
     prop_oneof![8 => moving, 1 => Just(IntersectionMotion::None(kind))].boxed()
 }
@@ -149,6 +154,7 @@ fn apart(a: &Displacement, b: &Displacement) -> f64 {
             (a.angle - b.angle).abs().max((a.advance - b.advance).abs())
         }
         Displacement::Translational(a) => (a - b.translational()).norm(),
+        Displacement::Spatial(a) => (a - b.spatial()).norm(),
     }
 }
 
@@ -161,9 +167,10 @@ fn wrapped_angle(kind: SubspaceKind, twist: &LocalTwist) -> f64 {
     match kind {
         SubspaceKind::Planar => twist.x.abs(),
         SubspaceKind::Spherical => twist.norm(),
-        SubspaceKind::Identity | SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
-            0.0
-        }
+        SubspaceKind::Identity
+        | SubspaceKind::Cylindrical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => 0.0,
     }
 }
 
@@ -310,6 +317,7 @@ proptest! {
             }
             .into(),
             Path::Translational { start, rate } => (start + rate * t).into(),
+            Path::Spatial { start, rate } => (start + rate * t).into(),
         };
         prop_assert!(apart(&at, &motion.before(&g, JointDisplacement::Value(t))) < ROUNDING);
     }

@@ -2,7 +2,7 @@
 //! equation of closure, is the target of the chain of the other joints.
 
 use crate::chain::cylindrical::CoaxialJoint;
-use crate::chain::joint::{coaxial_joint, in_plane};
+use crate::chain::joint::{coaxial_joint, in_plane, spatial_slide};
 use crate::chain::{ChainError, ChainJoint};
 use crate::group::{
     CylindricalDisplacement, Displacement, JointDisplacement, LocalTwist, Path, PlanarDisplacement,
@@ -25,8 +25,10 @@ pub(super) enum Drive {
     Spherical(Vector3<f64>),
     /// A joint on an axis.
     Coaxial(CoaxialJoint),
-    /// A slider of a section of sliders, along a unit direction.
+    /// A slider of a section of sliders in a plane, along a unit direction.
     Translational(Complex<f64>),
+    /// A slider of a section of sliders in space, along a unit direction.
+    Spatial(Vector3<f64>),
 }
 
 impl Drive {
@@ -48,6 +50,9 @@ impl Drive {
             (SubspaceKind::TranslationalPlane, ChainJoint::Slide { axis }) => {
                 Self::Translational(in_plane(&subspace, axis)?)
             }
+            (SubspaceKind::TranslationalSpace, joint) => {
+                Self::Spatial(spatial_slide(&subspace, joint)?)
+            }
             (SubspaceKind::Identity, _) => return Err(ChainError::Foreign("rigid")),
             (SubspaceKind::Planar, _) => return Err(ChainError::Foreign("planar")),
             (SubspaceKind::Spherical, _) => return Err(ChainError::Foreign("spherical")),
@@ -63,7 +68,7 @@ impl Drive {
         match self {
             Self::Pivot { .. } | Self::Spherical(_) => true,
             Self::Coaxial(joint) => joint.rotation != 0.0 && joint.advance == 0.0,
-            Self::Slider(_) | Self::Translational(_) => false,
+            Self::Slider(_) | Self::Translational(_) | Self::Spatial(_) => false,
         }
     }
 
@@ -97,6 +102,7 @@ impl Drive {
                 Displacement::Cylindrical(CylindricalDisplacement { angle, advance })
             }
             Self::Translational(along) => Displacement::Translational(-along * q.value()),
+            Self::Spatial(along) => Displacement::Spatial(-along * q.value()),
         }
     }
 
@@ -118,6 +124,7 @@ impl Drive {
             Self::Translational(along) => {
                 Path::Translational { start: Complex::ZERO, rate: -along }
             }
+            Self::Spatial(along) => Path::Spatial { start: Vector3::zeros(), rate: -along },
         }
     }
 
@@ -130,7 +137,8 @@ impl Drive {
             | Self::Slider(_)
             | Self::Spherical(_)
             | Self::Coaxial(_)
-            | Self::Translational(_) => parameter,
+            | Self::Translational(_)
+            | Self::Spatial(_) => parameter,
         }
     }
 
@@ -146,6 +154,7 @@ impl Drive {
                 LocalTwist::new(rotation, advance, 0.0)
             }
             Self::Translational(along) => LocalTwist::new(along.re, along.im, 0.0),
+            Self::Spatial(along) => along,
         }
     }
 }

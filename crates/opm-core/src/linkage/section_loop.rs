@@ -21,6 +21,7 @@
 //! | spherical | four-bar RRRR | RRR |
 //! | cylindrical | three coaxial joints of different pitch | two coaxial joints |
 //! | translational plane | three sliders | two sliders |
+//! | translational space | four sliders | three sliders |
 //!
 //! The loop closes up to inputs at which the chain's two branches meet: the *dead points*, where two
 //! links are folded or stretched, or a link is perpendicular to its slider. They are those targets of
@@ -177,7 +178,8 @@ impl DrivenLoop {
             | Chain::Planar(_)
             | Chain::Spherical(_)
             | Chain::Ball(_)
-            | Chain::Translational(_) => {
+            | Chain::Translational(_)
+            | Chain::Spatial(_) => {
                 self.chain.inverse(&target, branch).ok().map(|found| found[index].value())
             }
         }
@@ -233,7 +235,9 @@ impl DrivenLoop {
                 let revolution = JointDisplacement::Value(TAU);
                 self.counted(revolution, Branch::Plus, index).map(f64::abs)
             }
-            Chain::Rigid | Chain::Cylindrical(_) | Chain::Translational(_) => None,
+            Chain::Rigid | Chain::Cylindrical(_) | Chain::Translational(_) | Chain::Spatial(_) => {
+                None
+            }
         }
     }
 }

@@ -37,10 +37,12 @@ pub enum RefusedLeg {
     #[error("{}", .0.of_leg())]
     Height(#[from] HeightMiss),
     /// One of the leg's sections has no closed form.
-    #[error("its {section} section has no closed form: {error}")]
+    #[error("its {section} section ({}) has no closed form: {error}", joints.join(", "))]
     Chain {
         /// The section.
         section: Section,
+        /// The names of its joints, base first, and "the imaginary joint" if it belongs to the section.
+        joints: Vec<String>,
         /// Why it has no closed form.
         error: ChainError,
     },
@@ -247,7 +249,15 @@ impl CompiledLeg {
                 let number = first + coordinate_number(leg, *freedom);
                 *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
             }
-            let refused = |error| RefusedLeg::Chain { section, error };
+            let refused = |error| {
+                let mut joints: Vec<String> =
+                    freedoms.iter().map(|f| leg.joints[f.joint].name.clone()).collect();
+                joints.dedup();
+                if bridged && section == split_section {
+                    joints.push("the imaginary joint".into());
+                }
+                RefusedLeg::Chain { section, joints, error }
+            };
             let bridge = imaginary_joint.filter(|_| section == split_section);
             let bridge_at = if section == Section::Upper { 0 } else { joints.len() };
             joints.splice(bridge_at..bridge_at, bridge);

@@ -132,7 +132,8 @@ fn in_plane(
     section: Section,
 ) -> Result<Option<LocalTwist>, RefusedLeg> {
     let joint = &leg.joints[lift.joint];
-    let refused = |error| RefusedLeg::Chain { section, error };
+    let joints = vec![joint.name.clone()];
+    let refused = |error| RefusedLeg::Chain { section, joints, error };
     match joint.kind {
         JointKind::Helical { .. } => {
             let turn = ChainJoint::Screw { axis: joint.axis, point: joint.point, pitch: 0.0 };

@@ -7,7 +7,7 @@ use super::{CompiledLeg, CompiledSection, Section};
 use crate::chain::Chain;
 use crate::chain::condition::{Condition, flat_joints};
 use crate::chain::track::Track;
-use crate::group::{JointDisplacement, MotionType, SubspaceKind};
+use crate::group::{JointDisplacement, LocalTwist, MotionType, SubspaceKind};
 use crate::task::Task;
 use flat::Flat;
 use nalgebra::Complex;
@@ -69,7 +69,7 @@ pub enum Anchor {
     Level { leg: usize, joint: usize },
     /// Coupled legs: the displacement of each along the intersection motion is `functional · b`, up to a known
     /// constant. Measured from it, the legs impose as many conditions on `v` as it has freedoms.
-    CoupledLegs { functional: [f64; 2], legs: Vec<usize> },
+    CoupledLegs { functional: LocalTwist, legs: Vec<usize> },
     /// Both subspaces are commutative: the pose solves a linear system.
     Flat(Flat),
 }
@@ -143,7 +143,8 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             | Chain::Planar(_)
             | Chain::Spherical(_)
             | Chain::Ball(_)
-            | Chain::Translational(_) => return false,
+            | Chain::Translational(_)
+            | Chain::Spatial(_) => return false,
         };
         let held = match section {
             Section::Lower => &held.lower,
@@ -175,8 +176,8 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
             let level = |joint: &&usize| {
                 let c =
                     Condition::new(&legs[leg].lower.chain, **joint, JointDisplacement::Value(0.0));
-                matches!(c, Some(Condition::Flat { normal: [a, b], .. })
-                    if (a * along[0] + b * along[1]).abs() <= LEVEL * a.hypot(b))
+                matches!(c, Some(Condition::Flat { normal, .. })
+                    if normal.dot(&along).abs() <= LEVEL * normal.norm())
             };
             let joint = *held[leg].lower.iter().find(level)?;
             Some(Anchor::Level { leg, joint })
@@ -231,18 +232,16 @@ fn coupled_legs(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Option<A
         if leg.split_section == Section::Lower || !held.upper.is_empty() {
             return None;
         }
-        let [_, [p, q]] = flat_joints(&leg.upper.chain)?;
-        let across = q * along[0] - p * along[1];
-        Some([q / across, -p / across])
+        let [_, p, q] = flat_joints(&leg.upper.chain)?;
+        let across = p.cross(&q);
+        Some(across / across.dot(&along))
     };
     let functionals: Vec<_> =
         legs.iter().zip(held).map(|(leg, held)| functional(leg, held)).collect();
-    let matches_functional = |other: &Option<[f64; 2]>, wanted: &[f64; 2]| {
-        other.is_some_and(|[a, b]| {
-            (a - wanted[0]).abs().max((b - wanted[1]).abs()) <= LEVEL * wanted[0].hypot(wanted[1])
-        })
+    let matches_functional = |other: &Option<LocalTwist>, wanted: &LocalTwist| {
+        other.is_some_and(|other| (other - wanted).amax() <= LEVEL * wanted.norm())
     };
-    let group = |wanted: &[f64; 2]| -> Vec<usize> {
+    let group = |wanted: &LocalTwist| -> Vec<usize> {
         (0..legs.len())
             .filter(|&i| {
                 let driven = legs[i].split_section == Section::Upper && !held[i].upper.is_empty();
@@ -275,22 +274,23 @@ fn conditions(legs: &[CompiledLeg], held: &[HeldLeg], section: Section) -> Vec<C
 }
 
 /// Whether conditions on the displacements of a subspace determine finitely many: there are enough of them. In
-/// a commutative subspace two have to be independent; in the others, home would not tell.
+/// a commutative subspace as many have to be independent; in the others, home would not tell.
 fn fixes(kind: SubspaceKind, conditions: &[Condition]) -> bool {
     if kind == SubspaceKind::Identity || !kind.commutes() {
         return conditions.len() >= kind.dimension();
     }
-    let normals: Vec<[f64; 2]> = conditions
-        .iter()
-        .filter_map(|condition| match condition {
-            Condition::Flat { normal, .. } => Some(*normal),
-            _ => None,
-        })
-        .collect();
-    normals.iter().enumerate().any(|(i, [a, b])| {
-        let across = |[p, q]: &[f64; 2]| (a * q - b * p).abs() > LEVEL * a.hypot(*b) * p.hypot(*q);
-        normals[..i].iter().any(across)
-    })
+    let normals = conditions.iter().filter_map(|condition| match condition {
+        Condition::Flat { normal, .. } => Some(*normal),
+        _ => None,
+    });
+    let mut independent: Vec<LocalTwist> = Vec::new();
+    for normal in normals {
+        let rest = independent.iter().fold(normal, |rest, known| rest - known * known.dot(&rest));
+        if rest.norm() > LEVEL * normal.norm() {
+            independent.push(rest.normalize());
+        }
+    }
+    independent.len() >= kind.dimension()
 }
 
 /// Whether the legs' conditions determine `b` once `v` is known.

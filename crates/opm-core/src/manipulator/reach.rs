@@ -227,7 +227,8 @@ impl Manipulator {
             Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),
             Displacement::Identity(_)
             | Displacement::Spherical(_)
-            | Displacement::Cylindrical(_) => None,
+            | Displacement::Cylindrical(_)
+            | Displacement::Spatial(_) => None,
         }
     }
 }

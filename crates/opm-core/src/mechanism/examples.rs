@@ -114,6 +114,11 @@ pub const EXAMPLES: &[Example] = &[
         description: "three arms, one on a column, in one subspace: three translations, one rotation",
         text: include_str!("../../mechanisms/schoenflies-column-4dof.toml"),
     },
+    Example {
+        name: "cartesian-wrist-6dof",
+        description: "three cartesian arms below an Agile Eye: three translations, three rotations",
+        text: include_str!("../../mechanisms/cartesian-wrist-6dof.toml"),
+    },
 ];
 
 /// The example with this name, if there is one.

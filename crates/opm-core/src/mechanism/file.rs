@@ -35,7 +35,7 @@
 //! | key | meaning | sections |
 //! |---|---|---|
 //! | `axis` | the positive direction of the intersection motion: the one on the side of this vector | both sections |
-//! | `x` | the direction of coordinate `x`, in the plane; for a sphere, the direction of its frame's first axis, perpendicular to the intersection motion | planes with `x y`, spheres |
+//! | `x` | the direction of coordinate `x`, in the plane; for a sphere or a translational space, the direction of its frame's first axis, perpendicular to the intersection motion | planes with `x y`, spheres, translational spaces |
 //! | `w` | the positive direction of coordinate `w` | upper planes with `w` |
 //! | `normal` | the plane's normal about which `y` and the angle are positive | planes that share a translation and have an angle or `y` |
 //! | `origin` | the point that lengths are measured from | all sections with a length among their coordinates |

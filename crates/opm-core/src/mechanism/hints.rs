@@ -26,10 +26,11 @@ pub struct TaskHints {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameHints {
-    /// Direction of the coordinate `x`; in a spherical subspace, direction of the frame's first axis.
+    /// Direction of the coordinate `x`; in a spherical subspace and in a translational space, direction of the
+    /// frame's first axis.
     pub x: Option<Vector3<f64>>,
-    /// The third direction of a sphere's frame, or a vector on the positive side of a cylinder's axis, where the
-    /// two subspaces share no motion.
+    /// The third direction of the frame of a sphere or of a translational space, or a vector on the positive side of a
+    /// cylinder's axis, where the two subspaces share no motion.
     pub axis: Option<Vector3<f64>>,
     /// Positive direction of the coordinate `w`.
     pub w: Option<Vector3<f64>>,

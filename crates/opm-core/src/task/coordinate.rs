@@ -11,12 +11,14 @@ pub enum CoordinateKind {
     X,
     /// `y`: the reference point along a plane's second direction.
     Y,
-    /// `z`: along a cylinder's axis; the height of a Schoenflies section.
+    /// `z`: along a cylinder's axis; the height of a Schoenflies section; along the third direction of a translational
+    /// space.
     Z,
-    /// `h`: the height of an upper Schoenflies section, where a cylinder below has `z`.
+    /// `h`: the height of an upper Schoenflies section, where a cylinder below has `z`; with `w`, along the second
+    /// direction of an upper translational space.
     H,
     /// `w`: in the upper plane, perpendicular to the intersection motion; along the axis of an upper cylinder
-    /// that shares no motion.
+    /// that shares no motion; along the first direction of an upper translational space.
     W,
     /// `theta`: the angle of the lower section about its normal or its axis.
     Theta,
@@ -135,12 +137,13 @@ pub(super) fn of_lower(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
         (SubspaceKind::Cylindrical, Some(MotionType::Translation) | None) => {
             listed([(Theta, 0.0), (Z, at.z)])
         }
+        (SubspaceKind::TranslationalSpace, _) => listed([(X, at.x), (Y, at.y), (Z, at.z)]),
     }
 }
 
 /// The coordinates of `b`. The values of lengths at home are the coordinates of the reference point.
 pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<TaskCoordinate> {
-    use CoordinateKind::{Phi, Psi, W, X, Xi, Y, Z, Zeta};
+    use CoordinateKind::{H, Phi, Psi, W, X, Xi, Y, Z, Zeta};
     let at = frame.home();
     match (frame.kind, shared) {
         (SubspaceKind::Identity, _) => vec![],
@@ -154,6 +157,8 @@ pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
         (SubspaceKind::Cylindrical, None) => listed([(Phi, 0.0), (W, at.z)]),
         (SubspaceKind::TranslationalPlane, Some(_)) => listed([(W, at.y)]),
         (SubspaceKind::TranslationalPlane, None) => listed([(X, at.x), (Y, at.y)]),
+        (SubspaceKind::TranslationalSpace, Some(_)) => listed([(W, at.x), (H, at.y)]),
+        (SubspaceKind::TranslationalSpace, None) => listed([(X, at.x), (Y, at.y), (Z, at.z)]),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::group::{
     SubspaceKind,
 };
 use crate::numeric::angle::sin_cos;
-use nalgebra::{Complex, Matrix3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// What determines the coordinates of a section: its subspace, and the intersection motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,9 @@ pub(crate) fn lower_displacement(
         (SubspaceKind::TranslationalPlane, _) => {
             Displacement::Translational(Complex::new(q(0), q(1)))
         }
+        (SubspaceKind::TranslationalSpace, _) => {
+            Displacement::Spatial(Vector3::new(q(0), q(1), q(2)))
+        }
     }
 }
 
@@ -73,6 +76,12 @@ pub(crate) fn upper_displacement(
         }
         (SubspaceKind::TranslationalPlane, None) => {
             Displacement::Translational(Complex::new(q(0), q(1)))
+        }
+        (SubspaceKind::TranslationalSpace, Some(_)) => {
+            Displacement::Spatial(Vector3::new(q(0), q(1), 0.0))
+        }
+        (SubspaceKind::TranslationalSpace, None) => {
+            Displacement::Spatial(Vector3::new(q(0), q(1), q(2)))
         }
     }
 }

@@ -147,9 +147,12 @@ impl OddJoint {
                 .map(|(leg, freedom)| leg.joints[freedom.joint].screws()[freedom.index])
                 .collect();
             let class = MotionSubspace::span(frame, &others).class()?;
-            // A Schoenflies section without one of its joints is one still.
-            SubspaceKind::of(&class)
-                .filter(|_| !matches!(class, SubspaceClass::Schoenflies { .. }))?;
+            // A Schoenflies section without one of its joints is one still, or has its height still.
+            let has_height = matches!(
+                class,
+                SubspaceClass::Schoenflies { .. } | SubspaceClass::TranslationalSpace
+            );
+            SubspaceKind::of(&class).filter(|_| !has_height)?;
             let (leg, joint) = (one.0.name.clone(), joint(one));
             Some(Self { leg, joint, without: class.name() })
         });

@@ -51,7 +51,8 @@ impl Task {
                 planar(Complex::new(1.0, 0.0), moved.x, moved.y)
             }
             SubspaceKind::Cylindrical => cylindrical(0.0, lower.direction(&(g * point - point)).z),
-            SubspaceKind::Identity => SubspaceKind::Identity.identity(),
+            // They contain no rotation.
+            SubspaceKind::Identity | SubspaceKind::TranslationalSpace => lower.kind.identity(),
             SubspaceKind::Spherical => {
                 let (before, after) = match upper.kind {
                     // `b` keeps the centre of the upper sphere fixed.
@@ -60,7 +61,8 @@ impl Task {
                     SubspaceKind::Identity
                     | SubspaceKind::Planar
                     | SubspaceKind::Cylindrical
-                    | SubspaceKind::TranslationalPlane => {
+                    | SubspaceKind::TranslationalPlane
+                    | SubspaceKind::TranslationalSpace => {
                         let axis = upper.axes.column(2).into_owned();
                         (lower.direction(&axis), lower.direction(&(g.rotation * axis)))
                     }
@@ -88,9 +90,10 @@ impl Task {
             SubspaceKind::Planar | SubspaceKind::TranslationalPlane => {
                 across * if across.z == 0.0 { 0.0 } else { moved.z / across.z }
             }
-            SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::Cylindrical => {
-                Vector3::zeros()
-            }
+            SubspaceKind::Identity
+            | SubspaceKind::Spherical
+            | SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalSpace => Vector3::zeros(),
         };
         match lower.kind {
             SubspaceKind::Identity => SubspaceKind::Identity.identity(),
@@ -103,16 +106,21 @@ impl Task {
                 moved.x - by_upper.x,
                 moved.y - by_upper.y,
             )),
+            SubspaceKind::TranslationalSpace => Displacement::Spatial(moved - by_upper),
         }
     }
 
     /// The rotation of `v` about the lower frame's third direction, where the intersection motion is a translation.
     fn rotation_of_lower_factor(&self, g: &Isometry3<f64>) -> Complex<f64> {
-        use SubspaceKind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
+        use SubspaceKind::{
+            Cylindrical, Identity, Planar, Spherical, TranslationalPlane, TranslationalSpace,
+        };
         let (lower, upper) = (&self.lower, &self.upper);
         let (before, after) = match (lower.kind, upper.kind) {
-            (Identity | TranslationalPlane, _) => return Complex::new(1.0, 0.0),
-            (_, Identity | TranslationalPlane) => {
+            (Identity | TranslationalPlane | TranslationalSpace, _) => {
+                return Complex::new(1.0, 0.0);
+            }
+            (_, Identity | TranslationalPlane | TranslationalSpace) => {
                 return about_third(&lower.rotation(g));
             }
             // Parallel axes: the upper one moves on a circle about the lower one.
@@ -148,6 +156,7 @@ impl Subspace {
             SubspaceKind::TranslationalPlane => {
                 Displacement::Translational(Complex::new(moved.x, moved.y))
             }
+            SubspaceKind::TranslationalSpace => Displacement::Spatial(moved),
         }
     }
 }
@@ -155,7 +164,9 @@ impl Subspace {
 /// The factor `v` of `g = v · b` in two subspaces that share the identity alone: first the rotation that `b`
 /// cannot make, then the part of the displacement of the upper frame's origin that `b` cannot make.
 fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) -> Displacement {
-    use SubspaceKind::{Cylindrical, Identity, Planar, Spherical, TranslationalPlane};
+    use SubspaceKind::{
+        Cylindrical, Identity, Planar, Spherical, TranslationalPlane, TranslationalSpace,
+    };
     let by_inverse = || {
         // g⁻¹ = b⁻¹ · v⁻¹: the same problem, with the subspaces exchanged.
         let inverse = g.inverse();
@@ -167,11 +178,14 @@ fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) ->
     match (lower.kind, upper.kind) {
         (Identity, _) => SubspaceKind::Identity.identity(),
         // `b` makes no displacement, or no rotation.
-        (_, Identity) | (Spherical, TranslationalPlane) => lower.local(g),
+        (_, Identity) | (Spherical, TranslationalPlane | TranslationalSpace) => lower.local(g),
         // `b` keeps the centre of the upper sphere.
         (TranslationalPlane, Spherical) => {
             let t = lower.direction(&(moved - upper.origin));
             Displacement::Translational(Complex::new(t.x, t.y))
+        }
+        (TranslationalSpace, Spherical) => {
+            Displacement::Spatial(lower.direction(&(moved - upper.origin)))
         }
         (Cylindrical, Spherical) => {
             let (before, after) = (lower.point(&upper.origin), lower.point(&moved));
@@ -213,8 +227,10 @@ fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) ->
         }
         (Spherical, Cylindrical) | (Cylindrical, Planar | TranslationalPlane) => by_inverse(),
         (Spherical, Planar | Spherical)
-        | (Planar, Planar | Spherical | TranslationalPlane)
-        | (TranslationalPlane, Planar | TranslationalPlane) => {
+        | (Planar, Planar | Spherical | TranslationalPlane | TranslationalSpace)
+        | (TranslationalPlane, Planar | TranslationalPlane | TranslationalSpace)
+        | (TranslationalSpace, Planar | Cylindrical | TranslationalPlane | TranslationalSpace)
+        | (Cylindrical, TranslationalSpace) => {
             unreachable!("these two subspaces always share a motion")
         }
     }

@@ -69,10 +69,13 @@ pub(super) fn lay(
         SubspaceClass::TranslationalPlane { normal } => {
             (SubspaceKind::TranslationalPlane, reference, *normal)
         }
+        SubspaceClass::TranslationalSpace => {
+            let third = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
+            (SubspaceKind::TranslationalSpace, reference, meeting.third(third))
+        }
         SubspaceClass::Rotation { .. }
         | SubspaceClass::Translation { .. }
         | SubspaceClass::Helical { .. }
-        | SubspaceClass::TranslationalSpace
         | SubspaceClass::PlanarHelical { .. }
         | SubspaceClass::Full => {
             return Err(TaskError::Subspace { section, name: class.name(), odd: None });
@@ -83,7 +86,10 @@ pub(super) fn lay(
     hints.refuse_a_perpendicular_axis(&normal)?;
     let flat = match kind {
         SubspaceKind::Planar | SubspaceKind::TranslationalPlane => true,
-        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::Cylindrical => false,
+        SubspaceKind::Identity
+        | SubspaceKind::Spherical
+        | SubspaceKind::Cylindrical
+        | SubspaceKind::TranslationalSpace => false,
     };
     let given = hints.sense(TaskKey::Normal(section), normal)?;
     let axes =
@@ -162,6 +168,10 @@ impl Checked<'_> {
             (SubspaceKind::Cylindrical, Section::Upper, Some(Translation)) => &[],
             (SubspaceKind::Cylindrical, _, Some(_)) => &[TaskKey::Origin],
             (SubspaceKind::Cylindrical, _, None) => &[TaskKey::AxisOf, TaskKey::Origin],
+            (SubspaceKind::TranslationalSpace, _, Some(_)) => &[TaskKey::X, TaskKey::Origin],
+            (SubspaceKind::TranslationalSpace, _, None) => {
+                &[TaskKey::X, TaskKey::AxisOf, TaskKey::Origin]
+            }
         };
         keys.iter().map(|key| key(self.section)).collect()
     }

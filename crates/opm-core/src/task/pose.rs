@@ -3,7 +3,7 @@
 use super::Task;
 use crate::group::{
     CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, MotionType,
-    PlanarMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
+    PlanarMotion, SpatialMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::numeric::Quantity;
 use crate::numeric::angle::{near, sin_cos};
@@ -58,6 +58,9 @@ impl Task {
             Displacement::Cylindrical(g) if rotation => pose.push(home(0) + g.advance),
             Displacement::Cylindrical(g) => pose.extend([home(0) + g.angle, home(1) + g.advance]),
             Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
+            Displacement::Spatial(t) => {
+                pose.extend([home(0) + t.x, home(1) + t.y, home(2) + t.z]);
+            }
         }
         let home = |i: usize| self.coordinates[number(lower_count + i)].home;
         let translation = self.shared() == Some(MotionType::Translation);
@@ -80,6 +83,12 @@ impl Task {
             }
             Displacement::Translational(t) if translation => pose.push(home(0) + t.im),
             Displacement::Translational(t) => pose.extend([home(0) + t.re, home(1) + t.im]),
+            Displacement::Spatial(t) if translation => {
+                pose.extend([home(0) + t.x, home(1) + t.y]);
+            }
+            Displacement::Spatial(t) => {
+                pose.extend([home(0) + t.x, home(1) + t.y, home(2) + t.z]);
+            }
         }
         // The angle of a cylinder counts revolutions.
         let counted = |kind: SubspaceKind| match kind {
@@ -87,7 +96,8 @@ impl Task {
             SubspaceKind::Identity
             | SubspaceKind::Planar
             | SubspaceKind::Spherical
-            | SubspaceKind::TranslationalPlane => false,
+            | SubspaceKind::TranslationalPlane
+            | SubspaceKind::TranslationalSpace => false,
         };
         for (i, q) in pose.iter_mut().enumerate() {
             let c = &self.coordinates[number(i)];
@@ -134,9 +144,9 @@ impl Task {
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
             Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle),
-            Displacement::Identity(_) | Displacement::Translational(_) => {
-                JointDisplacement::Value(0.0)
-            }
+            Displacement::Identity(_)
+            | Displacement::Translational(_)
+            | Displacement::Spatial(_) => JointDisplacement::Value(0.0),
         }
     }
 
@@ -150,6 +160,7 @@ impl Task {
             IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
                 component(*b.translational(), along)
             }
+            IntersectionMotion::Spatial(SpatialMotion::Translation) => b.spatial().z,
             IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
                 b.cylindrical().advance
             }

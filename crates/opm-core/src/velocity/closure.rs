@@ -63,7 +63,8 @@ pub(super) fn section_rows(
                 SubspaceKind::Identity
                 | SubspaceKind::Spherical
                 | SubspaceKind::Cylindrical
-                | SubspaceKind::TranslationalPlane => 1.0,
+                | SubspaceKind::TranslationalPlane
+                | SubspaceKind::TranslationalSpace => 1.0,
             };
             rows = [LocalTwist::x() * angular, LocalTwist::y(), LocalTwist::z()];
         }
@@ -77,7 +78,10 @@ fn cross_unit(kind: SubspaceKind, section: &CompiledSection, input: usize, lengt
     let [a, b] = [section.screws[(input + 1) % 3], section.screws[(input + 2) % 3]];
     let rotates = |screw: &LocalTwist| screw.x != 0.0;
     match kind {
-        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity
+        | SubspaceKind::Spherical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => 1.0,
         // One of the two screws is padding. If the other one is a slider, the locked input constrains the
         // angle.
         SubspaceKind::Cylindrical => {
@@ -113,7 +117,7 @@ fn constraints_of_passive(
         SubspaceKind::Planar => {
             [angular_and_linear(0.0, quarter(linear(passive))), LocalTwist::x() * length]
         }
-        SubspaceKind::Spherical => {
+        SubspaceKind::Spherical | SubspaceKind::TranslationalSpace => {
             let other = if passive.x.abs() > 0.9 { LocalTwist::y() } else { LocalTwist::x() };
             let first = passive.cross(&other).normalize();
             [first, passive.cross(&first)]
@@ -144,7 +148,8 @@ pub(super) fn along_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: 
             | Chain::Spherical(_)
             | Chain::Ball(_)
             | Chain::Cylindrical(_)
-            | Chain::Translational(_),
+            | Chain::Translational(_)
+            | Chain::Spatial(_),
             Section::Lower | Section::Upper,
         ) => 1.0,
     }
@@ -154,9 +159,10 @@ pub(super) fn along_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: 
 pub(super) fn row_unit(kind: SubspaceKind, length: f64) -> f64 {
     match kind {
         SubspaceKind::Identity | SubspaceKind::Spherical => 1.0,
-        SubspaceKind::Planar | SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
-            length
-        }
+        SubspaceKind::Planar
+        | SubspaceKind::Cylindrical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => length,
     }
 }
 
@@ -170,7 +176,10 @@ pub(super) fn twist_unit(kind: SubspaceKind, twist: &LocalTwist, length: f64) ->
                 1.0
             }
         }
-        SubspaceKind::Identity | SubspaceKind::Spherical | SubspaceKind::TranslationalPlane => 1.0,
+        SubspaceKind::Identity
+        | SubspaceKind::Spherical
+        | SubspaceKind::TranslationalPlane
+        | SubspaceKind::TranslationalSpace => 1.0,
     }
 }
 

@@ -32,6 +32,7 @@ impl Task {
             }
             IntersectionMotion::Cylindrical(CylindricalMotion::Translation)
             | IntersectionMotion::Translational(_) => [LocalTwist::x(), LocalTwist::y(), zero],
+            IntersectionMotion::Spatial(_) => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
         };
         Screws { kind: self.lower.kind, moved }
     }
@@ -57,6 +58,7 @@ impl Task {
                 [LocalTwist::x(), zero, zero]
             }
             IntersectionMotion::Translational(_) => [LocalTwist::y(), zero, zero],
+            IntersectionMotion::Spatial(_) => [LocalTwist::x(), LocalTwist::y(), zero],
         };
         Screws { kind: self.upper.kind, moved }
     }
@@ -73,6 +75,7 @@ fn alone(kind: SubspaceKind, pose: &[f64], q: impl Fn(usize) -> f64) -> [LocalTw
         SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
             [LocalTwist::x(), LocalTwist::y(), zero]
         }
+        SubspaceKind::TranslationalSpace => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
     }
 }
 

@@ -39,7 +39,8 @@ impl Screws {
             }
             SubspaceKind::Identity
             | SubspaceKind::Cylindrical
-            | SubspaceKind::TranslationalPlane => *home,
+            | SubspaceKind::TranslationalPlane
+            | SubspaceKind::TranslationalSpace => *home,
         };
         Self { kind, moved }
     }

@@ -1,7 +1,7 @@
 //! Columns of numbers, one for each pose of a block, so that one loop works on all poses.
 
 use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacement};
-use nalgebra::{Complex, Matrix3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// The number of poses in a block.
 pub const LANES: usize = 64;
@@ -33,6 +33,18 @@ impl Lane for Complex<f64> {
     #[inline(always)]
     fn store(&self, to: &mut Displacements, lane: usize) {
         (to[0][lane], to[1][lane]) = (self.re, self.im);
+    }
+}
+
+impl Lane for Vector3<f64> {
+    #[inline(always)]
+    fn load(from: &Displacements, lane: usize) -> Self {
+        Self::new(from[0][lane], from[1][lane], from[2][lane])
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut Displacements, lane: usize) {
+        (to[0][lane], to[1][lane], to[2][lane]) = (self.x, self.y, self.z);
     }
 }
 

@@ -8,8 +8,8 @@ use crate::chain::planar::PlanarChain;
 use crate::chain::{Attempt, Branch, Chain, ClosedForm};
 use crate::group::{
     Cylindrical, CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement,
-    MotionType, Planar, PlanarMotion, Spherical, SphericalMotion, Subgroup, SubspaceKind,
-    TranslationalMotion, TranslationalPlane,
+    MotionType, Planar, PlanarMotion, SpatialMotion, Spherical, SphericalMotion, Subgroup,
+    SubspaceKind, TranslationalMotion, TranslationalPlane, TranslationalSpace,
 };
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::leg::Section;
@@ -72,6 +72,8 @@ pub fn displace(
         (SubspaceKind::Cylindrical, None) => each!(Cylindrical, None),
         (SubspaceKind::TranslationalPlane, Some(_)) => each!(TranslationalPlane, Some(Translation)),
         (SubspaceKind::TranslationalPlane, None) => each!(TranslationalPlane, None),
+        (SubspaceKind::TranslationalSpace, Some(_)) => each!(TranslationalSpace, Some(Translation)),
+        (SubspaceKind::TranslationalSpace, None) => each!(TranslationalSpace, None),
     }
     let euler = task.euler_section() == Some(section);
     if let (true, Some(inverse)) = (euler, task.home_orientation_inverse()) {
@@ -91,6 +93,7 @@ impl Displacement {
             Self::Spherical(r) => r.store(to, lane),
             Self::Cylindrical(g) => g.store(to, lane),
             Self::Translational(t) => t.store(to, lane),
+            Self::Spatial(t) => t.store(to, lane),
         }
     }
 }
@@ -110,6 +113,7 @@ pub fn solve(chain: &Chain, branch: Branch, targets: &Displacements, found: &mut
         Chain::Spherical(chain) => attempt(chain, branch, targets, found),
         Chain::Ball(chain) => attempt(chain, branch, targets, found),
         Chain::Translational(chain) => attempt(chain, branch, targets, found),
+        Chain::Spatial(chain) => attempt(chain, branch, targets, found),
         Chain::Cylindrical(chain) => match chain.revolute() {
             Some(0) => attempt(&WithRevolute::<0>(*chain), branch, targets, found),
             Some(_) => attempt(&WithRevolute::<1>(*chain), branch, targets, found),
@@ -209,6 +213,9 @@ pub fn shift(
         }
         (IntersectionMotion::Translational(TranslationalMotion::Translation(along)), _) => {
             each!(TranslationalPlane, TranslationalMotion::Translation(along), value);
+        }
+        (IntersectionMotion::Spatial(SpatialMotion::Translation), _) => {
+            each!(TranslationalSpace, SpatialMotion::Translation, value);
         }
     }
 }

@@ -8,7 +8,7 @@
 use crate::chain::{REACH_TOLERANCE, ReachDeficit};
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
-    linear, rotation_about,
+    rotation_about,
 };
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
@@ -63,12 +63,22 @@ impl OneJoint {
         section: Section,
         free: Option<LocalTwist>,
     ) -> Option<Self> {
+        let all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
         let (motion, given) = match (subspace(task, section).kind, free) {
             (_, None) => (Motion::None, None),
             (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (Motion::Turn(s), Some(2)),
             (SubspaceKind::Planar, Some(s)) => {
                 let longer = usize::from(s.z.abs() > s.y.abs());
                 (Motion::Slide(s, longer), Some(longer))
+            }
+            (SubspaceKind::TranslationalSpace, Some(s)) => {
+                let longest = s.rows(0, all.len()).iamax();
+                // Along the intersection motion, no coordinate of the section changes.
+                if s[longest].abs() < ALONG {
+                    (Motion::None, None)
+                } else {
+                    (Motion::Slide(s, longest), Some(longest))
+                }
             }
             (SubspaceKind::Spherical, Some(s)) if s.x.hypot(s.y) < ALONG => {
                 (Motion::Third, Some(0))
@@ -82,7 +92,6 @@ impl OneJoint {
                 Some(_),
             ) => return None,
         };
-        let all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
         let given = given.map(|i| all[i]);
         let coordinates = all.iter().copied().filter(|i| Some(*i) != given).collect();
         Some(Self { leg, section, coordinates, all, motion })
@@ -143,7 +152,8 @@ impl OneJoint {
         pose: &mut [f64],
     ) -> Result<(), ReachDeficit> {
         let task = manipulator.task();
-        let home = |i: usize| task.coordinates[self.all[i]].home;
+        // Zero for a displacement along the intersection motion, for which there is no coordinate.
+        let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
         let from_home = |i: usize| pose[self.all[i]] - home(i);
         // g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
         let subspace = subspace(task, self.section);
@@ -169,12 +179,8 @@ impl OneJoint {
                 )
             }
             Motion::Slide(s, given) => {
-                let at = |q: f64| {
-                    let along = linear(&s) * q;
-                    shifted(PlanarDisplacement::translation(along).into())
-                };
-                let part = |z: Complex<f64>| if given == 0 { z.re } else { z.im };
-                let [start, end] = [0.0, 1.0].map(|q| part(at(q).planar().translation));
+                let at = |q: f64| shifted(subspace.kind.exponential(&(s * q)));
+                let [start, end] = [0.0, 1.0].map(|q| of_displacement(&at(q), |_| 0.0)[given]);
                 let rate = end - start;
                 if rate.abs() < ALONG {
                     return Err(ReachDeficit::length((from_home(given) - start).abs()));
@@ -231,6 +237,7 @@ fn of_displacement(g: &Displacement, home: impl Fn(usize) -> f64) -> [f64; 3] {
         Displacement::Spherical(r) => [home(0) + r[(1, 0)].atan2(r[(0, 0)]), home(1), home(2)],
         Displacement::Cylindrical(g) => [home(0) + g.angle, home(1) + g.advance, 0.0],
         Displacement::Translational(t) => [home(0) + t.re, home(1) + t.im, 0.0],
+        Displacement::Spatial(t) => [home(0) + t.x, home(1) + t.y, home(2) + t.z],
     }
 }
 

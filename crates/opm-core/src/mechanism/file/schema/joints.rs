@@ -58,12 +58,12 @@ fn task_key(key: &str) -> Value {
 fn frame_key(key: &str) -> Value {
     match key {
         "x" => direction(
-            "the direction of coordinate x, in the plane; for a sphere, the first axis of its frame, \
-             perpendicular to the intersection motion",
+            "the direction of coordinate x, in the plane; for a sphere or a translational space, the first axis \
+             of its frame, perpendicular to the intersection motion",
         ),
         "axis" => direction(
-            "where the sections have no motion in common: the third axis of the frame of a sphere, or a \
-             direction on the positive side of the axis of a cylinder",
+            "where the sections have no motion in common: the third axis of the frame of a sphere or \
+             of a translational space, or a direction on the positive side of the axis of a cylinder",
         ),
         "w" => direction("the positive direction of coordinate w"),
         "normal" => direction("the normal of the plane, about which its angle is positive"),
