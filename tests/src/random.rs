@@ -289,7 +289,8 @@ fn replace(joint: &mut Joint, kind: JointKind, axis: Unit<Vector3<f64>>) {
 fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposition) {
     for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
         let Some((joint, up)) = lift(leg, split, decomposition) else { continue };
-        let aside = beside(&up).0 * rng.f64();
+        // A smaller inclination would be taken for rounding.
+        let aside = beside(&up).0 * (0.05 + 0.95 * rng.f64());
         let pitch = (0.2 + rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
         match rng.usize(..3) {
             0 => {}
