@@ -374,7 +374,7 @@ impl Manipulator {
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
         let leg = &self.legs[number];
-        match leg.lean() {
+        match &leg.lean {
             None => self.differential_of(leg, at, number),
             Some(lean) => self.raised_differential(leg, lean, at, number),
         }
@@ -419,7 +419,7 @@ impl Manipulator {
         differential: &LegDifferential,
         twists: &SectionTwists,
     ) -> LegMotion {
-        match self.legs[number].lean() {
+        match &self.legs[number].lean {
             None => self.chain_motion(at, number, differential, twists, |_, target| target),
             Some(lean) => self.raised_motion(at, number, differential, twists, lean),
         }

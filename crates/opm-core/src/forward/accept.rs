@@ -148,7 +148,7 @@ impl Search<'_> {
     ) -> (Vec<(Mode, LegSolution)>, f64) {
         let m = self.manipulator;
         let mut least = f64::INFINITY;
-        let compiled = &*self.legs[leg];
+        let compiled = &self.legs[leg];
         let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
         // Most solutions already have other lower joints. They are rejected before the rest is solved.
         let lower_first =

@@ -38,7 +38,7 @@ pub(super) struct Search<'a> {
     /// The height above home, metres: that of the first actuated lift.
     pub rise: f64,
     /// The legs at that height.
-    pub legs: Vec<Cow<'a, CompiledLeg>>,
+    pub legs: Cow<'a, [CompiledLeg]>,
     /// A buffer for inverse kinematics.
     pub solution: Solution,
     /// The assemblies found so far.
@@ -60,15 +60,13 @@ fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item
 impl<'a> Search<'a> {
     pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
         let rise = rises(manipulator, displacements).next().unwrap_or(0.0);
-        // A leg that reaches nothing there does not close in any case.
-        let at = |leg: &'a CompiledLeg| leg.at(rise).unwrap_or(Cow::Borrowed(leg));
         Self {
             manipulator,
             plan,
             displacements,
             directions: displacements.iter().map(|&value| unit(value)).collect(),
             rise,
-            legs: manipulator.legs.iter().map(at).collect(),
+            legs: manipulator.legs_at(rise),
             solution: manipulator.solution(),
             out: Assemblies::default(),
             least: None,

@@ -127,6 +127,8 @@ pub(crate) struct CompiledLeg {
     pub unwinds: bool,
     /// The joint that carries the height of a Schoenflies section.
     pub lift: Option<Lift>,
+    /// What that joint does in the plane, where it leans.
+    pub lean: Option<Lean>,
 }
 
 /// What compiling a leg needs to know of the manipulator.
@@ -211,8 +213,8 @@ impl CompiledLeg {
             found => found,
         };
         let mut compiled = found?;
-        let Some(Separated { mut lift, joint, .. }) = separated else { return Ok(compiled) };
-        if let Some(Lean { section, before, .. }) = &mut lift.lean {
+        let Some(Separated { lift, mut lean, joint, .. }) = separated else { return Ok(compiled) };
+        if let Some(Lean { section, before, .. }) = &mut lean {
             if compiled.section(*section).partial.is_some() {
                 // What its locked joints demand would depend on the height.
                 let reason = HeightReason::Constraining(leg.joints[joint].name.clone());
@@ -222,7 +224,7 @@ impl CompiledLeg {
                 compiled.bridge() == Some(Section::Upper) && *section == Section::Upper,
             );
         }
-        compiled.lift = Some(lift);
+        (compiled.lift, compiled.lean) = (Some(lift), lean);
         Ok(compiled)
     }
 
@@ -304,6 +306,7 @@ impl CompiledLeg {
             shapes,
             imaginary: None,
             lift: None,
+            lean: None,
             unwinds: task.shared() == Some(MotionType::Rotation)
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
@@ -372,7 +375,7 @@ impl CompiledLeg {
         rise: f64,
         branches: LegBranches,
     ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
-        if self.lean().is_some() {
+        if self.lean.is_some() {
             let solution = self.solve_raised(task, [v, b], rise, branches, 0.0);
             return solution.map(|found| (found.lower, found.tau)).map_err(|(_, missed)| missed);
         }
@@ -400,7 +403,7 @@ impl CompiledLeg {
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
-        if self.lean().is_some() {
+        if self.lean.is_some() {
             return self.solve_raised(task, [v, b], rise, branches, near);
         }
         let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);

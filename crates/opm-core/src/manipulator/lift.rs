@@ -34,8 +34,6 @@ pub(crate) struct Lift {
     pub coordinate: ChainCoordinate,
     /// Its displacement for a unit of height: 1, or -1 where it moves down, for a slider along the direction.
     pub rate: f64,
-    /// What it does in the plane; `None` for a slider along the direction.
-    pub lean: Option<Lean>,
 }
 
 /// The motion of a lift in the plane.
@@ -85,6 +83,8 @@ impl Lean {
 /// A leg without its lift.
 pub(super) struct Separated {
     pub lift: Lift,
+    /// What it does in the plane; `None` for a slider along the direction.
+    pub lean: Option<Lean>,
     /// The number of the lift among the leg's joints.
     pub joint: usize,
     /// The split of the leg's other joints.
@@ -121,7 +121,7 @@ pub(super) fn separate(
     let number = first + coordinate_number(leg, lift);
     let coordinate = ChainCoordinate { number, actuated: context.actuated[number] };
     let joint = lift.joint;
-    Ok(Some(Separated { lift: Lift { coordinate, rate: advance.recip(), lean }, joint, rest }))
+    Ok(Some(Separated { lift: Lift { coordinate, rate: advance.recip() }, lean, joint, rest }))
 }
 
 /// The screw in the plane's frame of what a lift does in the plane; `None` for a slider along the direction.
@@ -157,16 +157,10 @@ impl CompiledLeg {
     /// # Errors
     /// The joints of its section are dependent at this height, so that it reaches nothing.
     pub fn at(&self, rise: f64) -> Result<Cow<'_, Self>, (Section, ReachDeficit)> {
-        match self.lean() {
+        match &self.lean {
             Some(lean) => self.raised(lean, rise).map(Cow::Owned),
             None => Ok(Cow::Borrowed(self)),
         }
-    }
-
-    /// The motion of its lift in the plane, where that leans.
-    #[inline(always)]
-    pub fn lean(&self) -> Option<&Lean> {
-        self.lift.as_ref().and_then(|lift| lift.lean.as_ref())
     }
 
     /// The leg with a lift that leans at a height above home, metres, as one without such a lift.
@@ -175,7 +169,7 @@ impl CompiledLeg {
     pub fn raised(&self, lean: &Lean, rise: f64) -> Result<Self, (Section, ReachDeficit)> {
         let step = lean.displacement(rise);
         let mut leg = self.clone();
-        leg.lift = leg.lift.map(|lift| Lift { lean: None, ..lift });
+        leg.lean = None;
         let section = match lean.section {
             Section::Lower => &mut leg.lower,
             Section::Upper => &mut leg.upper,
@@ -208,8 +202,19 @@ impl Manipulator {
     /// inclined sliders and screws. Where there are any, legs have other chains at every height, and sweeps decide each
     /// pose by itself.
     pub fn leaning_joints(&self) -> impl Iterator<Item = &str> {
-        let leaning = self.lifts().filter(|lift| lift.lean.is_some());
-        leaning.map(|lift| self.coordinates()[lift.coordinate.number].name.as_str())
+        let leaning = self.legs.iter().filter(|leg| leg.lean.is_some());
+        leaning.filter_map(|leg| {
+            Some(self.coordinates()[leg.lift.as_ref()?.coordinate.number].name.as_str())
+        })
+    }
+
+    /// The legs at a height above home, metres. One that reaches nothing there is as it is at home, and does not close.
+    pub(crate) fn legs_at(&self, rise: f64) -> Cow<'_, [CompiledLeg]> {
+        if self.lifts_straight() {
+            return Cow::Borrowed(&self.legs);
+        }
+        let at = |leg: &CompiledLeg| leg.at(rise).map_or_else(|_| leg.clone(), Cow::into_owned);
+        self.legs.iter().map(at).collect()
     }
 
     /// Whether the legs' chains are the same at every height.

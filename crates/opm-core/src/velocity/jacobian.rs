@@ -269,7 +269,7 @@ impl Manipulator {
             let row = lift.coordinate.number;
             out.joints.row_mut(row).fill(0.0);
             out.joints[(row, column)] = lift.displacement(1.0);
-            if let Some(lean) = &lift.lean {
+            if let Some(lean) = &leg.lean {
                 self.lean_column(at, number, lean, &moved, out);
             }
         }
