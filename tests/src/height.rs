@@ -1,11 +1,15 @@
-//! The height of a Schoenflies section, from the mechanism alone.
+//! The height of a Schoenflies section, from the mechanism alone, and the joints that carry it.
 
+use crate::random::beside;
+use fastrand::Rng;
+use nalgebra::{Unit, Vector3};
 use opm_core::Section;
-use opm_core::decomposition::{Freedom, LegSplit};
+use opm_core::decomposition::{Decomposition, Freedom, LegSplit};
 use opm_core::group::JointDisplacement;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::joint::JointKind;
+use opm_core::mechanism::Mechanism;
+use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, TaskCoordinate};
 
@@ -50,4 +54,61 @@ pub fn is_lift(leg: &Leg, freedom: Freedom, class: &SubspaceClass) -> bool {
     let joint = &leg.joints[freedom.joint];
     let carries = matches!(joint.kind, JointKind::Prismatic | JointKind::Helical { .. });
     carries && joint.axis.dot(axis).abs() > 0.5
+}
+
+/// The joint of a leg that carries a height, and its direction; `None` without a height.
+fn lift<'a>(
+    leg: &'a mut Leg,
+    split: &LegSplit,
+    decomposition: &Decomposition,
+) -> Option<(&'a mut Joint, Unit<Vector3<f64>>)> {
+    let sections = [(&decomposition.lower, &split.lower), (&decomposition.upper, &split.upper)];
+    sections
+        .into_iter()
+        .find_map(|(class, freedoms)| {
+            let SubspaceClass::Schoenflies { axis } = class else { return None };
+            Some((freedoms.iter().find(|freedom| is_lift(leg, **freedom, class))?.joint, *axis))
+        })
+        .map(|(joint, axis)| (&mut leg.joints[joint], axis))
+}
+
+/// Replaces a joint by one of another kind, about or along `axis`.
+fn replace(joint: &mut Joint, kind: JointKind, axis: Unit<Vector3<f64>>) {
+    let mut other = Joint::new(joint.name.clone(), kind, axis, joint.point);
+    other.actuated = joint.actuated;
+    for (new, old) in other.coordinates.iter_mut().zip(&joint.coordinates) {
+        (new.home, new.limits) = (old.home, old.limits);
+    }
+    *joint = other;
+}
+
+/// Puts an inclined slider or a screw in the place of most joints that carry a height.
+pub fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposition) {
+    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        let Some((joint, up)) = lift(leg, split, decomposition) else { continue };
+        // A smaller inclination would be taken for rounding.
+        let aside = beside(&up).0 * (0.05 + 0.95 * rng.f64());
+        let pitch = (0.2 + rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
+        match rng.usize(..3) {
+            0 => {}
+            1 => joint.axis = Unit::new_normalize(joint.axis.into_inner() + aside),
+            _ => replace(joint, JointKind::Helical { pitch }, joint.axis),
+        }
+    }
+}
+
+/// The mechanism with sliders along the direction in the place of all joints that carry a height: bounds and sections
+/// alone need them.
+pub fn straight(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
+    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        straighten(leg, split, decomposition);
+    }
+    mechanism
+}
+
+/// A slider along the direction in the place of a leg's joint that carries a height.
+pub fn straighten(leg: &mut Leg, split: &LegSplit, decomposition: &Decomposition) {
+    if let Some((joint, up)) = lift(leg, split, decomposition) {
+        replace(joint, JointKind::Prismatic, up);
+    }
 }

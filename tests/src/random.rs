@@ -1,6 +1,6 @@
 //! Random mechanisms of every pair of subspaces, with the decomposition from which they were built.
 
-use crate::height::is_lift;
+use crate::height::{is_lift, lean, straighten};
 use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::decomposition::mobility::mobility;
@@ -257,62 +257,6 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         lean(rng, &mut mechanism, &decomposition);
     }
     (mechanism, decomposition)
-}
-
-/// The joint of a leg that carries a height, and its direction; `None` without a height.
-fn lift<'a>(
-    leg: &'a mut Leg,
-    split: &LegSplit,
-    decomposition: &Decomposition,
-) -> Option<(&'a mut Joint, Unit<Vector3<f64>>)> {
-    let sections = [(&decomposition.lower, &split.lower), (&decomposition.upper, &split.upper)];
-    sections
-        .into_iter()
-        .find_map(|(class, freedoms)| {
-            let SubspaceClass::Schoenflies { axis } = class else { return None };
-            Some((freedoms.iter().find(|freedom| is_lift(leg, **freedom, class))?.joint, *axis))
-        })
-        .map(|(joint, axis)| (&mut leg.joints[joint], axis))
-}
-
-/// Replaces a joint by one of another kind, about or along `axis`.
-fn replace(joint: &mut Joint, kind: JointKind, axis: Unit<Vector3<f64>>) {
-    let mut other = Joint::new(joint.name.clone(), kind, axis, joint.point);
-    other.actuated = joint.actuated;
-    for (new, old) in other.coordinates.iter_mut().zip(&joint.coordinates) {
-        (new.home, new.limits) = (old.home, old.limits);
-    }
-    *joint = other;
-}
-
-/// Puts an inclined slider or a screw in the place of most joints that carry a height.
-fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposition) {
-    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
-        let Some((joint, up)) = lift(leg, split, decomposition) else { continue };
-        // A smaller inclination would be taken for rounding.
-        let aside = beside(&up).0 * (0.05 + 0.95 * rng.f64());
-        let pitch = (0.2 + rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
-        match rng.usize(..3) {
-            0 => {}
-            1 => joint.axis = Unit::new_normalize(joint.axis.into_inner() + aside),
-            _ => replace(joint, JointKind::Helical { pitch }, joint.axis),
-        }
-    }
-}
-
-/// The mechanism with sliders along the direction in the place of all joints that carry a height: bounds and sections
-/// alone need them.
-pub fn straight(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
-    for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
-        straighten(leg, split, decomposition);
-    }
-    mechanism
-}
-
-fn straighten(leg: &mut Leg, split: &LegSplit, decomposition: &Decomposition) {
-    if let Some((joint, up)) = lift(leg, split, decomposition) {
-        replace(joint, JointKind::Prismatic, up);
-    }
 }
 
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
@@ -633,7 +577,7 @@ fn displaced(
 }
 
 /// Two directions that form a right-handed triad with a third one.
-fn beside(normal: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+pub(crate) fn beside(normal: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let base = if normal.x.abs() > 0.9 { Vector3::y() } else { Vector3::x() };
     let u = (base - normal * normal.dot(&base)).normalize();
     (u, normal.cross(&u))

@@ -10,8 +10,9 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
+use opm_tests::height::straight;
 use opm_tests::newton::{Closure, displacement};
-use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders, straight};
+use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 

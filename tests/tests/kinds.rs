@@ -8,7 +8,8 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism, straight};
+use opm_tests::height::straight;
+use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
     Visits, boundary, mask_boundary,

@@ -6,7 +6,8 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism, straight};
+use opm_tests::height::straight;
+use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
 };

@@ -25,6 +25,8 @@ mod pose;
 mod reach;
 #[cfg(feature = "files")]
 mod read;
+mod refused;
+mod section;
 mod solution;
 mod transitions;
 
@@ -32,8 +34,7 @@ pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
-pub use leg::{RefusedLeg, Section};
-pub(crate) use leg::{chain_joints, coordinate_number};
+pub use leg::Section;
 pub(crate) use lift::Lean;
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
@@ -44,9 +45,11 @@ pub use pose::{FollowingCoordinate, LARGEST, PoseError};
 pub use reach::LegBranch;
 #[cfg(feature = "files")]
 pub use read::ReadError;
+pub use refused::RefusedLeg;
+pub(crate) use section::{ChainCoordinate, CompiledSection, chain_joints, coordinate_number};
+pub use solution::{ActuatedJoints, Solution, Unreachable};
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
-pub use solution::{ActuatedJoints, Solution, Unreachable};
 pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;
@@ -60,7 +63,7 @@ use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 use leg::CompileContext;
-pub(crate) use leg::{ChainCoordinate, CompiledLeg, CompiledSection, LegBranches, LegSolution};
+pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;

@@ -5,8 +5,9 @@
 //! reach it returns `Ok(None)`, and the buffer tells which legs do not reach it. An error means that the
 //! pose is not valid. Nothing allocates.
 
-use super::leg::{ChainCoordinate, CompiledSection, LegSolution};
+use super::leg::LegSolution;
 use super::pose::PoseError;
+use super::section::{ChainCoordinate, CompiledSection};
 use super::solution::{ActuatedJoints, Solution, SolvedPose, Unreachable};
 use super::{Manipulator, Mode};
 use crate::chain::Chain;

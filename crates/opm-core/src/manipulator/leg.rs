@@ -1,109 +1,18 @@
 //! One leg, split into two closed-form chains.
 
 use super::lift::{self, Lean, Lift, Separated};
-use crate::chain::condition::Condition;
+use super::refused::RefusedLeg;
+use super::section::{ChainCoordinate, CompiledSection, chain_joints, coordinate_number};
 use crate::chain::limits::Limits;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
-use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
+use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, HeightMiss, HeightReason, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
-use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
 pub use crate::mechanism::leg::Section;
 use crate::task::Task;
-use nalgebra::{Unit, Vector3};
-
-/// Why a leg has no closed form.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RefusedLeg {
-    /// The leg's two sections have more freedoms than the subspaces, so that it can move with the platform held.
-    #[error("{}", freedoms(*lower, *upper, *dim_lower, *dim_upper, *bridged))]
-    Freedoms {
-        /// The number of freedoms in its lower section.
-        lower: usize,
-        /// The number of freedoms in its upper section.
-        upper: usize,
-        /// The dimension of the lower subspace.
-        dim_lower: usize,
-        /// The dimension of the upper subspace; zero where all legs move in one subgroup.
-        dim_upper: usize,
-        /// Whether the two subspaces share a motion.
-        bridged: bool,
-    },
-    /// Not exactly one joint of a Schoenflies section changes the height.
-    #[error("{}", .0.of_leg())]
-    Height(#[from] HeightMiss),
-    /// One of the leg's sections has no closed form.
-    #[error("its {section} section ({}) has no closed form: {error}", joints.join(", "))]
-    Chain {
-        /// The section.
-        section: Section,
-        /// The names of its joints, base first, and "the imaginary joint" if it belongs to the section.
-        joints: Vec<String>,
-        /// Why it has no closed form.
-        error: ChainError,
-    },
-}
-
-/// What the numbers of freedoms in a leg are, and how many they may be.
-fn freedoms(
-    lower: usize,
-    upper: usize,
-    dim_lower: usize,
-    dim_upper: usize,
-    bridged: bool,
-) -> String {
-    let plural = if lower == 1 { "" } else { "s" };
-    if dim_upper == 0 {
-        return format!(
-            "{lower} freedom{plural}, expected {dim_lower} at most, those of its subspace"
-        );
-    }
-    let expected = if bridged {
-        format!("at most {dim_lower} and {}, or {} and {dim_upper}", dim_upper - 1, dim_lower - 1)
-    } else {
-        format!("at most {dim_lower} and {dim_upper}")
-    };
-    format!(
-        "{lower} freedom{plural} in its lower section and {upper} in its upper one, expected {expected}: \
-         it can move while the platform is held"
-    )
-}
-
-/// The joint coordinate that a joint of a chain stands for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ChainCoordinate {
-    /// The number of the joint coordinate in the mechanism.
-    pub number: usize,
-    /// Its number among the actuated coordinates; `None` where it is passive.
-    pub actuated: Option<usize>,
-}
-
-/// One section of a leg: its chain, and the chain's joint coordinates.
-#[derive(Clone, Debug)]
-pub(crate) struct CompiledSection {
-    pub chain: Chain,
-    /// The screws of the chain's joints at home: see `chain::screws`.
-    pub screws: [Vector3<f64>; 3],
-    /// The unit of the determinant of the screws: see `chain::screws::determinant_scale`.
-    pub scale: f64,
-    /// The joint coordinates of the chain's joints, base first; `None` for the imaginary joint, and for
-    /// elements beyond the chain's freedoms.
-    pub coordinates: [Option<ChainCoordinate>; 3],
-    /// Whether any of its coordinates has limits.
-    pub limited: bool,
-    /// Whether any of its joints is held when the inputs are locked: it is actuated, or locked always.
-    pub driven: bool,
-    /// The joints that move, where these are fewer than the subspace has dimensions; then the chain is completed
-    /// by locked joints.
-    pub partial: Option<PartialChain>,
-    /// What the section's displacement is multiplied by, on its right, to be what the chain has to reach: see
-    /// [`lift`](super::lift). `None` where that is the displacement itself.
-    pub offset: Option<Displacement>,
-}
 
 /// A leg, split into two sections.
 #[derive(Clone, Debug)]
@@ -497,114 +406,9 @@ fn split_section(task: &Task, [lower, upper]: [usize; 2]) -> Option<Section> {
     }
 }
 
-impl CompiledSection {
-    /// The joints' displacements that move the outer link by `target`: see [`Chain::inverse`]. A section that
-    /// constrains the platform has one solution, if `target` satisfies its constraints.
-    ///
-    /// # Errors
-    /// The reach deficit, where the target is out of reach.
-    #[inline(always)]
-    pub fn inverse(
-        &self,
-        target: &Displacement,
-        branch: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        match (&self.partial, &self.offset) {
-            (None, None) => self.chain.inverse(target, branch),
-            (None, Some(offset)) => self.chain.inverse(&target.after(offset), branch),
-            (Some(partial), _) => Ok(partial.inverse(target)),
-        }
-    }
-
-    /// The first joint's displacement alone: see [`Chain::first`].
-    ///
-    /// # Errors
-    /// The reach deficit, where the target is out of reach.
-    #[inline(always)]
-    fn first(
-        &self,
-        target: &Displacement,
-        branch: Branch,
-    ) -> Result<JointDisplacement, ReachDeficit> {
-        match (&self.partial, &self.offset) {
-            (None, None) => self.chain.first(target, branch),
-            (None, Some(offset)) => self.chain.first(&target.after(offset), branch),
-            (Some(partial), _) => Ok(partial.inverse(target)[0]),
-        }
-    }
-
-    /// The condition on the section's displacement that one of its joints imposes, held at a displacement: see
-    /// [`Condition::new`].
-    pub fn condition(&self, joint: usize, displacement: JointDisplacement) -> Option<Condition> {
-        let condition = Condition::new(&self.chain, joint, displacement)?;
-        Some(match &self.offset {
-            None => condition,
-            Some(offset) => condition.before(offset),
-        })
-    }
-
-    /// Whether a target has two solutions.
-    pub fn has_choice(&self) -> bool {
-        self.partial.is_none() && self.chain.has_choice()
-    }
-
-    /// Whether a joint of the chain is held when the inputs are locked: it is actuated, or locked always.
-    #[inline]
-    pub fn is_held(&self, joint: usize) -> bool {
-        self.coordinates[joint].is_some_and(|joint| joint.actuated.is_some())
-            || self.is_locked(joint)
-    }
-
-    /// Whether a joint of the chain never moves: it completes a section with too few freedoms.
-    pub fn is_locked(&self, joint: usize) -> bool {
-        self.partial.is_some_and(|partial| partial.locked()[joint])
-    }
-
-    /// Whether the displacements of this section's chain are within the limits.
-    #[inline]
-    pub fn admits(&self, limits: &[Limits], displacements: &[JointDisplacement; 3]) -> bool {
-        !self.limited
-            || self.coordinates.iter().zip(displacements).all(|(coordinate, &displacement)| {
-                match coordinate {
-                    Some(coordinate) => limits[coordinate.number].admits(displacement),
-                    None => true,
-                }
-            })
-    }
-}
-
 /// The branch of each section's chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LegBranches {
     pub lower: Branch,
     pub upper: Branch,
-}
-
-/// The freedoms of a section as chain joints; the three freedoms of a spherical joint are one chain joint.
-pub(crate) fn chain_joints(leg: &Leg, freedoms: &[Freedom]) -> Vec<ChainJoint> {
-    let mut joints = Vec::with_capacity(3);
-    for freedom in freedoms {
-        let joint = &leg.joints[freedom.joint];
-        let screw =
-            |axis: Unit<Vector3<f64>>, pitch| ChainJoint::Screw { axis, point: joint.point, pitch };
-        joints.push(match joint.kind {
-            JointKind::Spherical if freedom.index > 0 => continue,
-            JointKind::Spherical => ChainJoint::Ball,
-            JointKind::Prismatic => ChainJoint::Slide { axis: joint.axis },
-            JointKind::Cylindrical if freedom.index == 1 => ChainJoint::Slide { axis: joint.axis },
-            JointKind::Universal { second } if freedom.index == 1 => screw(second, 0.0),
-            JointKind::Helical { pitch } => screw(joint.axis, pitch),
-            JointKind::Revolute | JointKind::Cylindrical | JointKind::Universal { .. } => {
-                screw(joint.axis, 0.0)
-            }
-        });
-    }
-    joints
-}
-
-/// The number of a freedom among the leg's coordinates.
-pub(crate) fn coordinate_number(leg: &Leg, freedom: Freedom) -> usize {
-    let before: usize =
-        leg.joints[..freedom.joint].iter().map(crate::mechanism::joint::Joint::freedoms).sum();
-    before + freedom.index
 }

@@ -14,7 +14,9 @@
 //!
 //! has the joints behind the lift displaced by `D`. It has to reach the target times `D⁻¹`.
 
-use super::leg::{ChainCoordinate, CompileContext, CompiledLeg, RefusedLeg, coordinate_number};
+use super::leg::{CompileContext, CompiledLeg};
+use super::refused::RefusedLeg;
+use super::section::{ChainCoordinate, coordinate_number};
 use super::{Manipulator, Section};
 use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;

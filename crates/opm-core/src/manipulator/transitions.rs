@@ -7,7 +7,7 @@
 //! target, so that the upper section allows intervals of that joint's displacement. Their ends are limits of
 //! the imaginary joint, the last joint of the lower chain.
 
-use super::leg::CompiledSection;
+use super::section::CompiledSection;
 use super::{LegBranch, Manipulator};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
