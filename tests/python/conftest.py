@@ -1,10 +1,14 @@
 """The programs under test."""
 
 import json
+import signal
 import subprocess
 from pathlib import Path
 
 import pytest
+
+# Where the tests run in the background, a shell has them, and the programs that they start, ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 REPOSITORY = Path(__file__).parents[2]
 # Shipped mechanisms that are moved by one joint, not by a pose of the platform.

@@ -1,6 +1,5 @@
 """The command of the Python package, compared with the program that cargo builds."""
 
-import functools
 import os
 import pty
 import signal
@@ -88,11 +87,7 @@ def test_ctrl_c_while_it_waits(opm, program):
     command = [opm] if program == "cargo" else SCRIPT
     read, write = os.pipe()
     os.write(write, b"format = 1\n")
-    # Where the tests run in the background, a shell has them ignore Ctrl-C.
-    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
-    process = subprocess.Popen(
-        [*command, "decompose", f"/dev/fd/{read}"], pass_fds=[read], stderr=subprocess.PIPE, preexec_fn=heed
-    )
+    process = subprocess.Popen([*command, "decompose", f"/dev/fd/{read}"], pass_fds=[read], stderr=subprocess.PIPE)
     os.close(read)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)

@@ -261,8 +261,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
 
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
 /// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
-/// joints, or some with several freedoms. A joint that carries a height is kept, as a
-/// slider along its direction.
+/// joints, or some with several freedoms. A joint that carries a height is kept, as a slider along its direction.
 pub fn constrained(
     rng: &mut Rng,
     pair: [Kind; 2],

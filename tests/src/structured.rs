@@ -116,8 +116,8 @@ pub fn unlimited(mut mechanism: Mechanism) -> Mechanism {
     mechanism
 }
 
-/// A mechanism on its side, on its head, on a diagonal, apart from the origin, by turns whose matrices have
-/// zeros; with the displacement that puts it there.
+/// A mechanism after quarter, half and third turns about axes and diagonals, whose matrices have zeros, every other time
+/// moved away from the origin; each with the displacement that puts it there.
 pub fn placed(mechanism: &Mechanism) -> Vec<(Isometry3<f64>, Mechanism)> {
     let mut places = Vec::new();
     for (number, axis) in axes().iter().enumerate() {

@@ -3,14 +3,24 @@
 
 use opm_core::Manipulator;
 use opm_core::mechanism::examples;
+use opm_study::{WorkspaceKind, WorkspaceRequest};
+use opm_workspace::measure::{Domain, DomainError};
+use opm_workspace::{Grid, GridError, Sections};
 
-/// The shipped mechanism with another first joint of its first leg.
-fn with_lift(lift: &str) -> Manipulator {
+/// The file of the shipped mechanism with another first joint of its first leg.
+fn text_with(lift: &str) -> String {
     let text = examples::find("schoenflies-column-4dof").unwrap().text;
     let start = text.find("  { name = \"S1\"").unwrap();
     let end = start + text[start..].find('\n').unwrap();
-    Manipulator::read(&format!("{}{lift}{}", &text[..start], &text[end..])).unwrap()
+    format!("{}{lift}{}", &text[..start], &text[end..])
 }
+
+fn with_lift(lift: &str) -> Manipulator {
+    Manipulator::read(&text_with(lift)).unwrap()
+}
+
+const SCREW: &str = "  { name = \"S1\", type = \"helical\", pitch = 200, axis = [0, 0, 1], point = [100, 300, 100], \
+                     actuated = true, home = 0 },";
 
 /// Compares the first leg at random poses with that of the shipped mechanism at a pose that `moved` gives, whose lift
 /// has a value that `lifted` gives for the height above home.
@@ -65,7 +75,7 @@ fn an_inclined_slider_moves_the_base_of_its_leg() {
 fn a_screw_turns_the_base_of_its_leg() {
     // 0.2 m for one radian, about an axis through (0.1, 0.3).
     compare(
-        "  { name = \"S1\", type = \"helical\", pitch = 200, axis = [0, 0, 1], point = [100, 300, 100], actuated = true, home = 0 },",
+        SCREW,
         |[x, y, z, theta]| {
             let turn = -(z - 0.2) / 0.2;
             let (sin, cos) = turn.sin_cos();
@@ -76,9 +86,10 @@ fn a_screw_turns_the_base_of_its_leg() {
     );
 }
 
-/// Where an inclined slider brings the axes of two revolute joints together, the leg reaches nothing, and says so.
+/// Where an inclined slider brings the axes of two revolute joints together, the leg has no closed form. It counts as
+/// out of reach there, and nothing panics.
 #[test]
-fn a_link_that_vanishes_at_a_height_reaches_nothing_there() {
+fn a_link_that_vanishes_at_a_height_is_out_of_reach_there() {
     let text = "format = 1\nname = \"scissors\"\nunits = { length = \"m\", angle = \"rad\" }\n\
         [platform]\npoint = [0, 0, 0]\n[[leg]]\nname = \"one\"\njoints = [\n\
         { name = \"a\", type = \"revolute\", axis = [0, 0, 1], point = [0, 0, 0], actuated = true },\n\
@@ -104,5 +115,34 @@ fn a_link_that_vanishes_at_a_height_reaches_nothing_there() {
             assert_eq!(solution.unreachable()[0].deficit.excess, f64::INFINITY);
         }
     }
-    assert!(m.forward(&[0.0, 0.5, 0.0, 0.0]).unwrap().list.is_empty());
+}
+
+/// What the height's screws rule out is refused with their names, in the library too.
+#[test]
+fn bounds_and_sections_alone_are_refused() {
+    let m = with_lift(SCREW);
+    let told = Domain::new(&m, Sections::Whole, &[]).unwrap_err();
+    assert_eq!(told, DomainError::Leaning { joints: vec!["S1".into()] });
+    assert_eq!(Grid::of(Sections::Lower, &m, vec![]).unwrap_err(), GridError::NotAlone);
+    let request = WorkspaceRequest { kind: WorkspaceKind::Lower, ..WorkspaceRequest::default() };
+    let told = request.check(&m).unwrap_err().to_string();
+    assert!(told.contains("screws or inclined sliders carry its height (S1)"), "{told}");
+}
+
+/// A screw in a leg that lacks a joint is refused by name; a slider along the direction is not.
+#[test]
+fn a_screw_in_a_leg_with_too_few_joints_is_named() {
+    let without_elbow = |text: &str| {
+        let lines = text.lines().filter(|line| !line.contains("\"b1\""));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let told = Manipulator::read(&without_elbow(&text_with(SCREW))).unwrap_err().to_string();
+    assert!(
+        told.contains("leg1") && told.contains("joint S1 changes it, which is no slider"),
+        "{told}"
+    );
+    let shipped = examples::find("schoenflies-column-4dof").unwrap().text;
+    let m = Manipulator::read(&without_elbow(shipped)).unwrap();
+    assert_eq!(m.dependent_coordinates().len(), 1);
+    assert_eq!(Grid::of(Sections::Lower, &m, vec![]).unwrap_err(), GridError::NotAlone);
 }

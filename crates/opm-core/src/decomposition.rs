@@ -304,7 +304,7 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 /// The decompositions of a mechanism that moves, the preferred one first.
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     let (lambda, mobility) = (report.lambda, report.mobility);
-    let mut found = order::first(mechanism, lambda, mobility);
+    let mut found = order::listed(mechanism, lambda, mobility);
     if found.is_empty() {
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);

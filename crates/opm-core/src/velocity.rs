@@ -390,7 +390,7 @@ impl Manipulator {
         at: &Solution,
         number: usize,
     ) -> LegDifferential {
-        // A leg that is solved at a height exists there.
+        // A leg that is solved at a height has a closed form there.
         let raised = leg.raised(lean, self.task().rise(&at.solved.pose));
         self.differential_of(raised.as_ref().unwrap_or(leg), at, number)
     }

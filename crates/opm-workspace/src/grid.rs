@@ -41,6 +41,12 @@ pub enum GridError {
     /// The grid is of the upper section, but all legs move in one subspace.
     #[error("the mechanism has no upper section: all its legs move in one subspace")]
     NoUpperSection,
+    /// The grid is of one section alone, but one section depends on the other, or its chains on the height.
+    #[error(
+        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, or screws or \
+         inclined sliders carry its height"
+    )]
+    NotAlone,
     /// No coordinate has the name of the axis.
     #[error("grid axis {name}: no such {}, expected one of {expected}", section.coordinate())]
     Unknown {
@@ -261,6 +267,10 @@ impl Grid {
         let mut axes: Vec<Option<Axis>> = vec![None; coordinates.len()];
         if coordinates.is_empty() {
             return Err(GridError::NoUpperSection);
+        }
+        let alone = manipulator.dependent_coordinates().is_empty() && manipulator.lifts_straight();
+        if sections != Sections::Whole && !alone {
+            return Err(GridError::NotAlone);
         }
         for axis in given {
             let Some(number) = coordinates.iter().position(|c| c.name == axis.name) else {

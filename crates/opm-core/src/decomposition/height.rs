@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 use std::fmt;
 
 /// What closed forms expect of every leg.
-const EXPECTED: &str = "closed forms of Schoenflies motion expect that one joint of each leg, a slider or a screw, changes the height";
+const EXPECTED: &str = "closed forms of Schoenflies motion expect that one joint of each leg, a slider or a screw, \
+                        changes the height";
 
 /// Why no joint of a leg carries the height.
 #[derive(Clone, Debug, PartialEq)]

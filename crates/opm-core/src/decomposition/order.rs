@@ -11,8 +11,8 @@ use super::{Decomposition, Freedom, one_subspace, search};
 use crate::group::subspace::SubspaceClass;
 use crate::mechanism::Mechanism;
 
-/// The decompositions of a mechanism; none where it has none.
-pub(super) fn first(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Vec<Decomposition> {
+/// The decompositions that are listed; none where the mechanism has none.
+pub(super) fn listed(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Vec<Decomposition> {
     let alone = || one_subspace(mechanism, lambda, mobility);
     if let Some(alone) = alone().filter(|alone| translates(&alone.lower))
         && mechanism.legs.iter().all(|leg| Freedom::of_leg(leg).len() == lambda)

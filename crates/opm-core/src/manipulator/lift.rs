@@ -157,7 +157,8 @@ impl CompiledLeg {
     /// The leg as it is at a height above home, metres: as it is always, unless its lift leans.
     ///
     /// # Errors
-    /// The joints of its section are dependent at this height, so that it reaches nothing.
+    /// The joints of its section are dependent at this height. There the leg has no closed form, and counts as out of
+    /// reach.
     pub fn at(&self, rise: f64) -> Result<Cow<'_, Self>, (Section, ReachDeficit)> {
         match &self.lean {
             Some(lean) => self.raised(lean, rise).map(Cow::Owned),
@@ -210,7 +211,7 @@ impl Manipulator {
         })
     }
 
-    /// The legs at a height above home, metres. One that reaches nothing there is as it is at home, and does not close.
+    /// The legs at a height above home, metres. One without a closed form there is as it is at home, and does not close.
     pub(crate) fn legs_at(&self, rise: f64) -> Cow<'_, [CompiledLeg]> {
         if self.lifts_straight() {
             return Cow::Borrowed(&self.legs);

@@ -67,7 +67,7 @@ impl Task {
         }
     }
 
-    /// Of values for each of a section's coordinates, all but that for a height.
+    /// The values of a section's coordinates in the plane: all but the height.
     #[inline]
     pub(crate) fn in_plane<T>(
         &self,
