@@ -6,6 +6,7 @@ use opm_core::mechanism::examples;
 use opm_study::{WorkspaceKind, WorkspaceRequest};
 use opm_workspace::measure::{Domain, DomainError};
 use opm_workspace::{Grid, GridError, Sections};
+use std::sync::Arc;
 
 /// The file of the shipped mechanism with another first joint of its first leg.
 fn text_with(lift: &str) -> String {
@@ -124,8 +125,8 @@ fn bounds_and_sections_alone_are_refused() {
     let told = Domain::new(&m, Sections::Whole, &[]).unwrap_err();
     assert_eq!(told, DomainError::Leaning { joints: vec!["S1".into()] });
     assert_eq!(Grid::of(Sections::Lower, &m, vec![]).unwrap_err(), GridError::NotAlone);
-    let request = WorkspaceRequest { kind: WorkspaceKind::Lower, ..WorkspaceRequest::default() };
-    let told = request.check(&m).unwrap_err().to_string();
+    let told =
+        WorkspaceRequest::new(WorkspaceKind::Lower).check(Arc::new(m)).unwrap_err().to_string();
     assert!(told.contains("screws or inclined sliders carry its height (S1)"), "{told}");
 }
 

@@ -10,11 +10,10 @@ use opm_tests::by_inverse::by_inverse;
 use opm_tests::height::{self, straight};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
-    Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, SetAxis, Sweep,
-    Visits, boundary, mask_boundary,
+    Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, Sweep, Visits,
 };
 use std::collections::HashMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 fn shipped(name: &str) -> Manipulator {

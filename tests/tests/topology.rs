@@ -1,12 +1,11 @@
 //! Components and boundaries of sets, compared with flood fills and geometry.
 
 use fastrand::Rng;
-use nalgebra::Vector3;
 use opm_core::manipulator::Manipulator;
-use opm_workspace::{Axis, Components, Grid, GridSet, Modes, Progress, SetAxis, Sweep};
-use std::collections::HashMap;
+use opm_workspace::{
+    Axis, Components, Grid, GridSet, Modes, Progress, SetAxis, Sweep, boundary, mask_boundary,
+};
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 fn shipped(name: &str) -> Manipulator {
     Manipulator::example(name).unwrap()
