@@ -3,10 +3,8 @@
 
 use opm_core::Manipulator;
 use opm_core::mechanism::examples;
-use opm_study::{WorkspaceKind, WorkspaceRequest};
 use opm_workspace::measure::{Domain, DomainError};
 use opm_workspace::{Grid, GridError, Sections};
-use std::sync::Arc;
 
 /// The file of the shipped mechanism with another first joint of its first leg.
 fn text_with(lift: &str) -> String {
@@ -124,10 +122,6 @@ fn bounds_and_sections_alone_are_refused() {
     let m = with_lift(SCREW);
     let told = Domain::new(&m, Sections::Whole, &[]).unwrap_err();
     assert_eq!(told, DomainError::Leaning { joints: vec!["S1".into()] });
-    assert_eq!(Grid::of(Sections::Lower, &m, vec![]).unwrap_err(), GridError::NotAlone);
-    let told =
-        WorkspaceRequest::new(WorkspaceKind::Lower).check(Arc::new(m)).unwrap_err().to_string();
-    assert!(told.contains("screws or inclined sliders carry its height (S1)"), "{told}");
 }
 
 /// A screw in a leg that lacks a joint is refused by name; a slider along the direction is not.

@@ -4,12 +4,11 @@
 
 use fastrand::Rng;
 use opm_core::decomposition::Decomposition;
-use opm_core::manipulator::{LegBranch, Manipulator};
+use opm_core::manipulator::{LegBranch, Manipulator, Solution};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::height::straight;
 use opm_tests::random::{Options, PAIRS, mechanism, order};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
@@ -20,6 +19,9 @@ const POSES: u64 = 100_000_000;
 
 /// How many poses of the grid are reachable for every leg.
 fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
+    if !manipulator.lifts_straight() {
+        return by_solutions(manipulator, grid, modes);
+    }
     let mode = match modes {
         Modes::One(mode) => Some(mode),
         Modes::Any => None,
@@ -49,6 +51,25 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
             .count() as u64;
     }
     count
+}
+
+/// The same by the solutions of whole poses.
+fn by_solutions(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
+    let memory = || (manipulator.all_modes(), manipulator.solution());
+    let poses = (0..grid.poses()).into_par_iter().map_init(memory, |(all, solution), number| {
+        let pose = grid.pose(number);
+        match modes {
+            Modes::One(mode) => {
+                let found = manipulator.inverse(&pose, mode, solution).unwrap();
+                found.is_some_and(Solution::within_limits)
+            }
+            Modes::Any => {
+                let found = manipulator.inverse_all(&pose, all).unwrap();
+                found.is_some_and(|all| manipulator.within_limits_in_any(all, |_, _| {}))
+            }
+        }
+    });
+    poses.filter(|reached| *reached).count() as u64
 }
 
 fn without_limits_on_angles(mut mechanism: Mechanism) -> Mechanism {
@@ -83,7 +104,6 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
         let pair = PAIRS[round % PAIRS.len()];
         let options = Options { limited: [0.0, 0.3, 0.7, 1.0][rng.usize(..4)], balls: rng.bool() };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mechanism = straight(mechanism, &decomposition);
         let mechanism = match rng.u8(..3) {
             0 => without_limits_on_angles(mechanism),
             1 => with_free_upper_sections(mechanism, &decomposition),
@@ -159,8 +179,7 @@ fn limits_that_lie_on_poses_are_no_exception() {
     for round in 0..400 {
         let pair = PAIRS[round % PAIRS.len()];
         let options = Options { limited: 0.0, balls: false };
-        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mut mechanism = straight(mechanism, &decomposition);
+        let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let free = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
         let free = free.unwrap();
         let axes = free.task_coordinates().iter().zip([41, 9, 3, 3, 3, 2]).map(|(c, count)| {
@@ -239,7 +258,6 @@ fn legs_independent_of_the_slice_are_joined() {
         let pair = PAIRS[0];
         let options = Options { limited: 0.7, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mechanism = straight(mechanism, &decomposition);
         let mechanism =
             without_limits_on_angles(with_free_upper_sections(mechanism, &decomposition));
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
@@ -282,7 +300,6 @@ fn fine_grids_are_no_exception() {
         let pair = [PAIRS[0], PAIRS[3], PAIRS[7], PAIRS[8], PAIRS[10]][round % 5];
         let options = Options { limited: 0.3, balls: false };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mechanism = straight(mechanism, &decomposition);
         let mechanism = without_limits_on_angles(mechanism);
         let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
         let modes = Modes::One(manipulator.home_mode());
@@ -336,7 +353,6 @@ fn rows_that_touch_a_boundary_are_no_exception() {
         let pair = [PAIRS[0], PAIRS[3]][round % 2];
         let options = Options { limited: 0.0, balls: true };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-        let mechanism = straight(mechanism, &decomposition);
         let mechanism = with_free_upper_sections(mechanism, &decomposition);
         let rings: Vec<usize> = (0..mechanism.legs.len())
             .filter(|&leg| {

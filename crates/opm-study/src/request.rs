@@ -271,10 +271,6 @@ fn check_kind(
         {
             return Err(RequestError::Dependent { kind, dependent });
         }
-        WorkspaceKind::Upper | WorkspaceKind::Lower if !manipulator.lifts_straight() => {
-            let joints = manipulator.leaning_joints().map(str::to_owned).collect();
-            return Err(RequestError::Leaning { kind, joints });
-        }
         _ => {}
     }
     if let Some(part) = kind.missing_part(manipulator) {

@@ -268,8 +268,7 @@ impl Grid {
         if coordinates.is_empty() {
             return Err(GridError::NoUpperSection);
         }
-        let alone = manipulator.dependent_coordinates().is_empty() && manipulator.lifts_straight();
-        if sections != Sections::Whole && !alone {
+        if sections != Sections::Whole && !manipulator.dependent_coordinates().is_empty() {
             return Err(GridError::NotAlone);
         }
         for axis in given {

@@ -201,8 +201,7 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let of_joint = lower.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
-        let shapes = Branch::BOTH.map(|branch| lower.chain.shape(branch, of_joint));
+        let shapes = lower.shapes(limits);
         // An upper section that does not give τ may be out of reach; a spherical joint never is.
         let gives_tau = bridged && split_section == Section::Upper;
         let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);

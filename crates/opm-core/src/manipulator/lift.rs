@@ -220,6 +220,20 @@ impl Manipulator {
         self.legs.iter().map(at).collect()
     }
 
+    /// The manipulator for poses at a height above home, metres, of which no lift leans: its legs' chains are those of that
+    /// height. `None` where a leg has no closed form there.
+    #[doc(hidden)]
+    pub fn raised(&self, rise: f64) -> Option<Self> {
+        let mut raised = self.clone();
+        for (leg, of_height) in self.legs.iter().zip(&mut raised.legs) {
+            if let Some(lean) = &leg.lean {
+                *of_height = leg.raised(lean, rise).ok()?;
+                of_height.shapes = of_height.lower.shapes(&self.limits);
+            }
+        }
+        Some(raised)
+    }
+
     /// Whether the legs' chains are the same at every height.
     #[doc(hidden)]
     pub fn lifts_straight(&self) -> bool {
@@ -237,16 +251,9 @@ impl Manipulator {
 
     /// Whether all lifts are within their limits at a height above home, metres.
     #[inline]
-    pub(super) fn lifts_admit(&self, rise: f64) -> bool {
-        self.lifts().all(|lift| self.lifted(lift, rise).1)
-    }
-
-    /// Whether all lifts of a section are within their limits, for the values of the section's coordinates.
     #[doc(hidden)]
-    pub fn height_admitted(&self, section: Section, of_section: &[f64]) -> bool {
-        let Some(place) = self.task().height_in(section) else { return true };
-        let home = self.task().coordinates[self.task().range(section)][place].home;
-        self.lifts_admit(of_section[place] - home)
+    pub fn lifts_admit(&self, rise: f64) -> bool {
+        self.lifts().all(|lift| self.lifted(lift, rise).1)
     }
 
     /// The limits of the heights above home that the lifts admit.

@@ -217,11 +217,17 @@ impl Manipulator {
         if branch.with_upper.is_some() {
             return None;
         }
-        let shape = self.legs[branch.leg].shape(branch.branches.lower)?;
-        let target = match branch.tau {
+        let leg = &self.legs[branch.leg];
+        let shape = leg.shape(branch.branches.lower)?;
+        let mut target = match branch.tau {
             Some(tau) => &self.task.lower_intersection.after(v, tau),
             None => v,
         };
+        let displaced;
+        if leg.lower.offset.is_some() {
+            displaced = leg.lower.of_chain(target);
+            target = &displaced;
+        }
         match target {
             Displacement::Planar(g) => shape.at(g.rotation, -g.translation, scale),
             Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),

@@ -3,6 +3,7 @@
 use crate::chain::condition::Condition;
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
+use crate::chain::shape::Shape;
 use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::Freedom;
 use crate::group::{Displacement, JointDisplacement};
@@ -78,6 +79,11 @@ impl CompiledSection {
         }
     }
 
+    /// What the chain has to reach for a displacement of the section.
+    pub fn of_chain(&self, target: &Displacement) -> Displacement {
+        self.offset.as_ref().map_or(*target, |offset| target.after(offset))
+    }
+
     /// The condition on the section's displacement that one of its joints imposes, held at a displacement: see
     /// [`Condition::new`].
     pub fn condition(&self, joint: usize, displacement: JointDisplacement) -> Option<Condition> {
@@ -86,6 +92,12 @@ impl CompiledSection {
             None => condition,
             Some(offset) => condition.before(offset),
         })
+    }
+
+    /// The region in which the section closes, on each branch; `None` where it is not a region of the plane.
+    pub fn shapes(&self, limits: &[Limits]) -> [Option<Shape>; 2] {
+        let of_joint = self.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
+        Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
     }
 
     /// Whether a target has two solutions.

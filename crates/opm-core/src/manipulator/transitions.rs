@@ -95,7 +95,8 @@ impl Manipulator {
         let largest_tau = if rotation { PI } else { FAR * transitions.size };
         transitions.largest_tau = (!rotation).then_some(largest_tau);
         let span = Span { from: -largest_tau, to: largest_tau, step: 0.0 };
-        let Some(path) = self.task.upper_intersection.path(b) else { return Some(()) };
+        let b = leg.upper.of_chain(b);
+        let Some(path) = self.task.upper_intersection.path(&b) else { return Some(()) };
         let hold = |at: f64| {
             let displacement = if rotation {
                 JointDisplacement::Direction(unit(at))
@@ -145,7 +146,7 @@ impl Manipulator {
             Some(tau) => self.task.lower_intersection.after(&at(home), tau),
             None => at(home),
         };
-        let path = self.task.row(&start);
+        let path = self.task.row(&leg.lower.of_chain(&start));
         let size = transitions.size + path.size(moved.reach());
         for surface in &transitions.surfaces {
             surface.meet(&path, &moved, Uncertainty { size, blur: 0.0 }, &mut found);

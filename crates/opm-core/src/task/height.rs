@@ -42,6 +42,13 @@ impl Task {
         })
     }
 
+    /// The height above its home, metres, for the values of a section's coordinates; `None` if the section has no height.
+    #[doc(hidden)]
+    pub fn rise_in(&self, section: Section, of_section: &[f64]) -> Option<f64> {
+        let place = self.height_in(section)?;
+        Some(of_section[place] - self.coordinates[self.range(section)][place].home)
+    }
+
     /// The components of the height among rates and accelerations of all task coordinates, m/s and m/s²; zeros where
     /// there is no height.
     #[inline]

@@ -135,13 +135,6 @@ pub enum RequestError {
         /// The names of the dependent coordinates.
         dependent: Vec<String>,
     },
-    /// The kind is of one section alone, but chains of legs depend on the height.
-    Leaning {
-        /// The kind.
-        kind: WorkspaceKind,
-        /// The names of the joints that carry the height.
-        joints: Vec<String>,
-    },
     /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
@@ -234,8 +227,7 @@ impl RequestError {
             Self::NoImaginaryJoints { .. }
             | Self::OneSubspace { .. }
             | Self::NoPart { .. }
-            | Self::Dependent { .. }
-            | Self::Leaning { .. } => RequestOption::Kind,
+            | Self::Dependent { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
             Self::Follows { option, .. } | Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
@@ -309,11 +301,6 @@ impl RequestError {
                 "{kind}: the sections of this mechanism have no workspaces of their own, because its legs tie its \
                  coordinates together (dependent: {}); use grid",
                 dependent.join(", ")
-            ),
-            Self::Leaning { kind, joints } => format!(
-                "{kind}: the sections of this mechanism have no workspaces of their own, because screws or inclined \
-                 sliders carry its height ({}); use grid",
-                joints.join(", ")
             ),
             Self::NotOfPoses { kind } => format!(
                 "with {}: only poses have a condition number; ask for it of grid, \

@@ -96,7 +96,7 @@ impl Row {
         (branch, number): (&SliceBranch, usize),
         window: Run,
     ) {
-        let manipulator = sweep.manipulator;
+        let manipulator = sheet.manipulator();
         let lower = sweep.grid.lower();
         let axis = &sweep.grid.axes()[0];
         let SliceBranch { follow, transitions, .. } = branch;

@@ -5,7 +5,7 @@ use super::clip::ClipPlan;
 use crate::grid::{Axis, Sections, fill};
 use opm_core::Section;
 use opm_core::chain::region::Region;
-use opm_core::manipulator::{LegBranch, Transitions};
+use opm_core::manipulator::{LegBranch, Manipulator, Transitions};
 use std::cell::OnceCell;
 
 /// One branch of a leg in the present sheet: one way in which it can follow.
@@ -47,8 +47,7 @@ pub enum SheetKind {
     Regions,
     /// Some leg has several branches, or one that is no region: branches are decided one by one.
     Branches,
-    /// Some task coordinates follow from those of the grid, or chains depend on the height: poses are decided one by
-    /// one.
+    /// Some task coordinates follow from those of the grid: poses are decided one by one.
     Single,
 }
 
@@ -85,6 +84,8 @@ impl RowScale {
 /// two. A slice consists of sheets.
 pub struct Sheet<'a> {
     sweep: &'a Sweep<'a>,
+    /// The manipulator at the sheet's height, and that height, metres, where lifts lean.
+    raised: Option<(f64, Manipulator)>,
     /// The number of the slice, once there is one.
     slice: Option<u64>,
     /// The number of the sheet in its slice.
@@ -111,6 +112,7 @@ impl<'a> Sheet<'a> {
         let legs = sweep.manipulator.legs();
         Self {
             sweep,
+            raised: None,
             slice: None,
             number: 0,
             first_row: 0,
@@ -128,6 +130,31 @@ impl<'a> Sheet<'a> {
     /// The number of the slice.
     pub fn slice(&self) -> u64 {
         self.slice.unwrap_or_default()
+    }
+
+    /// The manipulator, at the sheet's height where lifts lean.
+    pub fn manipulator(&self) -> &Manipulator {
+        self.raised.as_ref().map_or(self.sweep.manipulator, |(_, raised)| raised)
+    }
+
+    /// Goes to a height above home, metres, if the section has one. Returns whether the lifts admit it, and the legs have
+    /// closed forms there.
+    fn rise_to(&mut self, rise: Option<f64>) -> bool {
+        let Some(rise) = rise else { return true };
+        let manipulator = self.sweep.manipulator;
+        if !manipulator.lifts_admit(rise) {
+            return false;
+        }
+        let known = |(at, _): &(f64, Manipulator)| *at == rise;
+        if manipulator.lifts_straight() || self.raised.as_ref().is_some_and(known) {
+            return true;
+        }
+        self.raised = manipulator.raised(rise).map(|raised| (rise, raised));
+        // Places where feasibility changes belong to the chains of one height.
+        for branch in self.legs.iter_mut().flatten() {
+            branch.transitions.take();
+        }
+        self.raised.is_some()
     }
 
     /// The branches of all legs, one after the other.
@@ -158,19 +185,23 @@ impl<'a> Sheet<'a> {
         let sweep = self.sweep;
         let lower = sweep.grid.lower();
         let first = lower.saturating_sub(1);
-        let upper = &mut self.others[first..];
-        fill(&sweep.grid.axes()[lower..], slice, upper);
-        let manipulator = sweep.manipulator;
+        fill(&sweep.grid.axes()[lower..], slice, &mut self.others[first..]);
         self.open = true;
-        if !manipulator.dependent_coordinates().is_empty() || !manipulator.lifts_straight() {
+        if !sweep.manipulator.dependent_coordinates().is_empty() {
             self.kind = SheetKind::Single;
             return;
         }
+        let task = sweep.manipulator.task();
+        let whole = sweep.grid.sections() != Sections::Lower;
+        if whole && !self.rise_to(task.rise_in(Section::Upper, &self.others[first..])) {
+            self.open = false;
+            self.kind = SheetKind::Unreachable;
+            return;
+        }
+        let manipulator = self.raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised);
         let mode = sweep.modes.one();
-        let b = match sweep.grid.sections() {
-            Sections::Lower => None,
-            Sections::Whole | Sections::Upper => Some(manipulator.task().upper(upper)),
-        };
+        let upper = &self.others[first..];
+        let b = whole.then(|| task.upper(upper));
         self.kind = SheetKind::Branches;
         for (leg, branches) in self.legs.iter_mut().enumerate() {
             if branches.first().is_some_and(|branch| branch.follow.is_independent_of_slice()) {
@@ -187,9 +218,6 @@ impl<'a> Sheet<'a> {
             branches.clear();
             branches.extend(self.found.iter().copied().map(SliceBranch::new));
             self.open &= !branches.is_empty();
-        }
-        if sweep.grid.sections() != Sections::Lower {
-            self.open &= manipulator.height_admitted(Section::Upper, &self.others[first..]);
         }
         if !self.open {
             self.kind = SheetKind::Unreachable;
@@ -212,11 +240,13 @@ impl<'a> Sheet<'a> {
         if self.kind == SheetKind::Single {
             return;
         }
-        if !sweep.manipulator.height_admitted(Section::Lower, &first[..axes.len()]) {
+        let task = sweep.manipulator.task();
+        if !self.rise_to(task.rise_in(Section::Lower, &first[..axes.len()])) {
             self.kind = SheetKind::Unreachable;
             return;
         }
-        let v = sweep.manipulator.task().lower(&first[..axes.len()]);
+        let manipulator = self.raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised);
+        let v = task.lower(&first[..axes.len()]);
         let (scale, last) = (self.scale.step.recip(), (axes[0].count - 1) as f64);
         let fixed_are_known = self.fixed_regions_of == Some(self.number);
         self.fixed_regions_of = Some(self.number);
@@ -224,7 +254,7 @@ impl<'a> Sheet<'a> {
         for branches in &mut self.legs {
             for branch in branches.iter_mut() {
                 if !(fixed_are_known && branch.follow.is_independent_of_slice()) {
-                    branch.region = sweep.manipulator.region(&branch.follow, &v, scale);
+                    branch.region = manipulator.region(&branch.follow, &v, scale);
                     // Steps may be too small to count in.
                     let region = branch.region.as_ref().filter(|_| scale.is_finite());
                     branch.plan =
