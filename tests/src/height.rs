@@ -97,8 +97,8 @@ pub fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposit
     }
 }
 
-/// The mechanism with sliders along the direction in the place of all joints that carry a height: bounds and sections
-/// alone need them.
+/// The mechanism with sliders along the direction in the place of all joints that carry a height. Its other joints are a
+/// chain in the plane.
 pub fn straight(mut mechanism: Mechanism, decomposition: &Decomposition) -> Mechanism {
     for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
         straighten(leg, split, decomposition);

@@ -3,8 +3,9 @@
 
 use opm_core::Manipulator;
 use opm_core::mechanism::examples;
-use opm_workspace::measure::{Domain, DomainError};
-use opm_workspace::{Grid, GridError, Sections};
+use opm_workspace::measure::{CoordinateRange, Domain, Goal, Stop, measure};
+use opm_workspace::{Grid, GridError, Modes, Progress, Sections};
+use std::f64::consts::PI;
 
 /// The file of the shipped mechanism with another first joint of its first leg.
 fn text_with(lift: &str) -> String {
@@ -116,12 +117,78 @@ fn a_link_that_vanishes_at_a_height_is_out_of_reach_there() {
     }
 }
 
-/// What the height's screws rule out is refused with their names, in the library too.
+/// A leg that reaches every pose.
+const ANYWHERE: &str = "[[leg]]\nname = \"two\"\njoints = [\n\
+    { name = \"X2\", type = \"prismatic\", axis = [1, 0, 0] },\n\
+    { name = \"Y2\", type = \"prismatic\", axis = [0, 1, 0] },\n\
+    { name = \"Z2\", type = \"prismatic\", axis = [0, 0, 1] },\n\
+    { name = \"R2\", type = \"revolute\", axis = [0, 0, 1], point = [0, 0, 0] },\n]\n";
+
+/// The place of a point of the plane at a height.
+type Move<'a> = &'a dyn Fn([f64; 2], f64) -> [f64; 2];
+
+/// A leg of three revolute joints reaches rings, which have the area `4π a b`, with `a` and `b` its links' lengths.
+/// A lift between the joints makes one of them longer or shorter.
 #[test]
-fn bounds_and_sections_alone_are_refused() {
-    let m = with_lift(SCREW);
-    let told = Domain::new(&m, Sections::Whole, &[]).unwrap_err();
-    assert_eq!(told, DomainError::Leaning { joints: vec!["S1".into()] });
+fn rings_at_all_heights_have_a_known_volume() {
+    let pivots = [[0.0, 0.0], [0.5, 0.1], [0.8, -0.2]];
+    let slider = "{ name = \"S\", type = \"prismatic\", axis = [0.6, 0, 0.8], point = [0, 0, 0], actuated = true }";
+    let screw = "{ name = \"S\", type = \"helical\", pitch = 0.3, axis = [0, 0, 1], point = [0.2, 0.3, 0], \
+                 actuated = true }";
+    // What a lift does in the plane at a height.
+    let slid = |[x, y]: [f64; 2], z: f64| [x + 0.75 * z, y];
+    let turned = |[x, y]: [f64; 2], z: f64| {
+        let ((sin, cos), u, v) = ((z / 0.3).sin_cos(), x - 0.2, y - 0.3);
+        [0.2 + cos * u - sin * v, 0.3 + sin * u + cos * v]
+    };
+    let moves: [Move<'_>; 2] = [&slid, &turned];
+    for (lift, moved) in [slider, screw].into_iter().zip(moves) {
+        for before in 0..=3 {
+            let mut joints: Vec<String> = (pivots.iter().zip(["a", "b", "c"]))
+                .map(|([x, y], name)| {
+                    format!(
+                        "{{ name = \"{name}\", type = \"revolute\", axis = [0, 0, 1], point = [{x}, {y}, 0], \
+                         actuated = true }}"
+                    )
+                })
+                .collect();
+            joints.insert(before, lift.into());
+            let m = Manipulator::read(&format!(
+                "format = 1\nname = \"alone\"\nunits = {{ length = \"m\", angle = \"rad\" }}\n[platform]\n\
+                 point = [0.8, -0.2, 0]\n[[leg]]\nname = \"one\"\njoints = [\n{}\n]\n{ANYWHERE}",
+                joints.join(",\n")
+            ))
+            .unwrap();
+            // The place of the last pivot depends on the orientation of the platform alone.
+            let theta = 0.4;
+            let ring = |z: f64| {
+                let places: Vec<[f64; 2]> = (0..3)
+                    .map(|i| if i >= before { moved(pivots[i], z) } else { pivots[i] })
+                    .collect();
+                let link = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+                4.0 * PI * link(places[0], places[1]) * link(places[1], places[2])
+            };
+            // Simpson's rule, to far less than the tolerance.
+            let (from, to, pieces) = (-0.1, 0.2, 200);
+            let step = (to - from) / f64::from(pieces);
+            let volume = (0..=pieces)
+                .map(|i| {
+                    let weight =
+                        if i == 0 || i == pieces { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+                    weight * step / 3.0 * ring(from + step * f64::from(i))
+                })
+                .sum::<f64>();
+            let ranges =
+                [("x", -2.0, 2.0), ("y", -2.0, 2.0), ("z", from, to), ("theta", theta, theta)];
+            let ranges = ranges.map(|(name, min, max)| CoordinateRange::new(name, min, max));
+            let domain = Domain::new(&m, Sections::Whole, &ranges).unwrap();
+            let goal = Goal { tolerance: 0.002, ..Goal::default() };
+            let found = measure(&m, &domain, Modes::Any, &goal, &Progress::default());
+            assert_eq!(found.stop, Stop::Tolerance, "{before}");
+            assert!(found.lower <= volume && volume <= found.upper, "{before}: {volume} {found:?}");
+            println!("{before} {} boxes", found.boxes);
+        }
+    }
 }
 
 /// A screw in a leg that lacks a joint is refused by name; a slider along the direction is not.

@@ -7,7 +7,7 @@ use opm_core::Section;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
-use opm_tests::height::{self, straight};
+use opm_tests::height;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, Sweep, Visits,
@@ -38,6 +38,10 @@ fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
 /// joints, and the lower one `v` with the same values.
 fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
     let task = manipulator.task();
+    if !manipulator.lifts_straight() {
+        let raised = manipulator.raised(task.rise(pose));
+        return raised.is_some_and(|raised| sections_meet(&raised, pose, mode));
+    }
     let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
     if !height::within(manipulator, Section::Lower, pose)
         || !height::within(manipulator, Section::Upper, &pose[task.lower_count..])
@@ -76,7 +80,6 @@ fn the_whole_is_what_both_sections_reach() {
             let limited = if round % 2 == 0 { 0.0 } else { 0.3 };
             let options = Options { limited, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-            let mechanism = straight(mechanism, &decomposition);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut all = manipulator.all_modes();
             let mut solution = manipulator.solution();
@@ -125,7 +128,6 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
         for pair in PAIRS {
             let options = Options { limited: 0.2, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
-            let mechanism = straight(mechanism, &decomposition);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let lower = manipulator.task().lower_count;
             let coordinates = Sections::Lower.coordinates(&manipulator);
@@ -144,13 +146,17 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
                 let pose = grid.pose(number);
                 let v = manipulator.task().lower(&pose);
                 let admitted = height::within(&manipulator, Section::Lower, &pose);
+                let rise = manipulator.task().rise_in(Section::Lower, &pose[..lower]);
+                let raised = manipulator.raised(rise.unwrap_or(0.0));
                 let expected = admitted
-                    && (0..manipulator.legs()).all(|leg| {
-                        let cut = cuts.iter().position(|cut| cut.leg == leg);
-                        let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
-                        let mut ways = vec![];
-                        manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
-                        ways.iter().any(|way| manipulator.reaches(way, &v))
+                    && raised.as_ref().is_some_and(|manipulator| {
+                        (0..manipulator.legs()).all(|leg| {
+                            let cut = cuts.iter().position(|cut| cut.leg == leg);
+                            let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
+                            let mut ways = vec![];
+                            manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
+                            ways.iter().any(|way| manipulator.reaches(way, &v))
+                        })
                     });
                 assert_eq!(set.contains(number), expected, "{pair:?} {pose:?}");
             }

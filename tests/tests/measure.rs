@@ -2,11 +2,10 @@
 //! poses, and with Monte-Carlo estimates.
 
 use fastrand::Rng;
-use opm_core::manipulator::{LegBranch, Manipulator, Mode};
+use opm_core::manipulator::{LegBranch, Manipulator, Mode, Solution};
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::height::straight;
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
@@ -26,6 +25,16 @@ fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measu
 fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
     let mut ways: Vec<LegBranch> = Vec::new();
     let lower = m.task().lower_count;
+    if !m.lifts_straight() {
+        let rise = match domain.sections() {
+            Sections::Whole => return reached(m, mode, pose),
+            Sections::Lower => m.task().rise_in(Section::Lower, &pose[..lower]),
+            Sections::Upper => m.task().rise_in(Section::Upper, pose),
+        };
+        // A section without the height does not depend on it.
+        let raised = m.raised(rise.unwrap_or(0.0));
+        return raised.is_some_and(|raised| counts(&raised, domain, mode, pose));
+    }
     if domain.sections() == Sections::Upper {
         return height::within(m, Section::Upper, pose)
             && m.upper_closes(&m.task().upper(pose), mode, &mut ways);
@@ -49,6 +58,22 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
         }
         ways.iter().any(|way| m.reaches(way, &v))
     })
+}
+
+/// Whether the inverse kinematics of the whole pose have a solution within limits.
+fn reached(m: &Manipulator, mode: Option<Mode>, pose: &[f64]) -> bool {
+    match mode {
+        Some(mode) => {
+            let mut solution = m.solution();
+            let found = m.inverse(pose, mode, &mut solution).unwrap();
+            found.is_some_and(Solution::within_limits)
+        }
+        None => {
+            let mut all = m.all_modes();
+            let found = m.inverse_all(pose, &mut all).unwrap();
+            found.is_some_and(|all| m.within_limits_in_any(all, |_, _| {}))
+        }
+    }
 }
 
 /// How many of this number of uniformly drawn poses count.
@@ -153,8 +178,7 @@ fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> 
 /// what counts.
 fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
     let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
-    let (mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
-    let mut mechanism = straight(mechanism, &decomposition);
+    let (mut mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
     let task = Task::new(&mechanism, &decomposition).unwrap();
     for coordinate in &task.coordinates {
         if rng.bool() {

@@ -17,15 +17,18 @@
 
 mod affine;
 mod chain;
+mod planar;
+mod raised;
 mod share;
 mod target;
 
-use crate::chain::Branch;
 use crate::chain::limits::Limits;
+use crate::chain::{Branch, Chain};
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::{CoordinateKind, TaskCoordinate};
 use affine::{Affine, Plane};
+use raised::RaisedChain;
 use share::Share;
 use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
@@ -144,7 +147,9 @@ impl Manipulator {
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
         let task = self.task();
-        let conditions = LegConditions { manipulator: self, mode };
+        let rise = self.rise_over(query, &coordinates);
+        let still = Affine::constant(0.0);
+        let conditions = LegConditions { manipulator: self, mode, rise: rise.unwrap_or(still) };
         let legs = 0..self.legs.len();
         let share = match query {
             BoxQuery::Whole => {
@@ -173,7 +178,7 @@ impl Manipulator {
                 })
             }
         };
-        let share = share.and(self.lifts_within(query, &coordinates));
+        let share = rise.map_or(share, |rise| share.and(self.lifts_within(rise)));
         let contributions = share.contributions();
         let mut split = None;
         for (&contribution, number) in contributions.iter().zip(numbers) {
@@ -193,22 +198,24 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// The share of a box for which the lifts are within their limits.
-    fn lifts_within<const N: usize>(
+    /// The heights above home in a box, metres; `None` if the sections of the query have no height.
+    fn rise_over<const N: usize>(
         &self,
         query: BoxQuery,
         coordinates: &[Coordinate<N>],
-    ) -> Share<N> {
-        let Some(height) = &self.task().height else { return Share::ALL };
+    ) -> Option<Affine<N>> {
+        let height = self.task().height.as_ref()?;
         let first = match (query, height.section) {
             (BoxQuery::Whole, _) | (BoxQuery::Lower, Section::Lower) => 0,
             (BoxQuery::Upper, Section::Upper) => self.task().lower_count,
-            (BoxQuery::Lower, Section::Upper) | (BoxQuery::Upper, Section::Lower) => {
-                return Share::ALL;
-            }
+            (BoxQuery::Lower, Section::Upper) | (BoxQuery::Upper, Section::Lower) => return None,
         };
         let home = self.task().coordinates[height.coordinate].home;
-        let rise = coordinates[height.coordinate - first].minus(home);
+        Some(coordinates[height.coordinate - first].minus(home))
+    }
+
+    /// The share of a box for which the lifts are within their limits at these heights above home, metres.
+    fn lifts_within<const N: usize>(&self, rise: Affine<N>) -> Share<N> {
         self.lift_limits().fold(Share::ALL, |share, (lift, limits)| {
             share.and(within(limits, &Enclosed::Value(rise * lift.rate)))
         })
@@ -252,18 +259,20 @@ fn any<T, const N: usize>(
 }
 
 /// A leg's conditions over a box.
-struct LegConditions<'a> {
+struct LegConditions<'a, const N: usize> {
     manipulator: &'a Manipulator,
     mode: Option<Mode>,
+    /// The height above home, metres; zero where there is none.
+    rise: Affine<N>,
 }
 
-impl LegConditions<'_> {
+impl<const N: usize> LegConditions<'_, N> {
     fn leg(&self, number: usize) -> &CompiledLeg {
         &self.manipulator.legs[number]
     }
 
     /// The branches of a leg's section in the working mode, or both where any mode counts.
-    fn branches(&self, leg: usize, section: Section) -> impl Iterator<Item = Branch> + use<> {
+    fn branches(&self, leg: usize, section: Section) -> impl Iterator<Item = Branch> + use<N> {
         let both = self.mode.is_none() && self.leg(leg).section(section).chain.has_choice();
         let first = self.mode.map_or(Branch::Plus, |mode| {
             let branches = self.manipulator.branches(mode, leg);
@@ -277,7 +286,7 @@ impl LegConditions<'_> {
 
     /// The share for which a section closes within its limits, and its joints' displacements meet the condition
     /// `then`.
-    fn section<const N: usize>(
+    fn section(
         &self,
         leg: usize,
         section: Section,
@@ -285,32 +294,48 @@ impl LegConditions<'_> {
         then: impl Fn(&[Enclosed<N>; 3]) -> Share<N>,
     ) -> Share<N> {
         let compiled = self.leg(leg).section(section);
-        let closes = chain::closes(&compiled.chain, target);
+        let raised = self.raised(leg, section, target);
+        let closes = match &raised {
+            Some(raised) => raised.closes(),
+            None => chain::closes(&compiled.chain, target),
+        };
         if closes.is_none() {
             return closes;
         }
         closes.and(any(self.branches(leg, section), |branch| {
-            let displacements = chain::displacements(&compiled.chain, target, branch);
+            let displacements = match &raised {
+                Some(raised) => raised.displacements(branch),
+                None => chain::displacements(&compiled.chain, target, branch),
+            };
             let within = self.admits(compiled, &displacements);
             if within.is_none() { within } else { within.and(then(&displacements)) }
         }))
     }
 
-    fn upper<const N: usize>(&self, leg: usize, b: &Target<N>) -> Share<N> {
+    /// The chain of a section that the leg's lift is in, if that leans, at the heights of the box.
+    fn raised(&self, leg: usize, section: Section, target: &Target<N>) -> Option<RaisedChain<N>> {
+        let lean = self.leg(leg).lean.as_ref().filter(|lean| lean.section == section)?;
+        match &self.leg(leg).section(section).chain {
+            Chain::Planar(chain) => Some(RaisedChain::new(lean, chain, self.rise, target.planar())),
+            _ => None,
+        }
+    }
+
+    fn upper(&self, leg: usize, b: &Target<N>) -> Share<N> {
         match self.leg(leg).split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |_| Share::ALL),
             Section::Lower => Share::ALL,
         }
     }
 
-    fn lower<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
+    fn lower(&self, leg: usize, v: &Target<N>, tau: Affine<N>) -> Share<N> {
         match self.leg(leg).split_section {
             Section::Upper => self.reaches(leg, v, Enclosed::Value(tau)),
             Section::Lower => self.section(leg, Section::Lower, v, |_| Share::ALL),
         }
     }
 
-    fn whole<const N: usize>(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
+    fn whole(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
         let compiled = self.leg(leg);
         match compiled.split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |displacements| {
@@ -333,14 +358,14 @@ impl LegConditions<'_> {
     }
 
     /// The share for which the lower section closes at `v · exp(I τ)` within its limits.
-    fn reaches<const N: usize>(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
+    fn reaches(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
         let target = target::after(self.manipulator.task().lower_intersection, v, tau);
         self.section(leg, Section::Lower, &target, |_| Share::ALL)
     }
 
     /// The share that `then` gives for a displacement along the intersection motion. Where revolutions are
     /// counted, the displacement is within π of home; a box may contain both ends of that range.
-    fn unwound<const N: usize>(
+    fn unwound(
         &self,
         leg: &CompiledLeg,
         tau: Enclosed<N>,
@@ -361,11 +386,7 @@ impl LegConditions<'_> {
     }
 
     /// The share for which a section's joints are within their limits.
-    fn admits<const N: usize>(
-        &self,
-        section: &CompiledSection,
-        displacements: &[Enclosed<N>; 3],
-    ) -> Share<N> {
+    fn admits(&self, section: &CompiledSection, displacements: &[Enclosed<N>; 3]) -> Share<N> {
         if !section.limited {
             return Share::ALL;
         }

@@ -41,10 +41,9 @@ pub enum GridError {
     /// The grid is of the upper section, but all legs move in one subspace.
     #[error("the mechanism has no upper section: all its legs move in one subspace")]
     NoUpperSection,
-    /// The grid is of one section alone, but one section depends on the other, or its chains on the height.
+    /// The grid is of one section alone, but one section depends on the other.
     #[error(
-        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, or screws or \
-         inclined sliders carry its height"
+        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together"
     )]
     NotAlone,
     /// No coordinate has the name of the axis.

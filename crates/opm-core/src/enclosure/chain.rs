@@ -2,10 +2,10 @@
 //! and the joints' displacements where it does.
 
 use super::affine::{Affine, Plane, WIDE};
+use super::planar::{self, Joint};
 use super::share::Share;
-use super::target::{Enclosed, PlanarTarget, Rotation, Target, dot};
+use super::target::{Enclosed, Rotation, Target, dot};
 use crate::chain::cylindrical::CoaxialJoint;
-use crate::chain::planar::PlanarJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, REACH_TOLERANCE};
 use nalgebra::{Complex, Vector3};
@@ -20,7 +20,7 @@ const INFINITE: f64 = f64::INFINITY;
 /// The share of a box of targets for which a chain closes, whatever its joints' limits.
 pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
-        Chain::Planar(chain) => planar_closes(&chain.joints(), target.planar()),
+        Chain::Planar(chain) => planar::closes(&chain.joints().map(Joint::from), target.planar()),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
         // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution
         // everywhere.
@@ -41,7 +41,9 @@ pub fn displacements<const N: usize>(
     let none = Enclosed::Value(Affine::constant(0.0));
     match chain {
         Chain::Rigid => [none; 3],
-        Chain::Planar(chain) => planar(&chain.joints(), target.planar(), branch),
+        Chain::Planar(chain) => {
+            planar::displacements(&chain.joints().map(Joint::from), target.planar(), branch)
+        }
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),
         Chain::Cylindrical(chain) => {
@@ -69,163 +71,6 @@ pub fn displacements<const N: usize>(
 fn along<const N: usize>([u, v]: [Complex<f64>; 2], z: Plane<N>) -> [Affine<N>; 2] {
     let crossing = u.re * v.im - u.im * v.re;
     [z.cross(Plane::constant(v)) * (1.0 / crossing), Plane::constant(u).cross(z) * (1.0 / crossing)]
-}
-
-/// The displacement of a revolute for a rotation to the direction of `r`.
-fn turned<const N: usize>(reversed: bool, r: Plane<N>) -> Enclosed<N> {
-    Enclosed::Direction(if reversed { r.conj() } else { r })
-}
-
-/// The vector from `from` to the place of the pivot that is at `at` at home.
-fn reach<const N: usize>(g: &PlanarTarget<N>, at: Complex<f64>, from: Complex<f64>) -> Plane<N> {
-    g.rotation * at + g.translation - from
-}
-
-fn planar_closes<const N: usize>(joints: &[PlanarJoint; 3], g: &PlanarTarget<N>) -> Share<N> {
-    use PlanarJoint::{Prismatic, Revolute};
-    match *joints {
-        [Revolute { at: p1, .. }, Revolute { at: p2, .. }, Revolute { at: p3, .. }] => {
-            let arm = Arm::new(p1, p2, p3);
-            let nearest = if arm.folds() { -INFINITE } else { -1.0 };
-            Share::within(&arm.cosine(&reach(g, p3, p1)), [nearest, 1.0], 0.0)
-        }
-        [Prismatic { along }, Revolute { at: p2, .. }, Revolute { at: p3, .. }] => {
-            let link = (p3 - p2).norm();
-            Share::within(&(reach(g, p3, p2) * along.conj()).im, [-link, link], 0.0)
-        }
-        [Revolute { .. }, Revolute { .. }, Prismatic { .. }] => {
-            planar_closes(&backwards(joints), &g.inverse())
-        }
-        [Revolute { at: p1, .. }, Prismatic { along }, Revolute { at: p3, .. }] => {
-            let aside = ((p3 - p1) * along.conj()).im;
-            let square = reach(g, p3, p1).norm_sqr();
-            // The rounding is in proportion to the square on the left.
-            Share::within(&square, [aside * aside, INFINITE], 0.0)
-        }
-        [Prismatic { along: d1 }, Revolute { .. }, Prismatic { along: d3 }] => {
-            // The chain closes everywhere except where the sliders become parallel.
-            let crossing = Plane::constant(d1).cross(g.rotation * d3);
-            Share::outside(&crossing, [-REACH_TOLERANCE, REACH_TOLERANCE])
-        }
-        // Two sliders that are not parallel reach every place.
-        [Revolute { .. }, Prismatic { .. }, Prismatic { .. }]
-        | [Prismatic { .. }, Prismatic { .. }, Revolute { .. }] => Share::ALL,
-        [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
-            unreachable!("three sliders make no chain")
-        }
-    }
-}
-
-/// The joints' displacements of a planar chain: see the closed forms.
-fn planar<const N: usize>(
-    joints: &[PlanarJoint; 3],
-    g: &PlanarTarget<N>,
-    branch: Branch,
-) -> [Enclosed<N>; 3] {
-    use PlanarJoint::{Prismatic, Revolute};
-    match *joints {
-        [
-            Revolute { at: p1, reversed: r1 },
-            Revolute { at: p2, reversed: r2 },
-            Revolute { at: p3, reversed: r3 },
-        ] => {
-            let arm = Arm::new(p1, p2, p3);
-            let wrist = reach(g, p3, p1);
-            let cosine = arm.cosine(&wrist);
-            let sine = (-cosine.square() + 1.0).sqrt() * branch.sign();
-            let second = Plane { re: cosine, im: sine } * arm.straighten;
-            let first = wrist * (second * arm.second + arm.first).conj();
-            let third = g.rotation * (first * second).conj();
-            [turned(r1, first), turned(r2, second), turned(r3, third)]
-        }
-        [
-            Prismatic { along },
-            Revolute { at: p2, reversed: r2 },
-            Revolute { at: p3, reversed: r3 },
-        ] => {
-            let link = p3 - p2;
-            let local = reach(g, p3, p2) * along.conj();
-            let root = (-local.im.square() + link.norm_sqr()).sqrt() * branch.sign();
-            let slider = local.re + root;
-            let second = Plane { re: -root, im: local.im } * (along * link.conj());
-            let third = g.rotation * second.conj();
-            [Enclosed::Value(slider), turned(r2, second), turned(r3, third)]
-        }
-        [Revolute { .. }, Revolute { .. }, Prismatic { .. }]
-        | [Prismatic { .. }, Prismatic { .. }, Revolute { .. }] => {
-            let [a3, a2, a1] = planar(&backwards(joints), &g.inverse(), branch);
-            [a1.inverse(), a2.inverse(), a3.inverse()]
-        }
-        [
-            Revolute { at: p1, reversed: r1 },
-            Prismatic { along },
-            Revolute { at: p3, reversed: r3 },
-        ] => {
-            let offset = (p3 - p1) * along.conj();
-            let reach = reach(g, p3, p1);
-            let square = reach.norm_sqr() - offset.im * offset.im;
-            let ahead = square.sqrt() * branch.sign();
-            let telescope = Plane { re: ahead, im: Affine::constant(offset.im) } * along;
-            let first = reach * telescope.conj();
-            let third = g.rotation * first.conj();
-            [turned(r1, first), Enclosed::Value(ahead - offset.re), turned(r3, third)]
-        }
-        [Revolute { at, reversed }, Prismatic { along: d2 }, Prismatic { along: d3 }] => {
-            let moved = reach(g, at, at);
-            let [s2, s3] = along([d2, d3], moved * g.rotation.conj());
-            [turned(reversed, g.rotation), Enclosed::Value(s2), Enclosed::Value(s3)]
-        }
-        [Prismatic { along: d1 }, Revolute { at, reversed }, Prismatic { along: d3 }] => {
-            let moved = reach(g, at, at);
-            let (first, second) = (Plane::constant(d1), g.rotation * d3);
-            let inverse = first.cross(second).recip();
-            [
-                Enclosed::Value(moved.cross(second) * inverse),
-                turned(reversed, g.rotation),
-                Enclosed::Value(first.cross(moved) * inverse),
-            ]
-        }
-        [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
-            unreachable!("three sliders make no chain")
-        }
-    }
-}
-
-/// The joints of the reversed chain.
-fn backwards(&[first, second, third]: &[PlanarJoint; 3]) -> [PlanarJoint; 3] {
-    [third, second, first]
-}
-
-/// The two links of an arm.
-struct Arm {
-    first: Complex<f64>,
-    second: Complex<f64>,
-    straighten: Complex<f64>,
-    mean_square: f64,
-    product: f64,
-}
-
-impl Arm {
-    fn new(p1: Complex<f64>, p2: Complex<f64>, p3: Complex<f64>) -> Self {
-        let (first, second) = (p2 - p1, p3 - p2);
-        let (a, b) = (first.norm(), second.norm());
-        Self {
-            first,
-            second,
-            straighten: first * second.conj() / (a * b),
-            mean_square: (a * a + b * b) / 2.0,
-            product: a * b,
-        }
-    }
-
-    /// Whether the links are equally long, so that no target is too near.
-    fn folds(&self) -> bool {
-        self.mean_square / self.product <= 1.0 + 0.5 * REACH_TOLERANCE
-    }
-
-    fn cosine<const N: usize>(&self, wrist: &Plane<N>) -> Affine<N> {
-        (wrist.norm_sqr() * 0.5 - self.mean_square) * (1.0 / self.product)
-    }
 }
 
 /// The two arcs of a spherical chain, whose first two joints depend on `z = a₁ · R a₃`.

@@ -15,6 +15,14 @@ pub struct PlanarTarget<const N: usize> {
 }
 
 impl<const N: usize> PlanarTarget<N> {
+    /// The displacement `other` followed by this one, as a product `self · other`.
+    pub fn after(&self, other: &Self) -> Self {
+        Self {
+            rotation: self.rotation * other.rotation,
+            translation: self.rotation * other.translation + self.translation,
+        }
+    }
+
     /// The inverse displacement.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conj();

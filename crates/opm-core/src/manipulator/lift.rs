@@ -202,8 +202,8 @@ impl Manipulator {
     }
 
     /// The names of the joints that carry the height of a Schoenflies section and also move their legs in the plane:
-    /// inclined sliders and screws. Where there are any, legs have other chains at every height, and sweeps decide each
-    /// pose by itself.
+    /// inclined sliders and screws. Where there are any, legs have other chains at every height: a sweep through many
+    /// heights makes them anew for each, which takes microseconds.
     pub fn leaning_joints(&self) -> impl Iterator<Item = &str> {
         let leaning = self.legs.iter().filter(|leg| leg.lean.is_some());
         leaning.filter_map(|leg| {

@@ -125,16 +125,6 @@ pub enum DomainError {
         /// The names of the dependent coordinates.
         dependent: Vec<&'static str>,
     },
-    /// Chains of legs depend on the height.
-    #[error(
-        "there are no bounds for a mechanism whose height is carried by screws or inclined sliders (here: {}); a grid of \
-         its workspace can be counted",
-        joints.join(", ")
-    )]
-    Leaning {
-        /// The names of these joints.
-        joints: Vec<String>,
-    },
     /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
@@ -220,10 +210,6 @@ impl Domain {
         if !dependent.is_empty() {
             let dependent = dependent.iter().map(|c| c.name).collect();
             return Err(DomainError::Dependent { dependent });
-        }
-        let joints: Vec<String> = manipulator.leaning_joints().map(str::to_owned).collect();
-        if !joints.is_empty() {
-            return Err(DomainError::Leaning { joints });
         }
         let mut axes = axes(manipulator, sections);
         if axes.is_empty() {
