@@ -29,10 +29,10 @@ pub enum Limits {
 /// An arc of the unit circle, counter-clockwise from `from` to `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
-    from: Complex<f64>,
-    to: Complex<f64>,
+    pub(crate) from: Complex<f64>,
+    pub(crate) to: Complex<f64>,
     /// Whether the arc is longer than a semicircle.
-    wide: bool,
+    pub(crate) wide: bool,
 }
 
 impl Limits {
@@ -113,6 +113,14 @@ impl Limits {
                 Some([arc.from, arc.to].map(JointDisplacement::Direction))
             }
             _ => None,
+        }
+    }
+
+    /// The limits of an angle that does not count revolutions; `None` where it is free or may make a full revolution.
+    pub(crate) fn arc(&self) -> Option<&Arc> {
+        match self {
+            Self::Range { arc, .. } => arc.as_ref(),
+            Self::Free => None,
         }
     }
 

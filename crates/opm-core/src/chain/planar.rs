@@ -4,6 +4,7 @@
 //! coordinate from a triangle and the others by complex division.
 
 mod held;
+mod link;
 mod ppr;
 mod prp;
 mod prr;
@@ -12,6 +13,7 @@ mod rpr;
 mod rrp;
 mod rrr;
 
+pub use link::LinkLimits;
 pub use ppr::Ppr;
 pub use prp::Prp;
 pub use prr::Prr;
@@ -55,6 +57,11 @@ impl PlanarJoint {
                 PlanarDisplacement::translation(along * displacement.value())
             }
         }
+    }
+
+    /// Whether the joint's axis points against the plane's normal.
+    pub(super) fn is_reversed(&self) -> bool {
+        matches!(self, Self::Revolute { reversed: true, .. })
     }
 
     /// The joint displaced by `g`.
@@ -199,10 +206,10 @@ impl PlanarChain {
         };
         Some(match self {
             Self::Rrr(chain) if free(&[0, 1, 2]) => chain.shape(),
-            Self::Prr(chain) if free(&[1, 2]) => chain.shape(branch, range(0)),
-            Self::Rrp(chain) if free(&[0, 1]) => chain.shape(branch, range(2)),
+            Self::Prr(chain) => chain.shape(branch, range(0), [limits[1], limits[2]]),
+            Self::Rrp(chain) => chain.shape(branch, range(2), [limits[0], limits[1]]),
             Self::Rpr(chain) if free(&[0, 2]) => chain.shape(branch, range(1)),
-            Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_) => return None,
+            Self::Rrr(_) | Self::Rpr(_) => return None,
             Self::Rpp(chain) => within(0, chain.shape([range(1), range(2)])),
             Self::Ppr(chain) => within(2, chain.shape([range(0), range(1)])),
             Self::Prp(chain) => within(1, chain.shape([range(0), range(2)])),

@@ -5,7 +5,7 @@
 //! pivot's place `r p + t` is in a fixed region `R`, so for the translations `t` in `R - r p`. A chain that
 //! begins with a pivot is the reverse of such a chain, and closes for the translations in `p + r R`.
 
-use super::planar::{PlanarJoint, Prp};
+use super::planar::{LinkLimits, PlanarJoint, Prp};
 use super::region::Region;
 use crate::chain::limits::Limits;
 use crate::group::JointDisplacement;
@@ -17,6 +17,8 @@ pub struct Shape {
     motion: ShapeMotion,
     /// The limits of the joint that makes the target's rotation, where one joint does and has limits.
     rotation_limits: Option<RotationLimits>,
+    /// The limits on the direction of the link of a slider with a link.
+    link_limits: Option<LinkLimits>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,12 +42,20 @@ struct RotationLimits {
 impl Shape {
     /// The shape of a chain that ends in a pivot, at `pivot` at home, which can be in `places`.
     pub fn of_places(places: Region, pivot: Complex<f64>) -> Self {
-        Self { motion: ShapeMotion::Carried(places, pivot), rotation_limits: None }
+        Self {
+            motion: ShapeMotion::Carried(places, pivot),
+            rotation_limits: None,
+            link_limits: None,
+        }
     }
 
     /// The shape of a slider, a pivot and a slider, with the sliders' displacements in these ranges.
     pub(super) fn sheared(chain: Prp, ranges: [[f64; 2]; 2]) -> Self {
-        Self { motion: ShapeMotion::Sheared(chain, ranges), rotation_limits: None }
+        Self {
+            motion: ShapeMotion::Sheared(chain, ranges),
+            rotation_limits: None,
+            link_limits: None,
+        }
     }
 
     /// The shape of the reversed chain, whose targets are the inverses: `-r · region(conj r)`.
@@ -63,19 +73,49 @@ impl Shape {
         Self { motion, ..self }
     }
 
+    /// The same shape, but only the part of it that these limits allow.
+    #[must_use]
+    pub(super) fn with_link(self, link_limits: Option<LinkLimits>) -> Self {
+        Self { link_limits, ..self }
+    }
+
     /// The same shape, but empty where the target's rotation is beyond the limits of the pivot that makes it.
     #[must_use]
     pub(super) fn within(self, pivot: &PlanarJoint, limits: &Limits) -> Self {
-        let reversed = matches!(pivot, PlanarJoint::Revolute { reversed: true, .. });
+        let reversed = pivot.is_reversed();
         let rotation_limits =
             (*limits != Limits::Free).then_some(RotationLimits { reversed, limits: *limits });
         Self { rotation_limits, ..self }
     }
 
-    /// The region for targets with this rotation, with each of its points `z` moved to
-    /// `scale · (z + shift)`; `None` where sliders are nearly parallel.
+    /// Calls `found` with the regions whose intersection is the shape, for targets with this rotation, with each of their
+    /// points `z` moved to `scale · (z + shift)`; returns `None` where sliders are nearly parallel.
     #[inline(always)]
-    pub fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
+    pub fn regions(
+        &self,
+        rotation: Complex<f64>,
+        shift: Complex<f64>,
+        scale: f64,
+        found: &mut impl FnMut(Region),
+    ) -> Option<()> {
+        found(self.at(rotation, shift, scale)?);
+        if let Some(limits) = &self.link_limits {
+            match &self.motion {
+                ShapeMotion::Carried(_, pivot) => limits.places(rotation, |places| {
+                    found(places.placed(shift - rotation * pivot, scale));
+                }),
+                ShapeMotion::Turned(_, pivot) => limits.places(rotation.conj(), |places| {
+                    found(places.turned(-rotation).placed(shift + pivot, scale));
+                }),
+                ShapeMotion::Sheared(..) => {}
+            }
+        }
+        Some(())
+    }
+
+    /// The region for targets with this rotation, without limits on links.
+    #[inline(always)]
+    fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
         if let Some(RotationLimits { reversed, limits }) = &self.rotation_limits {
             let angle = if *reversed { rotation.conj() } else { rotation };
             if !limits.admits(JointDisplacement::Direction(angle)) {

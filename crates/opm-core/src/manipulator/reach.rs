@@ -207,13 +207,19 @@ impl Manipulator {
         }
     }
 
-    /// The translations that can be added to the displacement `v` such that a leg closes on a branch, in units
-    /// of `1 / scale`. It agrees with [`Manipulator::reaches`] up to rounding. `None` where `v` is not a
-    /// displacement of a plane, or where the leg's limits make the translations more than a convex set with a
-    /// convex hole.
+    /// Calls `found` with regions of translations that can be added to the displacement `v`: a leg closes on a branch for
+    /// those that are in all of them, in units of `1 / scale`. They agree with [`Manipulator::reaches`] up to rounding.
+    /// Returns `None` where `v` is not a displacement of a plane, or where limits on angles make the translations more
+    /// than convex sets with convex holes have in common.
     #[doc(hidden)]
     #[inline(always)]
-    pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
+    pub fn regions(
+        &self,
+        branch: &LegBranch,
+        v: &Displacement,
+        scale: f64,
+        mut found: impl FnMut(Region),
+    ) -> Option<()> {
         if branch.with_upper.is_some() {
             return None;
         }
@@ -229,8 +235,8 @@ impl Manipulator {
             target = &displaced;
         }
         match target {
-            Displacement::Planar(g) => shape.at(g.rotation, -g.translation, scale),
-            Displacement::Translational(t) => shape.at(Complex::ONE, -t, scale),
+            Displacement::Planar(g) => shape.regions(g.rotation, -g.translation, scale, &mut found),
+            Displacement::Translational(t) => shape.regions(Complex::ONE, -t, scale, &mut found),
             Displacement::Identity(_)
             | Displacement::Spherical(_)
             | Displacement::Cylindrical(_)

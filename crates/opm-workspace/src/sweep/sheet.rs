@@ -5,6 +5,7 @@ use super::clip::ClipPlan;
 use crate::grid::{Axis, Sections, fill};
 use opm_core::Section;
 use opm_core::chain::region::Region;
+use opm_core::group::Displacement;
 use opm_core::manipulator::{LegBranch, Manipulator, Transitions};
 use std::cell::OnceCell;
 
@@ -12,10 +13,9 @@ use std::cell::OnceCell;
 #[derive(Clone, Debug)]
 pub struct SliceBranch {
     pub follow: LegBranch,
-    /// The poses that it reaches, if they are a region of the plane.
-    region: Option<Region>,
-    /// How rows are clipped to the region, if they can be.
-    plan: Option<ClipPlan>,
+    /// Regions whose common part are the poses that it reaches, and how rows are clipped to them; none where rows cannot
+    /// be clipped to it.
+    regions: Vec<(Region, ClipPlan)>,
     /// Where along rows its feasibility changes, if that has a closed form; found when first needed.
     pub transitions: OnceCell<Option<Transitions>>,
     /// No reachable pose has used it yet.
@@ -24,17 +24,40 @@ pub struct SliceBranch {
 
 impl SliceBranch {
     fn new(follow: LegBranch) -> Self {
-        Self { follow, region: None, plan: None, transitions: OnceCell::new(), unused: true }
+        Self { follow, regions: vec![], transitions: OnceCell::new(), unused: true }
     }
 
-    /// The region that rows are clipped to, if they can be.
-    pub fn clipped_to(&self) -> Option<(&Region, &ClipPlan)> {
-        self.region.as_ref().zip(self.plan.as_ref())
+    /// The regions that rows are clipped to, if they can be.
+    pub fn clipped_to(&self) -> impl Iterator<Item = (&Region, &ClipPlan)> + Clone {
+        self.regions.iter().map(|(region, plan)| (region, plan))
     }
 
-    /// Whether rows can be clipped to its region.
+    /// Whether rows can be clipped to its regions.
     pub fn is_clippable(&self) -> bool {
-        self.plan.is_some()
+        !self.regions.is_empty()
+    }
+
+    /// Finds its regions in a sheet whose first pose has the displacement `v`.
+    fn find_regions(
+        &mut self,
+        manipulator: &Manipulator,
+        v: &Displacement,
+        scale: &RowScale,
+        last: f64,
+    ) {
+        self.regions.clear();
+        let per_unit = scale.step.recip();
+        // Steps may be too small to count in.
+        let mut all = per_unit.is_finite();
+        let found = manipulator.regions(&self.follow, v, per_unit, |region| {
+            match ClipPlan::new(&region, last, scale.extent) {
+                Some(plan) => self.regions.push((region, plan)),
+                None => all = false,
+            }
+        });
+        if !(all && found.is_some()) {
+            self.regions.clear();
+        }
     }
 }
 
@@ -43,9 +66,9 @@ impl SliceBranch {
 pub enum SheetKind {
     /// The upper section of some leg does not close: no pose is reachable.
     Unreachable,
-    /// Every leg has one branch, and that is a region: rows are clipped to all regions together.
+    /// Every leg has one branch, and that is regions' common part: rows are clipped to all regions together.
     Regions,
-    /// Some leg has several branches, or one that is no region: branches are decided one by one.
+    /// Some leg has several branches, or one that is none: branches are decided one by one.
     Branches,
     /// Some task coordinates follow from those of the grid: poses are decided one by one.
     Single,
@@ -247,20 +270,16 @@ impl<'a> Sheet<'a> {
         }
         let manipulator = self.raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised);
         let v = task.lower(&first[..axes.len()]);
-        let (scale, last) = (self.scale.step.recip(), (axes[0].count - 1) as f64);
+        let last = (axes[0].count - 1) as f64;
         let fixed_are_known = self.fixed_regions_of == Some(self.number);
         self.fixed_regions_of = Some(self.number);
         self.kind = SheetKind::Regions;
         for branches in &mut self.legs {
             for branch in branches.iter_mut() {
                 if !(fixed_are_known && branch.follow.is_independent_of_slice()) {
-                    branch.region = manipulator.region(&branch.follow, &v, scale);
-                    // Steps may be too small to count in.
-                    let region = branch.region.as_ref().filter(|_| scale.is_finite());
-                    branch.plan =
-                        region.and_then(|region| ClipPlan::new(region, last, self.scale.extent));
+                    branch.find_regions(manipulator, &v, &self.scale, last);
                 }
-                if branch.plan.is_none() {
+                if !branch.is_clippable() {
                     self.kind = SheetKind::Branches;
                 }
             }

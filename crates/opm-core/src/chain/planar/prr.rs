@@ -1,7 +1,8 @@
 //! PRR: a slider that carries a link (Eqs. 13-16 of the paper, with the division by 2 that its
 //! Eq. 16 lacks).
 
-use super::{Branch, ChainError, Pivot, PlanarJoint, ReachDeficit};
+use super::{Branch, ChainError, LinkLimits, Pivot, PlanarJoint, ReachDeficit};
+use crate::chain::limits::Limits;
 use crate::chain::region::{Band, Capsule, Convex, Region};
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
@@ -57,7 +58,23 @@ impl Prr {
     /// The shape in which the chain closes. The places of the outer pivot are the area that half a circle
     /// about the inner pivot sweeps as the slider goes through its range: the area swept from one end on,
     /// less the area swept beyond the other end.
-    pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
+    pub(super) fn shape(
+        &self,
+        branch: Branch,
+        range: [f64; 2],
+        [inner, outer]: [&Limits; 2],
+    ) -> Shape {
+        let [p2, p3] = self.pivots.map(|pivot| pivot.reversed);
+        self.places(branch, range, [(inner, p2), (outer, p3)])
+    }
+
+    /// The shape for limits of the pivots, each with whether it turns clockwise.
+    pub(super) fn places(
+        &self,
+        branch: Branch,
+        [low, high]: [f64; 2],
+        pivots: [(&Limits, bool); 2],
+    ) -> Shape {
         let home = self.pivots[0].at;
         // The slider is ahead of the outer pivot by the root, or behind it: sweep in that direction.
         let (along, start, end) = match branch {
@@ -75,7 +92,10 @@ impl Prr {
             Convex::Capsule(capsule(start))
         };
         let hole = (end < f64::INFINITY).then(|| Convex::Capsule(capsule(end)));
-        Shape::of_places(Region { whole, hole }, self.outer())
+        let ends = [home, self.link];
+        // Where the slider is ahead, the link points back.
+        let link = LinkLimits::new(self.slide, ends, branch == Branch::Minus, pivots);
+        Shape::of_places(Region { whole, hole }, self.outer()).with_link(link)
     }
 }
 

@@ -1,6 +1,7 @@
 //! RRP: a link whose outer pivot carries a slider. In reverse order it is a PRR.
 
 use super::{Branch, ChainError, Pivot, PlanarJoint, Prr, ReachDeficit};
+use crate::chain::limits::Limits;
 use crate::chain::shape::Shape;
 use crate::chain::{Attempt, ClosedForm};
 use crate::group::{JointDisplacement, PlanarDisplacement};
@@ -21,8 +22,15 @@ impl Rrp {
     }
 
     /// The shape in which the chain closes: that of the PRR, reversed.
-    pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
-        self.0.shape(branch, [-high, -low]).backwards()
+    pub(super) fn shape(
+        &self,
+        branch: Branch,
+        [low, high]: [f64; 2],
+        [first, second]: [&Limits; 2],
+    ) -> Shape {
+        let [_, inner, outer] = self.0.joints().map(|joint| joint.is_reversed());
+        // The displacements are the inverses.
+        self.0.places(branch, [-high, -low], [(second, !inner), (first, !outer)]).backwards()
     }
 }
 

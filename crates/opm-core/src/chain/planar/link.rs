@@ -1,0 +1,131 @@
+//! Limits on the direction of a link whose one end slides: bands of the plane.
+//!
+//! In a slider with a link, the branch leaves the link's direction a half circle, on which the direction's component
+//! across the slide grows from one end to the other. So a limit on the direction is a range of that component, or
+//! everything but one, and the places of the link's outer end are a band along the slide, or everything but one.
+
+use crate::chain::limits::{Arc, Limits};
+use crate::chain::region::{Band, Convex, Region};
+use nalgebra::Complex;
+
+/// Nearer to the end of its half circle than this, a direction counts as the end. What that changes of the component
+/// across is less than rounding.
+const AT_END: f64 = 1e-7;
+
+/// A range without ends.
+const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// The limits on the direction of a link, by its joints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkLimits {
+    /// The slide, the position of the slider's pivot at home, and the length of the link.
+    slide: Complex<f64>,
+    pivot: Complex<f64>,
+    length: f64,
+    /// Whether the link points ahead along the slide.
+    ahead: bool,
+    /// The directions from the slide that the slider's pivot allows.
+    inner: Option<Directions>,
+    /// The directions from the slide that the outer pivot allows where the target does not rotate. They rotate with it.
+    outer: Option<Directions>,
+}
+
+/// An arc of directions, counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Directions {
+    from: Complex<f64>,
+    to: Complex<f64>,
+    /// Whether the arc is longer than a semicircle.
+    wide: bool,
+}
+
+/// The components across a half circle's axis, from -1 to 1, of an arc's directions on it: those in a range that are not
+/// inside a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Components {
+    whole: [f64; 2],
+    hole: Option<[f64; 2]>,
+}
+
+impl LinkLimits {
+    /// The limits of a link from a slider's pivot at `pivot` to the outer one, which is `link` away at home. The pivots
+    /// are given by their limits, and whether they turn clockwise. `None` where neither limits the link.
+    pub(super) fn new(
+        slide: Complex<f64>,
+        [pivot, link]: [Complex<f64>; 2],
+        ahead: bool,
+        [inner, outer]: [(&Limits, bool); 2],
+    ) -> Option<Self> {
+        let home = slide.conj() * link / link.norm();
+        // The inner pivot turns the link; the outer one turns the target against it.
+        let inner = inner.0.arc().map(|arc| Directions::new(arc, inner.1).turned(home));
+        let outer = outer.0.arc().map(|arc| Directions::new(arc, !outer.1).turned(home));
+        let limits = Self { slide, pivot, length: link.norm(), ahead, inner, outer };
+        (inner.is_some() || outer.is_some()).then_some(limits)
+    }
+
+    /// Calls `found` with the places of the outer pivot that each pivot allows, at a rotation of the target.
+    pub fn places(&self, rotation: Complex<f64>, mut found: impl FnMut(Region)) {
+        let outer = self.outer.map(|arc| arc.turned(rotation));
+        for arc in [self.inner, outer].into_iter().flatten() {
+            let ahead = if self.ahead { arc } else { arc.mirrored() };
+            let Components { whole, hole } = ahead.components();
+            let across = self.slide * Complex::i();
+            let middle = (across.conj() * self.pivot).re;
+            let band = |range: [f64; 2]| {
+                let band = Band::new(across, range.map(|end| middle + self.length * end));
+                Convex::Bands([band; 2])
+            };
+            found(Region { whole: band(whole), hole: hole.map(band) });
+        }
+    }
+}
+
+impl Directions {
+    /// The rotations that an arc of a joint's angles makes.
+    fn new(arc: &Arc, clockwise: bool) -> Self {
+        let Arc { from, to, wide } = *arc;
+        if clockwise {
+            Self { from: to.conj(), to: from.conj(), wide }
+        } else {
+            Self { from, to, wide }
+        }
+    }
+
+    fn turned(self, rotation: Complex<f64>) -> Self {
+        Self { from: rotation * self.from, to: rotation * self.to, ..self }
+    }
+
+    /// The arc reflected about the imaginary axis.
+    fn mirrored(self) -> Self {
+        let reflect = |e: Complex<f64>| Complex::new(-e.re, e.im);
+        Self { from: reflect(self.to), to: reflect(self.from), ..self }
+    }
+
+    /// The imaginary parts of those directions whose real part is not negative.
+    fn components(self) -> Components {
+        let ahead = |e: Complex<f64>| {
+            let end = e.re.abs() <= AT_END;
+            (end || e.re > 0.0).then(|| if end { e.im.signum() } else { e.im })
+        };
+        let all = |whole| Components { whole, hole: None };
+        let [least, most] = EVERYTHING;
+        match [ahead(self.from), ahead(self.to)] {
+            // Through the half circle, or around it.
+            [Some(from), Some(to)] if self.wide => {
+                Components { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
+            }
+            [Some(from), Some(to)] if from == 1.0 && to == -1.0 => {
+                Components { whole: EVERYTHING, hole: Some([to, from]) }
+            }
+            [Some(from), Some(to)] => all([
+                if from == -1.0 { least } else { from.min(to) },
+                if to == 1.0 { most } else { from.max(to) },
+            ]),
+            [Some(from), None] => all([if from == -1.0 { least } else { from }, most]),
+            [None, Some(to)] => all([least, if to == 1.0 { most } else { to }]),
+            [None, None] if self.wide => all(EVERYTHING),
+            [None, None] => all([most, least]),
+        }
+    }
+}
