@@ -6,7 +6,8 @@
 
 use opm_benches::peers::Peers;
 use opm_benches::{
-    Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_passive_angles,
+    Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_links,
+    with_limits_on_passive_angles,
 };
 use opm_core::chain::region::{Convex, Region};
 use opm_core::manipulator::{ActuatedJoints, LegBranch, Manipulator};
@@ -28,7 +29,7 @@ fn main() {
     });
     let manipulator = example("plano-spherical-5dof");
     let peers = Peers::start("peers/sweep.py");
-    let sizes = [[64, 13], [256, 5]];
+    let sizes = [[64, 64, 13], [256, 256, 5]];
     for size in sizes {
         table(&manipulator, size, &pools, peers.as_ref());
     }
@@ -36,9 +37,17 @@ fn main() {
     if peers.is_none() {
         println!("PEERS_PYTHON names no Python with NumPy and numba to compare with.");
     }
+    let limited = with_limits_on_links(&manipulator);
+    table_of_limits(
+        "the pivots of links that slide",
+        &limited,
+        [65, 129, 15],
+        &pools,
+        peers.as_ref(),
+    );
     let limited = with_limits_on_passive_angles(&manipulator);
     for size in sizes {
-        table_of_limits(&limited, size, &pools);
+        table_of_limits("passive angles", &limited, size, &pools, None);
     }
 }
 
@@ -117,11 +126,12 @@ fn by_opm<'a>(
 /// All ways to count one grid, and how far the rows are from what the machine can do.
 fn table(
     manipulator: &Manipulator,
-    [points, orientations]: [u64; 2],
+    size: [u64; 3],
     [one, two]: &[ThreadPool; 2],
     peers: Option<&Peers>,
 ) {
-    let grid = &sweep_grid(manipulator, [points, orientations]);
+    let grid = &sweep_grid(manipulator, size);
+    let points = size[0];
     let expected = by_rows(manipulator, grid, one);
     let mut contenders = by_opm(manipulator, grid, expected, [one, two]);
     contenders.push(contender("opm, inverse kinematics per pose", grid, expected, || {
@@ -129,8 +139,7 @@ fn table(
     }));
     if let Some(peers) = peers {
         for (name, short) in PEERS {
-            let question = format!("{short} {points} {orientations}");
-            contenders.push(contender(name, grid, expected, move || peers.ask(&question)));
+            contenders.push(asked(name, short, grid, size, expected, peers));
         }
     }
     contenders.push(Contender::new("", square_roots::EACH, square_roots::take));
@@ -159,7 +168,7 @@ fn table(
 fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
     println!("| two threads for one | poses | times as fast |");
     println!("|---|---:|---:|");
-    for size in [[64, 61], [256, 41]] {
+    for size in [[64, 64, 61], [256, 256, 41]] {
         let grid = &sweep_grid(manipulator, size);
         let expected = by_rows(manipulator, grid, one);
         let timings = compare(
@@ -185,12 +194,40 @@ fn table_of_threads(manipulator: &Manipulator, [one, two]: &[ThreadPool; 2]) {
     println!("| nothing but square roots | | {:.2} |", timings[1].ratio.recip());
 }
 
-/// With limits on angles, no leg leaves a region of the plane, and rows are decided in pieces.
-fn table_of_limits(manipulator: &Manipulator, size: [u64; 2], [one, two]: &[ThreadPool; 2]) {
+/// A way to count a grid in Python.
+fn asked<'a>(
+    name: &'static str,
+    short: &str,
+    grid: &Grid,
+    [points, rows, orientations]: [u64; 3],
+    expected: u64,
+    peers: &'a Peers,
+) -> Contender<'a> {
+    let question = format!("{short} {points} {rows} {orientations}");
+    contender(name, grid, expected, move || peers.ask(&question))
+}
+
+/// With limits on angles.
+fn table_of_limits(
+    limited: &str,
+    manipulator: &Manipulator,
+    size: [u64; 3],
+    [one, two]: &[ThreadPool; 2],
+    peers: Option<&Peers>,
+) {
     let grid = &sweep_grid(manipulator, size);
     let expected = by_rows(manipulator, grid, one);
-    let timings = compare(by_opm(manipulator, grid, expected, [one, two]));
-    print_table(&format!("limits on passive angles, {} poses a row", size[0]), &timings);
+    let free = example("plano-spherical-5dof");
+    let free = &free;
+    let without = by_rows(free, grid, one);
+    let mut contenders = by_opm(manipulator, grid, expected, [one, two]);
+    contenders.push(contender("opm, rows without these limits, one thread", grid, without, || {
+        by_rows(free, grid, one)
+    }));
+    if let Some(peers) = peers {
+        contenders.push(asked("numba, factorised", "numba-within", grid, size, expected, peers));
+    }
+    print_table(&format!("limits on {limited}, {} poses a row", size[0]), &compare(contenders));
     println!("{expected} of {} poses are reachable.", grid.poses());
 }
 

@@ -55,7 +55,7 @@ fn perform(work: &str) {
 }
 
 fn sweep(manipulator: &Manipulator) {
-    let grid = sweep_grid(manipulator, [64, 5]);
+    let grid = sweep_grid(manipulator, [64, 64, 5]);
     let sweep = Sweep::new(manipulator, &grid, Modes::One(manipulator.home_mode()));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread pool");
     pool.install(|| counted(&mut || drop(black_box(sweep.count(&Progress::default())))));

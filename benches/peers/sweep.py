@@ -1,5 +1,5 @@
 """Sweeps of the shipped plano-spherical-5dof without opm (NumPy for every pose; NumPy and numba with the orientations factored
-out), and with opm from Python. For each input line `contender points orientations` it prints the number of reachable poses.
+out), and with opm from Python. For each input line `contender points rows orientations` it prints the number of reachable poses.
 `benches/benches/sweep.rs` sends these lines and measures the time.
 
 The formulas are the paper's (Selvi, section 3.1; Eqs. 2-3 and 10-16, with its errata corrected) for one working mode, `++ ++ ++ +`.
@@ -23,10 +23,10 @@ D, B1, B2 = (0.0, 0.075), 0.1, 0.1
 class Grid:
     """The grid of points in the plane, and the grid of orientations."""
 
-    def __init__(self, points, orientations):
+    def __init__(self, points, rows, orientations):
         self.ranges = {
             "x": (-0.15, 0.15, points),
-            "y": (-0.15, 0.15, points),
+            "y": (-0.15, 0.15, rows),
             "zeta": (-0.4, 0.4, orientations),
             "xi": (-0.4, 0.4, orientations),
             "psi": (-0.4, 0.4, orientations),
@@ -113,6 +113,47 @@ def numba_factorised(grid):
     return count_points(grid.x, grid.y, outer, np.stack([np.cos(ALPHAS), np.sin(ALPHAS)]))
 
 
+@numba.njit(fastmath=False, error_model="numpy")
+def count_points_within(x, y, thetas, alphas, links, turned, least):
+    """As `count_points`, with the cosines of the angles between each link and a direction: at home for the slider's pivot,
+    and turned by the imaginary joint for the other one."""
+    count = 0
+    for i in range(thetas.shape[1]):
+        for row in range(len(y)):
+            for column in range(len(x)):
+                px, py = x[column], y[row]
+                square = (px - D[0]) ** 2 + (py - D[1]) ** 2
+                inside = (square >= (B1 - B2) ** 2) & (square <= (B1 + B2) ** 2)
+                for leg in range(3):
+                    c, s = alphas[0, leg], alphas[1, leg]
+                    qx, qy = px + thetas[leg, i, 0] - H * c, py + thetas[leg, i, 1] - H * s
+                    along, across = c * qx + s * qy, c * qy - s * qx
+                    root = math.sqrt(A1 * A1 - along * along)
+                    slider = across + root
+                    inside &= (slider >= -LIMIT) & (slider <= LIMIT)
+                    inside &= along * links[0] + root * links[1] >= least[0]
+                    inside &= along * turned[leg, i, 0] + root * turned[leg, i, 1] >= least[1]
+                count += inside
+    return count
+
+
+def numba_within(grid):
+    """With the two pivots of each link that slides within 0.7 and 0.9 radians of home."""
+    with np.errstate(invalid="ignore"):
+        thetas = np.stack(imaginary(*grid.angles))
+    homes = np.stack(imaginary(*np.zeros((3, 1))))
+    outer = A2 * np.stack([np.cos(thetas), np.sin(thetas)], axis=-1)
+    # The link at home, in directions across and against the slide, so that angles are clockwise; it is the same in every leg.
+    along = A2 * math.cos(homes[0, 0] - ALPHAS[0]) - H
+    home = math.atan2(math.sqrt(A1 * A1 - along * along), along)
+    turns = home - (thetas - homes)
+    turned = np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+    links = np.array([math.cos(home), math.sin(home)])
+    least = A1 * np.cos([0.7, 0.9])
+    alphas = np.stack([np.cos(ALPHAS), np.sin(ALPHAS)])
+    return count_points_within(grid.x, grid.y, outer, alphas, links, turned, least)
+
+
 def by_opm(threads):
     manipulator = opm.examples.load("plano-spherical-5dof")
     return lambda grid: opm.sweep(manipulator, threads=threads, **grid.ranges).count
@@ -123,12 +164,13 @@ def main():
         "numpy-per-pose": numpy_per_pose,
         "numpy-factorised": numpy_factorised,
         "numba-factorised": numba_factorised,
+        "numba-within": numba_within,
         "opm-1": by_opm(1),
         "opm-2": by_opm(2),
     }
     for line in sys.stdin:
-        name, points, orientations = line.split()
-        print(contenders[name](Grid(int(points), int(orientations))), flush=True)
+        name, *sizes = line.split()
+        print(contenders[name](Grid(*map(int, sizes))), flush=True)
 
 
 if __name__ == "__main__":

@@ -99,15 +99,15 @@ pub fn example(name: &str) -> Manipulator {
     Manipulator::example(name).expect("a shipped mechanism with closed forms")
 }
 
-/// A grid with `points` values in each direction of the plane of the 5-DoF manipulator, and
-/// `orientations` values of each Euler angle.
+/// A grid of `rows` rows of `points` places in the plane of the 5-DoF manipulator, and `orientations`
+/// values of each Euler angle.
 ///
 /// # Panics
 /// If the manipulator has other coordinates.
-pub fn sweep_grid(manipulator: &Manipulator, [points, orientations]: [u64; 2]) -> Grid {
+pub fn sweep_grid(manipulator: &Manipulator, [points, rows, orientations]: [u64; 3]) -> Grid {
     let axes = vec![
         Axis::new("x", -0.15, 0.15, points),
-        Axis::new("y", -0.15, 0.15, points),
+        Axis::new("y", -0.15, 0.15, rows),
         Axis::new("zeta", -0.4, 0.4, orientations),
         Axis::new("xi", -0.4, 0.4, orientations),
         Axis::new("psi", -0.4, 0.4, orientations),
@@ -128,6 +128,21 @@ pub fn reached(manipulator: &Manipulator, count: usize) -> Vec<[f64; 5]> {
         .filter(|pose| manipulator.inverse(pose, mode, &mut solution).expect("a pose").is_some())
         .take(count)
         .collect()
+}
+
+/// The 5-DoF manipulator with the two pivots of each link that slides within 0.7 and 0.9 radians of home.
+///
+/// # Panics
+/// If there are no such pivots.
+pub fn with_limits_on_links(manipulator: &Manipulator) -> Manipulator {
+    let mut mechanism = manipulator.mechanism().clone();
+    for leg in &mut mechanism.legs[..3] {
+        for (joint, most) in leg.joints[1..3].iter_mut().zip([0.7, 0.9]) {
+            let angle = &mut joint.coordinates[0];
+            angle.limits = Some([angle.home - most, angle.home + most]);
+        }
+    }
+    Manipulator::new(mechanism).expect("limits change nothing else")
 }
 
 /// The same mechanism with limits of a radian to either side on every passive revolute joint.

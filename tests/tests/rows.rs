@@ -298,6 +298,74 @@ fn legs_independent_of_the_slice_are_joined() {
     assert!(reachable > 0);
 }
 
+/// Limits of a link that slides, in steps of an eighth of a turn: where the link is along or across its slide, and with
+/// poses exactly there.
+#[test]
+fn limits_across_and_along_a_slide_are_no_exception() {
+    let eighth = f64::to_radians(45.0);
+    let mut partly = 0;
+    for first_is_slider in [true, false] {
+        for reversed in [false, true] {
+            for (low, high) in (-8..8).flat_map(|low| (low..=low + 8).map(move |high| (low, high)))
+            {
+                for limited in 0..2 {
+                    let axis = if reversed { -1 } else { 1 };
+                    let limits = format!(
+                        "limits = [{}, {}], home = {}",
+                        f64::from(low) * 45.0,
+                        f64::from(high) * 45.0,
+                        f64::from(low + high) * 22.5
+                    );
+                    let limits = [&*limits, "home = 0"];
+                    let revolute = |name: &str, x: f64, limits: &str| {
+                        format!(
+                            "{{ name = \"{name}\", type = \"revolute\", axis = [0, 0, {axis}], \
+                             point = [{x}, 0, 0], {limits} }}"
+                        )
+                    };
+                    let slider =
+                        "{ name = \"s\", type = \"prismatic\", axis = [1, 0, 0], actuated = true }"
+                            .to_owned();
+                    // The link is along the slide at home.
+                    let mut joints = vec![
+                        revolute("a", 0.0, limits[limited]),
+                        revolute("b", 0.5, limits[1 - limited]),
+                    ];
+                    joints.insert(if first_is_slider { 0 } else { 2 }, slider);
+                    let manipulator = Manipulator::read(&format!(
+                        "format = 1\nname = \"slide\"\nunits = {{ length = \"m\", angle = \"deg\" }}\n\
+                         [platform]\npoint = [0.5, 0, 0]\n[[leg]]\nname = \"one\"\njoints = [\n{}\n]\n\
+                         [[leg]]\nname = \"two\"\njoints = [\n\
+                         {{ name = \"X2\", type = \"prismatic\", axis = [1, 0, 0], actuated = true }},\n\
+                         {{ name = \"Y2\", type = \"prismatic\", axis = [0, 1, 0], actuated = true }},\n\
+                         {{ name = \"R2\", type = \"revolute\", axis = [0, 0, 1], point = [0, 0, 0], \
+                         actuated = true }},\n]\n",
+                        joints.join(",\n")
+                    ))
+                    .unwrap();
+                    let axes = vec![
+                        Axis::new("x", -0.25, 1.25, 13),
+                        Axis::new("y", -0.5, 0.5, 9),
+                        Axis::new("theta", -4.0 * eighth, 4.0 * eighth, 9),
+                    ];
+                    let grid = Grid::new(&manipulator, axes).unwrap();
+                    for mode in manipulator.modes().map(Modes::One).chain([Modes::Any]) {
+                        let count = Sweep::new(&manipulator, &grid, mode)
+                            .count(&Progress::default())
+                            .unwrap()
+                            .reachable;
+                        let expected = by_predicate(&manipulator, &grid, mode);
+                        assert_eq!(count, expected, "{low} {high} {limited} {reversed} {mode:?}");
+                        partly += u32::from(0 < count && count < grid.poses());
+                    }
+                }
+            }
+        }
+    }
+    println!("{partly} grids in part");
+    assert!(partly > 500);
+}
+
 /// Grids so fine that rounding decides about poses at the boundary: rows in doubt are decided by
 /// the chains.
 #[test]

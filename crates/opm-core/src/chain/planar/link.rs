@@ -8,10 +8,6 @@ use crate::chain::limits::{Arc, Limits};
 use crate::chain::region::{Band, Convex, Region};
 use nalgebra::Complex;
 
-/// Nearer to the end of its half circle than this, a direction counts as the end. What that changes of the component
-/// across is less than rounding.
-const AT_END: f64 = 1e-7;
-
 /// A range without ends.
 const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -104,26 +100,18 @@ impl Directions {
 
     /// The imaginary parts of those directions whose real part is not negative.
     fn components(self) -> Components {
-        let ahead = |e: Complex<f64>| {
-            let end = e.re.abs() <= AT_END;
-            (end || e.re > 0.0).then(|| if end { e.im.signum() } else { e.im })
-        };
+        let ahead = |e: Complex<f64>| (e.re >= 0.0).then_some(e.im);
         let all = |whole| Components { whole, hole: None };
         let [least, most] = EVERYTHING;
         match [ahead(self.from), ahead(self.to)] {
-            // Through the half circle, or around it.
+            // Around the half circle, or within it.
             [Some(from), Some(to)] if self.wide => {
                 Components { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
             }
-            [Some(from), Some(to)] if from == 1.0 && to == -1.0 => {
-                Components { whole: EVERYTHING, hole: Some([to, from]) }
-            }
-            [Some(from), Some(to)] => all([
-                if from == -1.0 { least } else { from.min(to) },
-                if to == 1.0 { most } else { from.max(to) },
-            ]),
-            [Some(from), None] => all([if from == -1.0 { least } else { from }, most]),
-            [None, Some(to)] => all([least, if to == 1.0 { most } else { to }]),
+            // An arc of no more than its slack may be rounded to the other order.
+            [Some(from), Some(to)] => all([from.min(to), from.max(to)]),
+            [Some(from), None] => all([from, most]),
+            [None, Some(to)] => all([least, to]),
             [None, None] if self.wide => all(EVERYTHING),
             [None, None] => all([most, least]),
         }
