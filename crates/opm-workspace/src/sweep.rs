@@ -11,6 +11,7 @@ mod row;
 pub(crate) mod runs;
 mod shard;
 mod sheet;
+mod together;
 mod transitions;
 mod worker;
 
@@ -339,6 +340,10 @@ impl<'a> Sweep<'a> {
         let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
+        if self.takes_slices_together() {
+            worker.together(next..end, count, &mut hit);
+            return;
+        }
         while next < end {
             let (row, part) = (next / self.segments, next % self.segments);
             let (sheet, start) = (row / self.side, row % self.side);

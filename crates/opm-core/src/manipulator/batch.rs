@@ -6,16 +6,19 @@
 //! straight-line arithmetic (a pose on a sphere's boundary of reach, an angle of a million radians) are
 //! rare: they are marked and left to [`Manipulator::inverse`].
 
+mod decide;
 mod lanes;
 mod section;
 
-use super::leg::CompiledLeg;
+use super::all_modes::AllModes;
+use super::leg::{CompiledLeg, LegBranches};
 use super::pose::{LARGEST, PoseError};
 use super::solution::Solution;
 use super::{Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
+use decide::Decided;
 use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
 use section::{Found, Side, Step};
@@ -93,6 +96,7 @@ pub struct Batch {
     arch: Arch,
     block: Box<Block>,
     solution: Solution,
+    all: AllModes,
 }
 
 /// The poses and results of a block, by columns.
@@ -110,6 +114,7 @@ struct Block {
     joints: Vec<Column>,
     imaginary: Vec<Column>,
     status: Status,
+    decided: Decided,
 }
 
 /// What is known of the reachability of each pose of a block.
@@ -140,8 +145,10 @@ impl Manipulator {
                 joints: columns(self.coordinates.len()),
                 imaginary: columns(self.imaginary.len()),
                 status: Status { beyond: none, open: none, within_limits: none },
+                decided: Decided::new(),
             }),
             solution: self.solution(),
+            all: self.all_modes(),
         }
     }
 
@@ -274,7 +281,7 @@ impl WithSimd for Solve<'_> {
         let Self { manipulator, mode, block } = self;
         block.displace(manipulator);
         for (number, leg) in manipulator.legs.iter().enumerate() {
-            block.solve_leg(manipulator, mode, number);
+            block.solve_leg(manipulator, manipulator.modes.branches(mode, number), number);
             block.report(manipulator, leg);
         }
         block.lift(manipulator);
@@ -351,9 +358,8 @@ impl Block {
 
     /// Solves both chains of a leg.
     #[inline(always)]
-    fn solve_leg(&mut self, manipulator: &Manipulator, mode: Mode, number: usize) {
+    fn solve_leg(&mut self, manipulator: &Manipulator, branches: LegBranches, number: usize) {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
-        let branches = manipulator.modes.branches(mode, number);
         for section in leg.order() {
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
             let is_first = section == leg.split_section;

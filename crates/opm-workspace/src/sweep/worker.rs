@@ -5,6 +5,7 @@ use super::known_range::KnownRanges;
 use super::row::Row;
 use super::runs::{self, Run};
 use super::sheet::{Sheet, SheetKind, SliceBranch};
+use super::together::Together;
 use super::{Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::{Axis, Sections};
@@ -24,6 +25,7 @@ pub struct Worker<'a> {
     hits: HitPoses,
     limit: Option<LimitedRow<'a>>,
     one: OnePose,
+    together: Option<Together>,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
 }
@@ -135,8 +137,15 @@ impl<'a> Worker<'a> {
                 all: manipulator.all_modes(),
                 solution: manipulator.solution(),
             },
+            together: None,
             known: KnownRanges::new(manipulator.legs()),
         }
+    }
+
+    /// Decides all poses of some rows, where slices have few of them.
+    pub fn together(&mut self, rows: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
+        let sweep = self.sweep;
+        self.together.get_or_insert_with(|| Together::new(sweep)).decide(sweep, rows, found, hit);
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.

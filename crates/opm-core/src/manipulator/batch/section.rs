@@ -254,6 +254,28 @@ pub fn report(
     }
 }
 
+/// Clears `within` where displacements are not within the limits.
+#[inline(always)]
+pub fn admit(limits: &Limits, displacements: &DisplacementColumns, within: &mut Mask) {
+    macro_rules! each {
+        ($limits:expr, $read:ident) => {{
+            let limits = $limits;
+            for lane in 0..LANES {
+                within[lane] &= u64::from(limits.admits(displacements.$read(lane)));
+            }
+        }};
+    }
+    match (*limits, displacements.are_directions) {
+        (Limits::Free, _) | (Limits::Range { arc: None, .. }, true) => {}
+        (Limits::Range { low, high, arc: Some(arc) }, true) => {
+            each!(Limits::Range { low, high, arc: Some(arc) }, direction);
+        }
+        (Limits::Range { low, high, .. }, false) => {
+            each!(Limits::Range { low, high, arc: None }, value);
+        }
+    }
+}
+
 /// Computes an imaginary joint's values for displacements along the intersection motion.
 #[inline(always)]
 pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut Column) {

@@ -1,0 +1,196 @@
+//! Which of many poses are in reach within all limits, in one working mode or in any: the steps of
+//! [`Manipulator::inverse_many`] without the joints' values.
+
+use super::lanes::{Column, LANES, Mask};
+use super::{Batch, Block, Status, section};
+use crate::manipulator::{CompiledLeg, Manipulator, Mode};
+use crate::mechanism::leg::Section;
+use pulp::{Simd, WithSimd};
+
+/// What is known of the poses of a block.
+#[derive(Clone, Debug)]
+pub(super) struct Decided {
+    /// Whether a pose is certainly out of reach, or beyond limits, in every mode asked for.
+    missed: Mask,
+    /// Whether a pose has to be decided by itself.
+    open: Mask,
+    /// The imaginary joints of the branches of every leg.
+    imaginary: Vec<OfBranch>,
+}
+
+/// The imaginary joint of one branch of a leg.
+#[derive(Clone, Debug)]
+struct OfBranch {
+    /// The number of the imaginary joint.
+    number: usize,
+    /// Whether the branch reaches a pose within the leg's limits.
+    reaches: Mask,
+    values: Column,
+}
+
+impl Decided {
+    pub fn new() -> Self {
+        Self { missed: [0; LANES], open: [0; LANES], imaginary: Vec::new() }
+    }
+}
+
+impl Manipulator {
+    /// Whether [`Manipulator::decide_many`] can be used: chains are the same at all poses, and no coordinate depends on
+    /// others.
+    #[doc(hidden)]
+    pub fn decides_many(&self) -> bool {
+        self.dependent.is_none() && self.lifts_straight()
+    }
+
+    /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
+    /// `reached` gets one answer for each. `used` is called with the number of an imaginary joint and the least and the
+    /// largest of its values in solutions of reached poses.
+    ///
+    /// # Panics
+    /// If there are more than [`Manipulator::DECIDED`] poses, if they are not finite, or there is no answer for each.
+    #[doc(hidden)]
+    pub fn decide_many(
+        &self,
+        poses: &[f64],
+        mode: Option<Mode>,
+        batch: &mut Batch,
+        reached: &mut [bool],
+        mut used: impl FnMut(usize, [f64; 2]),
+    ) {
+        let width = self.task_coordinates().len();
+        let Batch { arch, block, solution, all, .. } = batch;
+        block.take(poses, width);
+        arch.dispatch(Decide { manipulator: self, mode, block });
+        let Decided { missed, open, imaginary } = &block.decided;
+        for (lane, reached) in reached.iter_mut().enumerate() {
+            *reached = missed[lane] | open[lane] == 0;
+        }
+        let rows = reached.len();
+        for OfBranch { number, reaches, values } in imaginary {
+            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            for lane in 0..rows {
+                let counts = reaches[lane] != 0 && missed[lane] | open[lane] == 0;
+                let value = values[lane];
+                range[0] = if counts { range[0].min(value) } else { range[0] };
+                range[1] = if counts { range[1].max(value) } else { range[1] };
+            }
+            if range[0] <= range[1] {
+                used(*number, range);
+            }
+        }
+        for lane in (0..rows).filter(|&lane| open[lane] & !missed[lane] & 1 == 1) {
+            let pose = &poses[lane * width..][..width];
+            let mut each = |number: usize, value: f64| used(number, [value; 2]);
+            reached[lane] = match mode {
+                Some(mode) => match self.inverse(pose, mode, solution).expect("a finite pose") {
+                    Some(solution) if solution.within_limits() => {
+                        let values = solution.imaginary().iter().enumerate();
+                        values.for_each(|(number, &value)| each(number, value));
+                        true
+                    }
+                    _ => false,
+                },
+                None => {
+                    let found = self.inverse_all(pose, all).expect("a finite pose");
+                    found.is_some_and(|all| self.within_limits_in_any(all, each))
+                }
+            };
+        }
+    }
+
+    /// The most poses that [`Manipulator::decide_many`] takes.
+    #[doc(hidden)]
+    pub const DECIDED: usize = LANES;
+}
+
+/// Decides a block with the instructions of the processor at hand.
+struct Decide<'a> {
+    manipulator: &'a Manipulator,
+    mode: Option<Mode>,
+    block: &'a mut Block,
+}
+
+impl WithSimd for Decide<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, mode, block } = self;
+        block.displace(manipulator);
+        block.lift(manipulator);
+        let Status { open, within_limits, .. } = &block.status;
+        block.decided.open = *open;
+        for lane in 0..LANES {
+            block.decided.missed[lane] = within_limits[lane] ^ 1;
+        }
+        let mut number = 0;
+        for (leg, compiled) in manipulator.legs.iter().enumerate() {
+            let mut reached = [0; LANES];
+            let mut open = [0; LANES];
+            let one = mode.map(|mode| manipulator.modes.branches(mode, leg));
+            let each = manipulator.modes.leg_modes(leg).take(if one.is_some() { 0 } else { 4 });
+            let each = each.map(|mode| manipulator.modes.branches(mode, leg));
+            for branches in one.into_iter().chain(each) {
+                block.status =
+                    Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+                block.solve_leg(manipulator, branches, leg);
+                block.admit(manipulator, compiled);
+                let Status { beyond, open: of_branch, within_limits } = &block.status;
+                let mut reaches = [0; LANES];
+                for lane in 0..LANES {
+                    let closes = beyond[lane] ^ 1;
+                    reaches[lane] = closes & (of_branch[lane] ^ 1) & within_limits[lane];
+                    reached[lane] |= reaches[lane];
+                    open[lane] |= closes & of_branch[lane];
+                }
+                if let Some(imaginary) = compiled.imaginary {
+                    block.note_imaginary(manipulator, number, imaginary, reaches);
+                    number += 1;
+                }
+            }
+            for lane in 0..LANES {
+                block.decided.missed[lane] |= (reached[lane] | open[lane]) ^ 1;
+                block.decided.open[lane] |= open[lane];
+            }
+        }
+        block.decided.imaginary.truncate(number);
+    }
+}
+
+impl Block {
+    /// Notes whether a leg's joints are within their limits.
+    #[inline(always)]
+    fn admit(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
+        for section in [Section::Lower, Section::Upper] {
+            let found = match section {
+                Section::Lower => &self.lower,
+                Section::Upper => &self.upper,
+            };
+            let coordinates = &leg.section(section).coordinates;
+            for (coordinate, displacements) in coordinates.iter().zip(&found.displacements) {
+                if let Some(coordinate) = coordinate {
+                    let limits = &manipulator.limits[coordinate.number];
+                    section::admit(limits, displacements, &mut self.status.within_limits);
+                }
+            }
+        }
+    }
+
+    /// Notes the values of an imaginary joint as number `number` of those that are noted.
+    #[inline(always)]
+    fn note_imaginary(
+        &mut self,
+        manipulator: &Manipulator,
+        number: usize,
+        imaginary: usize,
+        reaches: Mask,
+    ) {
+        let noted = &mut self.decided.imaginary;
+        if number == noted.len() {
+            noted.push(OfBranch { number: 0, reaches: [0; LANES], values: [0.0; LANES] });
+        }
+        let of_branch = &mut noted[number];
+        (of_branch.number, of_branch.reaches) = (imaginary, reaches);
+        section::imaginary(&manipulator.imaginary[imaginary], &self.tau, &mut of_branch.values);
+    }
+}

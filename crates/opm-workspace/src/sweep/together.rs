@@ -1,0 +1,135 @@
+//! Slices of few poses: poses of many slices are decided together.
+
+use super::runs::{self, Run};
+use super::worker::Visitor;
+use super::{Count, Hits, Sweep};
+use crate::grid::Sections;
+use opm_core::manipulator::{Batch, Manipulator};
+use std::ops::Range;
+
+/// The most poses of a slice that are decided together with those of other slices. With more of them, it is faster to make a
+/// slice ready, and to find the ends of what its rows reach.
+const FEW: u64 = 8;
+
+/// A thread's working memory for poses of several slices.
+pub struct Together {
+    batch: Batch,
+    /// The numbers of the present pose's coordinates, and their values.
+    digits: Vec<u64>,
+    pose: Vec<f64>,
+    /// Poses that are decided together, one after the other.
+    poses: Vec<f64>,
+    reached: [bool; Manipulator::DECIDED],
+    runs: Vec<Run>,
+    first: Vec<f64>,
+}
+
+impl Sweep<'_> {
+    /// Whether poses of several slices are decided together.
+    pub(super) fn takes_slices_together(&self) -> bool {
+        self.grid.sections() == Sections::Whole
+            && self.limit.is_none()
+            && self.manipulator.decides_many()
+            && self.side * self.sheets <= FEW / self.grid.row().max(1)
+    }
+}
+
+impl Together {
+    pub fn new(sweep: &Sweep<'_>) -> Self {
+        let axes = sweep.grid.axes().len();
+        Self {
+            batch: sweep.manipulator.batch(),
+            digits: vec![0; axes],
+            pose: vec![0.0; axes],
+            poses: Vec::new(),
+            reached: [false; Manipulator::DECIDED],
+            runs: Vec::new(),
+            first: Vec::new(),
+        }
+    }
+
+    /// Decides all poses of some rows.
+    pub fn decide(
+        &mut self,
+        sweep: &Sweep<'_>,
+        rows: Range<u64>,
+        found: &mut Count,
+        hit: &mut Visitor<'_>,
+    ) {
+        let row = sweep.grid.row();
+        let at_once = Manipulator::DECIDED as u64 / row;
+        self.go_to(sweep, rows.start * row);
+        let mut next = rows.start;
+        while next < rows.end {
+            let some = next..rows.end.min(next + at_once);
+            next = some.end;
+            let count = (some.end - some.start) * row;
+            self.poses.clear();
+            for _ in 0..count {
+                self.poses.extend_from_slice(&self.pose);
+                self.advance(sweep);
+            }
+            let reached = &mut self.reached[..count as usize];
+            let mode = sweep.modes.one();
+            let (manipulator, batch) = (sweep.manipulator, &mut self.batch);
+            manipulator.decide_many(&self.poses, mode, batch, reached, |imaginary, range| {
+                range.into_iter().for_each(|end| found.widen(imaginary, end));
+            });
+            found.poses += count;
+            found.reachable += reached.iter().filter(|&&reached| reached).count() as u64;
+            if let Some(hit) = hit {
+                self.hand_over(sweep, some, hit);
+            }
+        }
+    }
+
+    /// Hands over the reached poses of some rows.
+    fn hand_over(&mut self, sweep: &Sweep<'_>, rows: Range<u64>, hit: &mut dyn FnMut(&Hits<'_>)) {
+        let (width, count) = (self.pose.len(), sweep.grid.row() as usize);
+        let of_rows = self.reached.chunks(count).zip(self.poses.chunks(count * width));
+        for (row, (reached, poses)) in rows.zip(of_rows) {
+            self.runs.clear();
+            self.first.clear();
+            for (number, pose) in poses.chunks(width).enumerate().filter(|(i, _)| reached[*i]) {
+                runs::push(&mut self.runs, number as u64);
+                self.first.push(pose[0]);
+            }
+            if !self.runs.is_empty() {
+                let slice = row / (sweep.side * sweep.sheets);
+                let (runs, first, others) = (&self.runs, &self.first, &poses[1..width]);
+                hit(&Hits { slice, row, runs, first, others });
+            }
+        }
+    }
+
+    /// Goes to a pose of the grid.
+    fn go_to(&mut self, sweep: &Sweep<'_>, mut number: u64) {
+        for ((axis, digit), value) in
+            sweep.grid.axes().iter().zip(&mut self.digits).zip(&mut self.pose)
+        {
+            *digit = number % axis.count;
+            *value = axis.value(*digit);
+            number /= axis.count;
+        }
+    }
+
+    /// Goes to the next pose of the grid, and after the last one to the first.
+    fn advance(&mut self, sweep: &Sweep<'_>) {
+        for ((axis, digit), value) in
+            sweep.grid.axes().iter().zip(&mut self.digits).zip(&mut self.pose)
+        {
+            if axis.count == 1 {
+                continue;
+            }
+            *digit += 1;
+            let carries = *digit == axis.count;
+            if carries {
+                *digit = 0;
+            }
+            *value = axis.value(*digit);
+            if !carries {
+                break;
+            }
+        }
+    }
+}
