@@ -182,14 +182,10 @@ impl Task {
                 Section::Lower => coordinates.insert(place, coordinate),
                 Section::Upper => of_upper.insert(place, coordinate),
             }
-            Height { section, coordinate: first + place, up: frame.axes.column(2).into_owned() }
+            let up = frame.axes.column(2).into_owned();
+            let slope = height::slope(section, &up, intersection.as_ref());
+            Height { section, coordinate: first + place, up, slope }
         });
-        if let (Some(height), Some(IntersectionAxis { direction, point: None })) =
-            (&height, &intersection)
-            && height.up.dot(direction).abs() > TOLERANCE
-        {
-            return Err(TaskError::Inclined { section: height.section });
-        }
         let lower_count = coordinates.len();
         coordinates.extend(of_upper);
         // Files keep the names of all coordinates from joints but this one, which few mechanisms have.

@@ -275,6 +275,9 @@ fn check_kind(
             let joints = manipulator.leaning_joints().map(str::to_owned).collect();
             return Err(RequestError::Leaning { kind, joints });
         }
+        WorkspaceKind::Upper | WorkspaceKind::Lower if manipulator.shares_height() => {
+            return Err(RequestError::Inclined { kind });
+        }
         _ => {}
     }
     if let Some(part) = kind.missing_part(manipulator) {

@@ -43,8 +43,8 @@ pub enum GridError {
     NoUpperSection,
     /// The grid is of one section alone, but one section depends on the other, or its chains on the height.
     #[error(
-        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, or screws or \
-         inclined sliders carry its height"
+        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, screws or \
+         inclined sliders carry its height, or the sections share an inclined translation"
     )]
     NotAlone,
     /// No coordinate has the name of the axis.
@@ -269,6 +269,7 @@ impl Grid {
             return Err(GridError::NoUpperSection);
         }
         let alone = manipulator.dependent_coordinates().is_empty() && manipulator.lifts_straight();
+        let alone = alone && !manipulator.shares_height();
         if sections != Sections::Whole && !alone {
             return Err(GridError::NotAlone);
         }

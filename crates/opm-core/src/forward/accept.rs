@@ -72,14 +72,13 @@ impl Search<'_> {
     /// the same actuated joints.
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
-        let all = m.task().pose(v, b, self.rise);
-        let independent = m.dependent.as_ref().map(|d| d.independent_of(m, &all));
-        let pose = independent.as_deref().unwrap_or(&all);
-        if m.check_pose(pose).is_err() {
+        let mut all = m.task().pose(v, b, self.rise);
+        let mut pose = m.independent_of(&all);
+        if m.check_pose(&pose).is_err() {
             return;
         }
         let (v, b) = m.task().sections(&all);
-        let target = m.task().raised(self.rise, m.task().isometry(&v, &b));
+        let mut target = m.task().displacement(&all);
         let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
             let (matching, error) = self.matching_solutions(leg, [&v, &b]);
@@ -100,15 +99,43 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
-            if m.task().height.is_some() {
+            if let Some(height) = &m.task().height {
+                if height.slope != 0.0 {
+                    let taus: Vec<_> = self.solution.legs.iter().map(|leg| leg.tau).collect();
+                    let Some(rise) = self.rise_with(&taus) else { continue };
+                    all[height.coordinate] = m.task().coordinates[height.coordinate].home + rise;
+                    pose = m.independent_of(&all);
+                    target = m.task().displacement(&all);
+                }
                 self.solution.solved.pose.copy_from_slice(&all);
                 m.write_lifts(&mut self.solution);
             }
             match &m.dependent {
-                None => self.accept(pose, mode, &target),
-                Some(dependent) => self.accept_completed(dependent, pose, mode, &target),
+                None => self.accept(&pose, mode, &target),
+                Some(dependent) => self.accept_completed(dependent, &pose, mode, &target),
             }
         }
+    }
+
+    /// The height above home that the actuated lifts give, with these displacements of the legs along the intersection
+    /// motion, where each leg has a height of its own. `None`, and a candidate that is rejected, where they contradict
+    /// each other.
+    fn rise_with(&mut self, taus: &[JointDisplacement]) -> Option<f64> {
+        let m = self.manipulator;
+        let driven = m.lifts_of_legs().filter_map(|(number, lift)| {
+            let own = lift.rise(self.displacements[lift.coordinate.actuated?]);
+            // The leg's own height is that of the section and the part of τ.
+            Some(own - m.task().rise_of_leg(0.0, taus[number]))
+        });
+        let rises: Vec<f64> = driven.collect();
+        let rise = *rises.first()?;
+        let apart = rises.iter().map(|other| (other - rise).abs() / m.closure.size);
+        let apart = apart.fold(0.0, f64::max);
+        if apart > MATCH {
+            self.reject(apart);
+            return None;
+        }
+        Some(rise)
     }
 
     /// Accepts an assembly with the choices of dependent coordinates that give the displacement `target`, if there

@@ -11,7 +11,7 @@ use super::section::{ChainCoordinate, CompiledSection};
 use super::solution::{ActuatedJoints, Solution, SolvedPose, Unreachable};
 use super::{Manipulator, Mode};
 use crate::chain::Chain;
-use crate::group::JointDisplacement;
+use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -112,7 +112,11 @@ impl Manipulator {
                 buffer.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
-        for lift in self.lifts() {
+        for (number, lift) in self.lifts_of_legs() {
+            let rise = match lift.slope == 0.0 {
+                true => rise,
+                false => self.rise_in(mode, number, [&v, &b], rise),
+            };
             let (value, within) = self.lifted(lift, rise);
             buffer.within_limits &= within;
             if let Some(actuated) = lift.coordinate.actuated {
@@ -120,6 +124,15 @@ impl Manipulator {
             }
         }
         Ok(Some(buffer))
+    }
+
+    /// The height above home of the section of a leg that reaches a pose, in a mode, with the Schoenflies section at
+    /// `rise`.
+    #[cold]
+    fn rise_in(&self, mode: Mode, number: usize, pose: [&Displacement; 2], rise: f64) -> f64 {
+        let branches = self.modes.branches(mode, number);
+        let found = self.legs[number].solve_actuated(&self.task, pose, rise, branches);
+        found.map_or(rise, |(_, tau)| self.task.rise_of_leg(rise, tau))
     }
 
     /// Stores a pose and its displacements, or returns an error if the pose is not valid. Returns `false` where
@@ -178,11 +191,15 @@ impl Manipulator {
         self.write_lifts(out);
     }
 
-    /// Writes the values of the lifts at the pose that `out` holds.
+    /// Writes the values of the lifts at the pose and the legs' solutions that `out` holds.
     #[inline]
     pub(crate) fn write_lifts(&self, out: &mut Solution) {
-        for lift in self.lifts() {
-            let (value, within) = self.lifted(lift, self.task.rise(&out.solved.pose));
+        for (number, lift) in self.lifts_of_legs() {
+            // The height of a leg that is out of reach is not known where it has one of its own.
+            if lift.slope != 0.0 && out.unreachable.iter().any(|missed| missed.leg == number) {
+                continue;
+            }
+            let (value, within) = self.lifted(lift, self.leg_rise(out, number));
             out.joints[lift.coordinate.number] = value;
             out.within_limits &= within;
         }

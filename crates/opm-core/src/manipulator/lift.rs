@@ -17,7 +17,7 @@
 use super::leg::{CompileContext, CompiledLeg};
 use super::refused::RefusedLeg;
 use super::section::{ChainCoordinate, coordinate_number};
-use super::{Manipulator, Section};
+use super::{LegSolution, Manipulator, Section, Solution};
 use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;
 use crate::chain::screws::screw;
@@ -36,6 +36,9 @@ pub(crate) struct Lift {
     pub coordinate: ChainCoordinate,
     /// Its displacement for a unit of height: 1, or -1 where it moves down, for a slider along the direction.
     pub rate: f64,
+    /// What a unit of the leg's displacement along the intersection motion adds to the height: see
+    /// [`Height::slope`](crate::task::Height).
+    pub slope: f64,
 }
 
 /// The motion of a lift in the plane.
@@ -123,7 +126,8 @@ pub(super) fn separate(
     let number = first + coordinate_number(leg, lift);
     let coordinate = ChainCoordinate { number, actuated: context.actuated[number] };
     let joint = lift.joint;
-    Ok(Some(Separated { lift: Lift { coordinate, rate: advance.recip() }, lean, joint, rest }))
+    let lift = Lift { coordinate, rate: advance.recip(), slope: height.slope };
+    Ok(Some(Separated { lift, lean, joint, rest }))
 }
 
 /// The screw in the plane's frame of what a lift does in the plane; `None` for a slider along the direction.
@@ -197,8 +201,14 @@ impl Manipulator {
     /// The lifts, leg by leg; none without a height.
     #[inline]
     pub(crate) fn lifts(&self) -> impl Iterator<Item = &Lift> {
-        let any = self.task().height.is_some();
-        self.legs.iter().take(if any { usize::MAX } else { 0 }).filter_map(|leg| leg.lift.as_ref())
+        self.lifts_of_legs().map(|(_, lift)| lift)
+    }
+
+    /// The lifts with the numbers of their legs; none without a height.
+    #[inline]
+    pub(crate) fn lifts_of_legs(&self) -> impl Iterator<Item = (usize, &Lift)> {
+        let legs = if self.task().height.is_some() { &*self.legs } else { &[] };
+        legs.iter().enumerate().filter_map(|(number, leg)| Some((number, leg.lift.as_ref()?)))
     }
 
     /// The names of the joints that carry the height of a Schoenflies section and also move their legs in the plane:
@@ -211,12 +221,14 @@ impl Manipulator {
         })
     }
 
-    /// The legs at a height above home, metres. One without a closed form there is as it is at home, and does not close.
-    pub(crate) fn legs_at(&self, rise: f64) -> Cow<'_, [CompiledLeg]> {
+    /// The legs at heights above home that `rise` gives, metres. One without a closed form there is as it is at home, and
+    /// does not close.
+    pub(crate) fn legs_at(&self, rise: impl Fn(&CompiledLeg) -> f64) -> Cow<'_, [CompiledLeg]> {
         if self.lifts_straight() {
             return Cow::Borrowed(&self.legs);
         }
-        let at = |leg: &CompiledLeg| leg.at(rise).map_or_else(|_| leg.clone(), Cow::into_owned);
+        let at =
+            |leg: &CompiledLeg| leg.at(rise(leg)).map_or_else(|_| leg.clone(), Cow::into_owned);
         self.legs.iter().map(at).collect()
     }
 
@@ -224,6 +236,28 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn lifts_straight(&self) -> bool {
         self.leaning_joints().next().is_none()
+    }
+
+    /// Whether the sections share a translation that is inclined to the direction of a Schoenflies section. Then the
+    /// displacements of imaginary joints have a part in the height, and each leg has a height of its own.
+    #[doc(hidden)]
+    pub fn shares_height(&self) -> bool {
+        self.task().slope() != 0.0
+    }
+
+    /// The height above home of a leg's own section at a solution, metres.
+    #[inline]
+    pub(crate) fn leg_rise(&self, at: &Solution, number: usize) -> f64 {
+        self.task().rise_of_leg(self.task().rise(&at.solved.pose), at.legs[number].tau)
+    }
+
+    /// Whether a solution of a leg is within its limits, with the Schoenflies section at a height above home, metres.
+    #[inline]
+    pub(super) fn admits(&self, leg: &CompiledLeg, solution: &LegSolution, rise: f64) -> bool {
+        let lifted = |lift: &Lift| self.lifted(lift, self.task().rise_of_leg(rise, solution.tau)).1;
+        leg.lower.admits(&self.limits, &solution.lower)
+            && leg.upper.admits(&self.limits, &solution.upper)
+            && leg.lift.as_ref().is_none_or(lifted)
     }
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.
@@ -235,18 +269,14 @@ impl Manipulator {
         (self.coordinates()[number].home + displacement, within)
     }
 
-    /// Whether all lifts are within their limits at a height above home, metres.
-    #[inline]
-    pub(super) fn lifts_admit(&self, rise: f64) -> bool {
-        self.lifts().all(|lift| self.lifted(lift, rise).1)
-    }
-
-    /// Whether all lifts of a section are within their limits, for the values of the section's coordinates.
+    /// Whether all lifts of a section are within their limits, for the values of the section's coordinates. These alone
+    /// do not tell if legs have heights of their own.
     #[doc(hidden)]
     pub fn height_admitted(&self, section: Section, of_section: &[f64]) -> bool {
         let Some(place) = self.task().height_in(section) else { return true };
         let home = self.task().coordinates[self.task().range(section)][place].home;
-        self.lifts_admit(of_section[place] - home)
+        let rise = of_section[place] - home;
+        self.shares_height() || self.lifts().all(|lift| self.lifted(lift, rise).1)
     }
 
     /// The limits of the heights above home that the lifts admit.

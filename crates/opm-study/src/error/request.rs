@@ -142,6 +142,11 @@ pub enum RequestError {
         /// The names of the joints that carry the height.
         joints: Vec<String>,
     },
+    /// The kind is of one section alone, but heights of legs depend on the imaginary joints.
+    Inclined {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
     /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
@@ -235,7 +240,8 @@ impl RequestError {
             | Self::OneSubspace { .. }
             | Self::NoPart { .. }
             | Self::Dependent { .. }
-            | Self::Leaning { .. } => RequestOption::Kind,
+            | Self::Leaning { .. }
+            | Self::Inclined { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
             Self::Follows { option, .. } | Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
@@ -314,6 +320,10 @@ impl RequestError {
                 "{kind}: the sections of this mechanism have no workspaces of their own, because screws or inclined \
                  sliders carry its height ({}); use grid",
                 joints.join(", ")
+            ),
+            Self::Inclined { kind } => format!(
+                "{kind}: the sections of this mechanism have no workspaces of their own, because they share a \
+                 translation that is inclined to the direction of its height; use grid"
             ),
             Self::NotOfPoses { kind } => format!(
                 "with {}: only poses have a condition number; ask for it of grid, \

@@ -135,6 +135,12 @@ pub enum DomainError {
         /// The names of these joints.
         joints: Vec<String>,
     },
+    /// The heights of legs depend on the imaginary joints.
+    #[error(
+        "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
+         the height; a grid of its workspace can be counted"
+    )]
+    Inclined,
     /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
@@ -224,6 +230,9 @@ impl Domain {
         let joints: Vec<String> = manipulator.leaning_joints().map(str::to_owned).collect();
         if !joints.is_empty() {
             return Err(DomainError::Leaning { joints });
+        }
+        if manipulator.shares_height() {
+            return Err(DomainError::Inclined);
         }
         let mut axes = axes(manipulator, sections);
         if axes.is_empty() {

@@ -162,7 +162,10 @@ impl<'a> Sheet<'a> {
         fill(&sweep.grid.axes()[lower..], slice, upper);
         let manipulator = sweep.manipulator;
         self.open = true;
-        if !manipulator.dependent_coordinates().is_empty() || !manipulator.lifts_straight() {
+        if !manipulator.dependent_coordinates().is_empty()
+            || !manipulator.lifts_straight()
+            || manipulator.shares_height()
+        {
             self.kind = SheetKind::Single;
             return;
         }
