@@ -36,9 +36,9 @@ pub(super) struct Search<'a> {
     /// The same displacements as unit complex numbers `e(angle)`.
     pub directions: Vec<Complex<f64>>,
     /// The height above home, metres: that of the first actuated lift. Where legs have heights of their own, it follows
-    /// for each candidate: see [`Search::rise_with`].
+    /// for each candidate.
     pub rise: f64,
-    /// The legs at that height, or at their own.
+    /// The legs at that height, or at their own. A leg whose own height is not known is as it is at home, with its lift.
     pub legs: Cow<'a, [CompiledLeg]>,
     /// A buffer for inverse kinematics.
     pub solution: Solution,
@@ -61,12 +61,12 @@ fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item
 impl<'a> Search<'a> {
     pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
         let rise = rises(manipulator, displacements).next().unwrap_or(0.0);
-        // Where legs have heights of their own, those that lean are driven to them.
+        // Where legs have heights of their own, that of an actuated lift is known.
         let of_leg = |leg: &CompiledLeg| match &leg.lift {
             Some(lift) if lift.slope != 0.0 => {
-                lift.coordinate.actuated.map_or(0.0, |number| lift.rise(displacements[number]))
+                Some(lift.rise(displacements[lift.coordinate.actuated?]))
             }
-            _ => rise,
+            _ => Some(rise),
         };
         Self {
             manipulator,

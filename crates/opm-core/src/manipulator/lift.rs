@@ -221,14 +221,19 @@ impl Manipulator {
         })
     }
 
-    /// The legs at heights above home that `rise` gives, metres. One without a closed form there is as it is at home, and
-    /// does not close.
-    pub(crate) fn legs_at(&self, rise: impl Fn(&CompiledLeg) -> f64) -> Cow<'_, [CompiledLeg]> {
+    /// The legs at heights above home that `rise` gives, metres. One without a closed form there does not close: it is as
+    /// it is at home, as one is whose height is not given, with its lift.
+    pub(crate) fn legs_at(
+        &self,
+        rise: impl Fn(&CompiledLeg) -> Option<f64>,
+    ) -> Cow<'_, [CompiledLeg]> {
         if self.lifts_straight() {
             return Cow::Borrowed(&self.legs);
         }
-        let at =
-            |leg: &CompiledLeg| leg.at(rise(leg)).map_or_else(|_| leg.clone(), Cow::into_owned);
+        let at = |leg: &CompiledLeg| {
+            let raised = rise(leg).map(|rise| leg.at(rise));
+            raised.and_then(Result::ok).map_or_else(|| leg.clone(), Cow::into_owned)
+        };
         self.legs.iter().map(at).collect()
     }
 

@@ -3,7 +3,7 @@
 
 mod flat;
 
-use super::{CompiledLeg, CompiledSection, Section};
+use super::{CompiledLeg, CompiledSection, Lean, Section};
 use crate::chain::Chain;
 use crate::chain::condition::{Condition, flat_joints};
 use crate::chain::track::Track;
@@ -36,8 +36,8 @@ pub enum NoClosedForm {
     /// The height of a leg depends on its imaginary joint, and is needed to find it.
     #[error(
         "the sections share a translation that is inclined to the direction of the height: closed forms expect that \
-         the other actuated joints determine the imaginary joints, and that every screw or inclined slider for the \
-         height is actuated"
+         the other actuated joints determine the imaginary joints, without those of a section whose height a passive \
+         screw or inclined slider carries"
     )]
     Inclined,
     /// A spherical joint is actuated.
@@ -115,7 +115,16 @@ impl Plan {
         }
         // The chain of a leg that leans is not known before its own height.
         let inclined = task.slope() != 0.0;
-        if inclined && legs.iter().any(|leg| leg.lean.is_some() && !leg.drives_height()) {
+        let unknown = |(leg, held): (&CompiledLeg, &HeldLeg)| match leg.lean {
+            Some(Lean { section: Section::Lower, .. }) if !leg.drives_height() => {
+                !held.lower.is_empty()
+            }
+            Some(Lean { section: Section::Upper, .. }) if !leg.drives_height() => {
+                !held.upper.is_empty()
+            }
+            Some(_) | None => false,
+        };
+        if inclined && legs.iter().zip(&held).any(unknown) {
             return Err(NoClosedForm::Inclined);
         }
         if task.shared().is_none() {
