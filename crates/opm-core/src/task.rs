@@ -15,7 +15,7 @@
 //! | translational space | | `x y z` | `x y z` | | `w h` | `x y z` |
 //!
 //! A Schoenflies section is a planar one at a height along the plane's normal: `z`, or `h` above a cylinder, which has
-//! a `z`.
+//! a `z`. The cylinder's axis may be inclined to the normal. Then `I` has a part in the plane and a part in the height.
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis; in a
 //! translational space, `x y z` move it along the frame's directions, and `w h` along the first two, where the third

@@ -112,27 +112,34 @@ impl Manipulator {
                 buffer.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
-        for (number, lift) in self.lifts_of_legs() {
-            let rise = match lift.slope == 0.0 {
-                true => rise,
-                false => self.rise_in(mode, number, [&v, &b], rise),
-            };
-            let (value, within) = self.lifted(lift, rise);
-            buffer.within_limits &= within;
-            if let Some(actuated) = lift.coordinate.actuated {
-                buffer.actuated[actuated] = value;
-            }
+        if self.task.height.is_some() {
+            self.write_actuated_lifts(mode, [&v, &b], rise, buffer);
         }
         Ok(Some(buffer))
     }
 
-    /// The height above home of the section of a leg that reaches a pose, in a mode, with the Schoenflies section at
-    /// `rise`.
-    #[cold]
-    fn rise_in(&self, mode: Mode, number: usize, pose: [&Displacement; 2], rise: f64) -> f64 {
-        let branches = self.modes.branches(mode, number);
-        let found = self.legs[number].solve_actuated(&self.task, pose, rise, branches);
-        found.map_or(rise, |(_, tau)| self.task.rise_of_leg(rise, tau))
+    /// Writes the values of the lifts at a pose that is in reach, with the Schoenflies section at `rise`.
+    #[inline(never)]
+    fn write_actuated_lifts(
+        &self,
+        mode: Mode,
+        pose: [&Displacement; 2],
+        rise: f64,
+        out: &mut ActuatedJoints,
+    ) {
+        for (number, lift) in self.lifts_of_legs() {
+            let mut rise = rise;
+            if lift.slope != 0.0 {
+                let branches = self.modes.branches(mode, number);
+                let solved = self.legs[number].solve_actuated(&self.task, pose, rise, branches);
+                rise = solved.map_or(rise, |(_, tau)| self.task.rise_of_leg(rise, tau));
+            }
+            let (value, within) = self.lifted(lift, rise);
+            out.within_limits &= within;
+            if let Some(actuated) = lift.coordinate.actuated {
+                out.actuated[actuated] = value;
+            }
+        }
     }
 
     /// Stores a pose and its displacements, or returns an error if the pose is not valid. Returns `false` where
@@ -188,11 +195,13 @@ impl Manipulator {
                 }
             }
         }
-        self.write_lifts(out);
+        if self.task.height.is_some() {
+            self.write_lifts(out);
+        }
     }
 
     /// Writes the values of the lifts at the pose and the legs' solutions that `out` holds.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn write_lifts(&self, out: &mut Solution) {
         for (number, lift) in self.lifts_of_legs() {
             // The height of a leg that is out of reach is not known where it has one of its own.

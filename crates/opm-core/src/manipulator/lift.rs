@@ -13,6 +13,12 @@
 //! ```
 //!
 //! has the joints behind the lift displaced by `D`. It has to reach the target times `D⁻¹`.
+//!
+//! A cylinder beside the section may have an axis that is inclined to the direction. A displacement τ along it has a part
+//! in the height: the leg has a height of its own, higher than the section's by a multiple of τ
+//! ([`Height::slope`](crate::task::Height)). In the plane it is a slide by the rest of τ. Where that slider is in the
+//! section's chain ([`Slider`](super::section::Slider)), τ follows from the chain, and the height from τ; so a lift that
+//! leans has to be in a leg whose imaginary joint is in the other section.
 
 use super::leg::{CompileContext, CompiledLeg};
 use super::refused::RefusedLeg;

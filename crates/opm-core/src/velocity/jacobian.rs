@@ -489,7 +489,10 @@ impl Manipulator {
         let rotation = task.shared() == Some(MotionType::Rotation);
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
-        let upper_reciprocal = task.upper_intersection.reciprocal();
+        let upper_reciprocal = match rotation {
+            true => LocalTwist::zeros(),
+            false => task.upper_intersection.reciprocal(),
+        };
         let (v_screws, b_screws) = (task.lower_screws(pose), task.upper_screws(pose));
         if let Some(height) = &task.height {
             out.pose.fill(0.0);
