@@ -29,22 +29,20 @@ pub fn within(m: &Manipulator, section: Section, values: &[f64]) -> bool {
     let up = frame.axes.column(2).into_owned();
     assert!(up.cross(axis).norm() < 1e-9);
     let rise = values[place] - coordinates[place].home;
-    let part = |split: &LegSplit| match section {
-        Section::Lower => split.lower.clone(),
-        Section::Upper => split.upper.clone(),
-    };
     m.mechanism().legs.iter().zip(&d.legs).all(|(leg, split)| {
-        part(split).iter().filter(|freedom| is_lift(leg, **freedom, class)).all(|freedom| {
-            let joint = &leg.joints[freedom.joint];
-            let c = &joint.coordinates[0];
-            let advance = match joint.kind {
-                JointKind::Helical { pitch } => pitch * joint.axis.dot(&up),
-                _ => joint.axis.dot(&up),
-            };
-            // Limits include what rounding may change.
-            let limits = c.displacement_limits(m.characteristic_length());
-            limits.admits(JointDisplacement::Value(rise / advance))
-        })
+        part(split, section).iter().filter(|freedom| is_lift(leg, **freedom, class)).all(
+            |freedom| {
+                let joint = &leg.joints[freedom.joint];
+                let c = &joint.coordinates[0];
+                let advance = match joint.kind {
+                    JointKind::Helical { pitch } => pitch * joint.axis.dot(&up),
+                    _ => joint.axis.dot(&up),
+                };
+                // Limits include what rounding may change.
+                let limits = c.displacement_limits(m.characteristic_length());
+                limits.admits(JointDisplacement::Value(rise / advance))
+            },
+        )
     })
 }
 
@@ -54,6 +52,27 @@ pub fn is_lift(leg: &Leg, freedom: Freedom, class: &SubspaceClass) -> bool {
     let joint = &leg.joints[freedom.joint];
     let carries = matches!(joint.kind, JointKind::Prismatic | JointKind::Helical { .. });
     carries && joint.axis.dot(axis).abs() > 0.5
+}
+
+/// The freedoms of a section of a leg.
+fn part(split: &LegSplit, section: Section) -> &[Freedom] {
+    match section {
+        Section::Lower => &split.lower,
+        Section::Upper => &split.upper,
+    }
+}
+
+/// The Schoenflies section of a mechanism whose sections share a translation that is inclined to its direction.
+pub fn inclined(decomposition: &Decomposition) -> Option<Section> {
+    let SubspaceClass::Translation { axis: along } = decomposition.intersection else {
+        return None;
+    };
+    let sections = [(&decomposition.lower, Section::Lower), (&decomposition.upper, Section::Upper)];
+    let inclined = |class: &SubspaceClass| match class {
+        SubspaceClass::Schoenflies { axis } => axis.dot(&along).abs() > 1e-9,
+        _ => false,
+    };
+    sections.into_iter().find(|(class, _)| inclined(class)).map(|(_, section)| section)
 }
 
 /// The joint of a leg that carries a height, and its direction; `None` without a height.
@@ -85,7 +104,12 @@ fn replace(joint: &mut Joint, kind: JointKind, axis: Unit<Vector3<f64>>) {
 /// Puts an inclined slider or a screw in the place of most joints that carry a height.
 pub fn lean(rng: &mut Rng, mechanism: &mut Mechanism, decomposition: &Decomposition) {
     for (leg, split) in mechanism.legs.iter_mut().zip(&decomposition.legs) {
+        let inclined = inclined(decomposition);
         let Some((joint, up)) = lift(leg, split, decomposition) else { continue };
+        // Beside an inclined imaginary joint, only a slider along the direction has closed forms.
+        if inclined.is_some_and(|section| part(split, section).len() < 4) {
+            continue;
+        }
         // A smaller inclination would be taken for rounding.
         let aside = beside(&up).0 * (0.05 + 0.95 * rng.f64());
         let pitch = (0.2 + rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };

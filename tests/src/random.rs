@@ -13,9 +13,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
 /// motion, and every subspace alone.
-pub const PAIRS: [[Kind; 2]; 39] = {
+pub const PAIRS: [[Kind; 2]; 41] = {
     use Kind::{
-        Cylindrical, Identity, Planar, Schoenflies, Spherical, TranslationalPlane,
+        Cylindrical, Identity, Inclined, Planar, Schoenflies, Spherical, TranslationalPlane,
         TranslationalSpace,
     };
     use Meet::{Nothing, Rotation, Translation};
@@ -59,8 +59,13 @@ pub const PAIRS: [[Kind; 2]; 39] = {
         [Spherical, TranslationalSpace(Nothing)],
         [TranslationalSpace(Translation), Cylindrical(Translation)],
         [Cylindrical(Translation), TranslationalSpace(Translation)],
+        [Inclined, Cylindrical(Translation)],
+        [Cylindrical(Translation), Inclined],
     ]
 };
+
+/// The pairs of which a section can be examined alone, and bounded: those without an inclined shared translation.
+pub const LEVEL: &[[Kind; 2]] = PAIRS.split_at(39).0;
 
 /// What the subspaces of a pair share, before it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +96,8 @@ pub enum Kind {
     TranslationalSpace(Meet),
     /// A Schoenflies group with its direction along z, or perpendicular to it.
     Schoenflies(Meet),
+    /// A Schoenflies group with its direction inclined to z, neither along it nor perpendicular to it.
+    Inclined,
 }
 
 impl Kind {
@@ -100,7 +107,7 @@ impl Kind {
             Self::Identity => 0,
             Self::Planar(_) | Self::Spherical | Self::TranslationalSpace(_) => 3,
             Self::Cylindrical(_) | Self::TranslationalPlane => 2,
-            Self::Schoenflies(_) => 4,
+            Self::Schoenflies(_) | Self::Inclined => 4,
         }
     }
 
@@ -113,7 +120,7 @@ impl Kind {
             | Self::TranslationalSpace(meet)
             | Self::Schoenflies(meet) => meet,
             Self::Spherical => Meet::Rotation,
-            Self::TranslationalPlane => Meet::Translation,
+            Self::TranslationalPlane | Self::Inclined => Meet::Translation,
         }
     }
 }
@@ -171,14 +178,17 @@ pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
         (Kind::TranslationalSpace(_), None) => &["PPP"],
         (Kind::TranslationalSpace(_), Some(_)) => &["PP"],
         // A slider more, anywhere; a screw may take its place.
-        (Kind::Schoenflies(_), None) => &[
+        (Kind::Schoenflies(_) | Kind::Inclined, None) => &[
             "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
             "RPPP", "PPRP", "PPPR",
         ],
         (Kind::Schoenflies(_), Some(Rotation)) => {
             &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR", "PPP"]
         }
-        (Kind::Schoenflies(_), Some(Translation)) => &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR"],
+        (Kind::Inclined, Some(Rotation)) => &[],
+        (Kind::Schoenflies(_) | Kind::Inclined, Some(Translation)) => {
+            &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR"]
+        }
     }
 }
 
@@ -385,6 +395,12 @@ fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
         Kind::Planar(Meet::Translation)
         | Kind::Schoenflies(Meet::Translation)
         | Kind::TranslationalPlane => (side, Point3::origin()),
+        Kind::Inclined => {
+            // 20 to 70 degrees from z, upwards or downwards.
+            let angle = (20.0 + 50.0 * rng.f64()).to_radians();
+            let up = if rng.bool() { angle.cos() } else { -angle.cos() };
+            (side * angle.sin() + Vector3::z() * up, Point3::origin())
+        }
         Kind::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
         Kind::Spherical => {
             (Vector3::z(), Point3::new(0.0, 0.0, rng.f64() * 2.0 - 1.0 + 3.0 * azimuth))
@@ -404,7 +420,7 @@ impl Place {
             Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
             Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
             Kind::TranslationalSpace(_) => SubspaceClass::TranslationalSpace,
-            Kind::Schoenflies(_) => SubspaceClass::Schoenflies { axis: normal },
+            Kind::Schoenflies(_) | Kind::Inclined => SubspaceClass::Schoenflies { axis: normal },
         }
     }
 }
@@ -486,8 +502,8 @@ fn section_joints(
             }
             joints
         }
-        Kind::Schoenflies(meet) => {
-            let plane = Place { kind: Kind::Planar(meet), ..*place };
+        Kind::Schoenflies(_) | Kind::Inclined => {
+            let plane = Place { kind: Kind::Planar(place.kind.meet()), ..*place };
             let mut joints = section_joints(rng, &plane, cut, upper, options);
             let lift = joint(prismatic, place.normal * sign(rng), Point3::from(vector(rng)));
             joints.insert(rng.usize(..=joints.len()), lift);

@@ -8,7 +8,7 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{LEVEL, Options, PAIRS, mechanism};
 use opm_workspace::{
     Axis, Components, ConditioningIndex, Grid, GridSet, Modes, Progress, Sections, Sweep, Visits,
 };
@@ -76,7 +76,7 @@ fn the_whole_is_what_both_sections_reach() {
     let mut rng = Rng::with_seed(50);
     let (mut whole, mut poses, mut undecided, mut both) = (0, 0, 0, 0);
     for round in 0..40 {
-        for pair in PAIRS {
+        for &pair in LEVEL {
             let limited = if round % 2 == 0 { 0.0 } else { 0.3 };
             let options = Options { limited, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
@@ -125,7 +125,7 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
     let mut rng = Rng::with_seed(51);
     let (mut poses, mut partly) = (0, 0);
     for round in 0..30 {
-        for pair in PAIRS {
+        for &pair in LEVEL {
             let options = Options { limited: 0.2, balls: round % 3 != 0 };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();

@@ -6,7 +6,7 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode, Solution};
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{LEVEL, Options, PAIRS, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
 };
@@ -178,7 +178,7 @@ fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> 
 /// what counts.
 fn random(rng: &mut Rng, round: usize) -> (Manipulator, Option<Mode>, Sections) {
     let options = Options { limited: [0.0, 0.2, 0.5][rng.usize(..3)], balls: true };
-    let (mut mechanism, decomposition) = mechanism(rng, PAIRS[round % PAIRS.len()], options);
+    let (mut mechanism, decomposition) = mechanism(rng, LEVEL[round % LEVEL.len()], options);
     let task = Task::new(&mechanism, &decomposition).unwrap();
     for coordinate in &task.coordinates {
         if rng.bool() {
@@ -386,7 +386,7 @@ fn estimates_lie_in_the_bounds() {
 fn bounds_only_come_closer() {
     let mut rng = Rng::with_seed(33);
     let mut closer = 0;
-    for round in 0..4 * PAIRS.len() {
+    for round in 0..4 * LEVEL.len() {
         let (m, mode, sections) = random(&mut rng, round);
         let domain = domain_of(&mut rng, &m, sections, 1.0);
         let modes = mode.map_or(Modes::Any, Modes::One);

@@ -11,7 +11,7 @@ use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{Options, PAIRS, mechanism, order};
+use opm_tests::random::{LEVEL, Options, PAIRS, mechanism, order};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -103,7 +103,7 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
     let mut rng = Rng::with_seed(20);
     let (mut poses, mut reachable, mut partly, mut round) = (0, 0, 0, 0);
     while poses < POSES {
-        let pair = PAIRS[round % PAIRS.len()];
+        let pair = LEVEL[round % LEVEL.len()];
         let options = Options { limited: [0.0, 0.3, 0.7, 1.0][rng.usize(..4)], balls: rng.bool() };
         let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let mechanism = match rng.u8(..3) {
@@ -179,7 +179,7 @@ fn limits_that_lie_on_poses_are_no_exception() {
     let mut rng = Rng::with_seed(21);
     let mut met = 0;
     for round in 0..400 {
-        let pair = PAIRS[round % PAIRS.len()];
+        let pair = LEVEL[round % LEVEL.len()];
         let options = Options { limited: 0.0, balls: false };
         let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
         let free = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());

@@ -421,10 +421,10 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
             }
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             let mut all = manipulator.all_modes();
-            let driven = |leg: usize, freedoms: &[Freedom], class: &SubspaceClass| {
+            // What carries a height has no part in the rest, but for an imaginary joint that has a part in the height.
+            let driven = |leg: usize, freedoms: &[Freedom], class: &SubspaceClass, lift: bool| {
                 let leg = &manipulator.mechanism().legs[leg];
-                // What carries a height has no part in the rest.
-                let own = freedoms.iter().filter(|f| !height::is_lift(leg, **f, class));
+                let own = freedoms.iter().filter(|f| height::is_lift(leg, **f, class) == lift);
                 own.into_iter().any(|freedom| leg.joints[freedom.joint].actuated)
             };
             let d = manipulator.decomposition();
@@ -433,9 +433,13 @@ fn measures_are_numerator_and_denominator_of_the_jacobian() {
             let bridged = manipulator.task().shared().is_some();
             let parts: Vec<[bool; 2]> = (d.legs.iter().enumerate())
                 .map(|(i, split)| {
-                    let lower = driven(i, &split.lower, &d.lower);
-                    let upper = driven(i, &split.upper, &d.upper);
-                    [lower || bridged && !split.imaginary && upper, split.imaginary || upper]
+                    let lower = driven(i, &split.lower, &d.lower, false);
+                    let upper = driven(i, &split.upper, &d.upper, false);
+                    let lifted = height::inclined(d).is_some()
+                        && (driven(i, &split.lower, &d.lower, true)
+                            || driven(i, &split.upper, &d.upper, true));
+                    let passes_on = bridged && !split.imaginary && (upper || lifted);
+                    [lower || passes_on, split.imaginary || upper]
                 })
                 .collect();
             let mut constant: Option<f64> = None;

@@ -15,7 +15,7 @@
 //! | translational space | | `x y z` | `x y z` | | `w h` | `x y z` |
 //!
 //! A Schoenflies section is a planar one at a height along the plane's normal: `z`, or `h` above a cylinder, which has
-//! a `z`.
+//! a `z`. The cylinder's axis may be inclined to the normal. Then `I` has a part in the plane and a part in the height.
 //!
 //! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis; in a
 //! translational space, `x y z` move it along the frame's directions, and `w h` along the first two, where the third
@@ -182,14 +182,10 @@ impl Task {
                 Section::Lower => coordinates.insert(place, coordinate),
                 Section::Upper => of_upper.insert(place, coordinate),
             }
-            Height { section, coordinate: first + place, up: frame.axes.column(2).into_owned() }
+            let up = frame.axes.column(2).into_owned();
+            let slope = height::slope(section, &up, intersection.as_ref());
+            Height { section, coordinate: first + place, up, slope }
         });
-        if let (Some(height), Some(IntersectionAxis { direction, point: None })) =
-            (&height, &intersection)
-            && height.up.dot(direction).abs() > TOLERANCE
-        {
-            return Err(TaskError::Inclined { section: height.section });
-        }
         let lower_count = coordinates.len();
         coordinates.extend(of_upper);
         // Files keep the names of all coordinates from joints but this one, which few mechanisms have.

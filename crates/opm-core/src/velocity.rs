@@ -190,6 +190,15 @@ struct SectionTwists {
     rise: [f64; 2],
 }
 
+impl SectionTwists {
+    /// The rate and the acceleration of the height of a leg's own section, for those along the intersection motion and the
+    /// slope of the height.
+    #[inline]
+    fn rises(&self, slope: f64, [rate, acceleration]: [f64; 2]) -> [f64; 2] {
+        [self.rise[0] + slope * rate, self.rise[1] + slope * acceleration]
+    }
+}
+
 /// The motion of a leg: rates, then accelerations.
 struct LegMotion {
     /// The joints of the lower section's chain.
@@ -271,6 +280,7 @@ impl Manipulator {
             }
         };
         let twists = self.section_twists(&at.solved.pose, rates, accelerations);
+        let raised = self.task().height.is_some();
         out.singular.clear();
         for number in 0..self.legs.len() {
             let leg = self.leg_differential(at, number);
@@ -283,10 +293,9 @@ impl Manipulator {
                 return Err(VelocityError::Overflow { leg: number });
             }
             self.write_motion(number, &motion, out);
-        }
-        if self.task().height.is_some() {
-            for lift in self.lifts() {
-                let [rate, acceleration] = twists.rise.map(|rise| lift.displacement(rise));
+            if raised && let Some(lift) = &self.legs[number].lift {
+                let rises = twists.rises(lift.slope, motion.tau);
+                let [rate, acceleration] = rises.map(|rise| lift.displacement(rise));
                 let number = lift.coordinate.number;
                 (out.joint_rates[number], out.joint_accelerations[number]) = (rate, acceleration);
             }
@@ -350,17 +359,21 @@ impl Manipulator {
     }
 
     /// The numbers of the joint coordinates of a singular leg that have no rates: those of the singular
-    /// section and, if that is solved first, those of the other section too. For a spherical joint after a
-    /// full revolution these are its own coordinates.
+    /// section and, if that is solved first, those of the other section too, with a joint that carries a height if that
+    /// depends on the imaginary joint. For a spherical joint after a full revolution these are its own coordinates.
     pub fn rateless(&self, singular: &SingularLeg) -> impl Iterator<Item = usize> + '_ {
         let leg = &self.legs[singular.leg];
         let whole_leg =
             singular.cause == SingularCause::Serial && leg.split_section == singular.section;
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
-        sections.into_iter().filter(move |(_, other)| whole_leg || *other == section).flat_map(
-            |(section, _)| section.coordinates.iter().flatten().map(|coordinate| coordinate.number),
-        )
+        let chains = sections.into_iter().filter(move |(_, other)| whole_leg || *other == section);
+        // A lift that follows the imaginary joint has no rate where that has none.
+        let lift = leg.lift.filter(|lift| whole_leg && lift.slope != 0.0);
+        chains
+            .flat_map(|(section, _)| section.coordinates.iter().flatten())
+            .map(|coordinate| coordinate.number)
+            .chain(lift.map(|lift| lift.coordinate.number))
     }
 
     /// The number of the imaginary joint of a singular leg, if that has no rate either.
@@ -391,7 +404,7 @@ impl Manipulator {
         number: usize,
     ) -> LegDifferential {
         // A leg that is solved at a height has a closed form there.
-        let raised = leg.raised(lean, self.task().rise(&at.solved.pose));
+        let raised = leg.raised(lean, self.leg_rise(at, number));
         self.differential_of(raised.as_ref().unwrap_or(leg), at, number)
     }
 
@@ -420,7 +433,7 @@ impl Manipulator {
         twists: &SectionTwists,
     ) -> LegMotion {
         match &self.legs[number].lean {
-            None => self.chain_motion(at, number, differential, twists, |_, target| target),
+            None => self.chain_motion(at, number, differential, twists, |_, target, _| target),
             Some(lean) => self.raised_motion(at, number, differential, twists, lean),
         }
     }
@@ -438,9 +451,10 @@ impl Manipulator {
     ) -> LegMotion {
         let (leg, displacements) = (&self.legs[number], at.legs[number].section(lean.section));
         let section = differential.section(lean.section);
-        self.chain_motion(at, number, differential, twists, |of, target| {
+        let slope = self.task().slope();
+        self.chain_motion(at, number, differential, twists, |of, target, tau| {
             if of == lean.section {
-                section.behind(leg, lean, displacements, target, twists.rise)
+                section.behind(leg, lean, displacements, target, twists.rises(slope, tau))
             } else {
                 target
             }
@@ -448,7 +462,8 @@ impl Manipulator {
     }
 
     /// Rates and accelerations of the joints of a leg's chains. `left` gives the part of a section's twist, and of its
-    /// derivative, that is left to them.
+    /// derivative, that is left to them; it is told the rate and the acceleration along the intersection motion, which are
+    /// zero for the section that is solved first.
     #[inline(always)]
     fn chain_motion(
         &self,
@@ -456,28 +471,29 @@ impl Manipulator {
         number: usize,
         LegDifferential { lower, upper }: &LegDifferential,
         twists: &SectionTwists,
-        left: impl Fn(Section, [LocalTwist; 2]) -> [LocalTwist; 2],
+        left: impl Fn(Section, [LocalTwist; 2], [f64; 2]) -> [LocalTwist; 2],
     ) -> LegMotion {
         let task = self.task();
         let (leg, solved): (_, &LegSolution) = (&self.legs[number], &at.legs[number]);
-        let solve = |section: &Differential, of: Section, target: [LocalTwist; 2]| {
-            let [twist, derivative] = left(of, target);
-            let rates = section.rates(&twist);
-            [rates, section.accelerations(&twist, &derivative, &rates)]
-        };
+        let solve =
+            |section: &Differential, of: Section, target: [LocalTwist; 2], tau: [f64; 2]| {
+                let [twist, derivative] = left(of, target, tau);
+                let rates = section.rates(&twist);
+                [rates, section.accelerations(&twist, &derivative, &rates)]
+            };
         match leg.split_section {
             Section::Upper => {
-                let upper = solve(upper, Section::Upper, twists.b);
+                let upper = solve(upper, Section::Upper, twists.b, [0.0; 2]);
                 let tau = upper.map(|u| leg.imaginary_joint().map_or(0.0, |joint| u[joint]));
                 let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
                 let [twist, derivative] = twists.v;
                 let along_rate = task.lower.kind.bracket(&twist, &along);
                 let target =
                     [twist + along * tau[0], derivative + along * tau[1] + along_rate * tau[0]];
-                LegMotion { lower: solve(lower, Section::Lower, target), upper, tau }
+                LegMotion { lower: solve(lower, Section::Lower, target, tau), upper, tau }
             }
             Section::Lower => {
-                let lower = solve(lower, Section::Lower, twists.v);
+                let lower = solve(lower, Section::Lower, twists.v, [0.0; 2]);
                 let last = leg.lower.chain.freedoms() - 1;
                 let along_rates = lower.map(|l| l[last]);
                 let kind = task.upper.kind;
@@ -490,8 +506,8 @@ impl Manipulator {
                     along * along_rates[0] + twist,
                     along * along_rates[1] + derivative + twist_rate * along_rates[0],
                 ];
-                let upper = solve(upper, Section::Upper, target);
-                LegMotion { lower, upper, tau: along_rates.map(|c| -c) }
+                let tau = along_rates.map(|c| -c);
+                LegMotion { lower, upper: solve(upper, Section::Upper, target, tau), tau }
             }
         }
     }

@@ -271,6 +271,9 @@ fn check_kind(
         {
             return Err(RequestError::Dependent { kind, dependent });
         }
+        WorkspaceKind::Upper | WorkspaceKind::Lower if manipulator.shares_height() => {
+            return Err(RequestError::Inclined { kind });
+        }
         _ => {}
     }
     if let Some(part) = kind.missing_part(manipulator) {

@@ -43,7 +43,8 @@ pub enum GridError {
     NoUpperSection,
     /// The grid is of one section alone, but one section depends on the other.
     #[error(
-        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together"
+        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, or the \
+         sections share an inclined translation"
     )]
     NotAlone,
     /// No coordinate has the name of the axis.
@@ -267,7 +268,8 @@ impl Grid {
         if coordinates.is_empty() {
             return Err(GridError::NoUpperSection);
         }
-        if sections != Sections::Whole && !manipulator.dependent_coordinates().is_empty() {
+        let alone = manipulator.dependent_coordinates().is_empty() && !manipulator.shares_height();
+        if sections != Sections::Whole && !alone {
             return Err(GridError::NotAlone);
         }
         for axis in given {

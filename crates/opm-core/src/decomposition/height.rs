@@ -31,6 +31,9 @@ pub enum HeightReason {
     Several(Vec<String>),
     /// One joint does that also moves the leg in the plane, and the leg has too few other joints in the section.
     Constraining(String),
+    /// One joint does that also moves the leg in the plane, and so does the imaginary joint, which is in the same
+    /// section.
+    Inclined(String),
 }
 
 impl std::error::Error for HeightMiss {}
@@ -56,6 +59,11 @@ impl fmt::Display for HeightReason {
                 f,
                 "joint {joint} changes it, which is no slider along the direction, and the section has too few other \
                  joints"
+            ),
+            Self::Inclined(joint) => write!(
+                f,
+                "joint {joint} changes it, which is no slider along the direction, and so does the imaginary joint, \
+                 which has to be in the other section then"
             ),
             Self::Several(joints) => match &**joints {
                 [one] => write!(f, "joint {one} changes it, too"),

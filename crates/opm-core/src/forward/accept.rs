@@ -71,6 +71,42 @@ impl Search<'_> {
     /// Accepts every assembly at `v · b`. Most mechanisms have one, but a leg may have several branches with
     /// the same actuated joints.
     pub(super) fn assemble(&mut self, v: &Displacement, b: &Displacement) {
+        if self.manipulator.shares_height() {
+            for rise in self.rises_at(v, b) {
+                self.rise = rise;
+                self.assemble_at_height(v, b);
+            }
+        } else {
+            self.assemble_at_height(v, b);
+        }
+    }
+
+    /// The heights above home, metres, where each leg has one of its own: a leg with an actuated lift has that of its
+    /// lift, of which a part is that of its imaginary joint.
+    fn rises_at(&mut self, v: &Displacement, b: &Displacement) -> Vec<f64> {
+        let m = self.manipulator;
+        // The lifts of other legs are compared with this one.
+        let mut driven = m
+            .lifts_of_legs()
+            .filter_map(|(leg, lift)| Some((leg, lift, lift.coordinate.actuated?)));
+        let Some((leg, lift, actuated)) = driven.next() else { return Vec::new() };
+        let own = lift.rise(self.displacements[actuated]);
+        let branches = m.leg_modes(leg).map(|mode| m.branches(mode, leg));
+        // The chains do not depend on the height: it is zero here.
+        let solved = branches
+            .filter_map(|branches| self.legs[leg].solve(m.task(), [v, b], 0.0, branches, 0.0).ok());
+        let mut found: Vec<f64> =
+            solved.map(|solution| own - m.task().rise_of_leg(0.0, solution.tau)).collect();
+        if found.is_empty() {
+            self.reject(f64::INFINITY);
+        }
+        found.sort_by(f64::total_cmp);
+        found.dedup_by(|a, b| (*a - *b).abs() < MATCH * m.closure.size);
+        found
+    }
+
+    /// The same at the height [`Search::rise`].
+    fn assemble_at_height(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
         let all = m.task().pose(v, b, self.rise);
         let independent = m.dependent.as_ref().map(|d| d.independent_of(m, &all));
@@ -79,10 +115,11 @@ impl Search<'_> {
             return;
         }
         let (v, b) = m.task().sections(&all);
-        let target = m.task().raised(self.rise, m.task().isometry(&v, &b));
+        let rise = m.task().rise(&all);
+        let target = m.task().raised(rise, m.task().isometry(&v, &b));
         let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
         for leg in 0..m.legs.len() {
-            let (matching, error) = self.matching_solutions(leg, [&v, &b]);
+            let (matching, error) = self.matching_solutions(leg, [&v, &b], rise);
             if matching.is_empty() {
                 self.reject(error);
                 return;
@@ -145,6 +182,7 @@ impl Search<'_> {
         &self,
         leg: usize,
         pose: [&Displacement; 2],
+        rise: f64,
     ) -> (Vec<(Mode, LegSolution)>, f64) {
         let m = self.manipulator;
         let mut least = f64::INFINITY;
@@ -172,10 +210,10 @@ impl Search<'_> {
                     continue;
                 }
             }
-            let Ok(solution) = compiled.solve(m.task(), pose, self.rise, branches, 0.0) else {
+            let Ok(solution) = compiled.solve(m.task(), pose, rise, branches, 0.0) else {
                 continue;
             };
-            let error = self.leg_error(leg, &solution);
+            let error = self.leg_error(leg, &solution, rise);
             least = least.min(error);
             if error <= MATCH {
                 found.push((mode, solution, error));
@@ -193,10 +231,18 @@ impl Search<'_> {
     }
 
     /// The largest error of an actuated joint in a leg's solution, in radians or shares of the size.
-    fn leg_error(&self, leg: usize, solution: &LegSolution) -> f64 {
-        let leg = &self.manipulator.legs[leg];
+    fn leg_error(&self, leg: usize, solution: &LegSolution, rise: f64) -> f64 {
+        let m = self.manipulator;
+        let leg = &m.legs[leg];
         let lower = self.section_error(&leg.lower, &solution.lower);
-        lower.max(self.section_error(&leg.upper, &solution.upper))
+        let error = lower.max(self.section_error(&leg.upper, &solution.upper));
+        // All lifts have one height, unless each leg has its own.
+        let lift = leg.lift.filter(|lift| lift.slope != 0.0);
+        let actuated = lift.and_then(|lift| Some((lift, lift.coordinate.actuated?)));
+        actuated.map_or(error, |(lift, actuated)| {
+            let own = lift.rise(self.displacements[actuated]);
+            error.max((own - m.task().rise_of_leg(rise, solution.tau)).abs() / m.closure.size)
+        })
     }
 
     /// The largest error of an actuated joint in one section, in radians or shares of the size.

@@ -45,15 +45,16 @@ pub fn along(
                     })
                 }
                 PlanarMotion::Translation(d) => {
-                    // |z + d τ| = a, z = g w − c
-                    let (z, d) = (v.apply(*point) - centre, v.rotation * d);
+                    // |z + r d τ| = a, z = g w − c, with |d| = 1
+                    let rate = length(*d);
+                    let (z, d) = (v.apply(*point) - centre, v.rotation * d / rate);
                     let (foot, aside) = (dot(d, z), d.re * z.im - d.im * z.re);
                     let square = radius * radius - aside * aside;
                     if square < -2.0 * VERGE * size * size {
                         return Solutions::None(ReachDeficit::length(aside.abs() - radius));
                     }
                     let root = square.max(0.0).sqrt();
-                    let at = |root: f64| JointDisplacement::Value(root - foot);
+                    let at = |root: f64| JointDisplacement::Value((root - foot) / rate);
                     two(at(root), at(-root), root == 0.0)
                 }
             }

@@ -35,9 +35,10 @@ pub(super) struct Search<'a> {
     pub displacements: &'a [f64],
     /// The same displacements as unit complex numbers `e(angle)`.
     pub directions: Vec<Complex<f64>>,
-    /// The height above home, metres: that of the first actuated lift.
+    /// The height above home, metres: that of the first actuated lift. Where legs have heights of their own, it follows
+    /// for each candidate.
     pub rise: f64,
-    /// The legs at that height.
+    /// The legs at that height, or at their own. A leg whose own height is not known is as it is at home, with its lift.
     pub legs: Cow<'a, [CompiledLeg]>,
     /// A buffer for inverse kinematics.
     pub solution: Solution,
@@ -60,13 +61,20 @@ fn rises<'a>(m: &'a Manipulator, displacements: &'a [f64]) -> impl Iterator<Item
 impl<'a> Search<'a> {
     pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
         let rise = rises(manipulator, displacements).next().unwrap_or(0.0);
+        // Where legs have heights of their own, that of an actuated lift is known.
+        let of_leg = |leg: &CompiledLeg| match &leg.lift {
+            Some(lift) if lift.slope != 0.0 => {
+                Some(lift.rise(displacements[lift.coordinate.actuated?]))
+            }
+            _ => Some(rise),
+        };
         Self {
             manipulator,
             plan,
             displacements,
             directions: displacements.iter().map(|&value| unit(value)).collect(),
             rise,
-            legs: manipulator.legs_at(rise),
+            legs: manipulator.legs_at(of_leg),
             solution: manipulator.solution(),
             out: Assemblies::default(),
             least: None,
@@ -80,7 +88,7 @@ impl<'a> Search<'a> {
         let (m, plan) = (self.manipulator, self.plan);
         let apart = |rise: f64| (rise - self.rise).abs() / m.closure.size;
         let apart = rises(m, self.displacements).map(apart).fold(0.0, f64::max);
-        if apart > MATCH {
+        if apart > MATCH && !m.shares_height() {
             self.reject(apart);
             return;
         }

@@ -68,7 +68,8 @@ macro_rules! of_motion {
 impl IntersectionMotion {
     /// The intersection motion in a subspace of a kind. `direction` is a unit vector in the subspace's frame:
     /// the axis of a rotation, which passes through the frame's origin, or the direction of a translation. Except in a
-    /// plane, it is the frame's third direction.
+    /// plane, it is the frame's third direction. In a plane that is a Schoenflies section without its height, a
+    /// translation may be inclined; then the motion is its part in the plane.
     ///
     /// # Panics
     /// If the subspace does not contain such a motion. The trivial one gives [`IntersectionMotion::None`].
@@ -112,7 +113,8 @@ impl IntersectionMotion {
         self.motion_type() == Some(MotionType::Rotation)
     }
 
-    /// The unit twist of the motion, in the subspace's frame; zero for no motion.
+    /// The twist of the motion for a unit rate, in the subspace's frame; zero for no motion. It has unit length, but for
+    /// the part in a plane of an inclined translation.
     #[inline]
     pub fn unit_twist(&self) -> Vector3<f64> {
         of_motion!(self, G, m => G::unit_twist(m), _kind => LocalTwist::zeros())
@@ -124,7 +126,22 @@ impl IntersectionMotion {
         self.unit_twist()
     }
 
-    /// Twists that complete the unit twist to a basis of the subspace's twists; a whole basis for no motion.
+    /// The twist whose scalar product with another one is the rate of the motion in it; the rest is in the span of
+    /// [`IntersectionMotion::complement`]. Zero for no motion.
+    pub(crate) fn reciprocal(&self) -> LocalTwist {
+        let unit = self.unit_twist();
+        match self {
+            Self::Planar(PlanarMotion::Translation(along)) => unit / along.norm_sqr(),
+            Self::None(_)
+            | Self::Planar(PlanarMotion::Rotation)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => unit,
+        }
+    }
+
+    /// Orthonormal twists that complete the unit twist to a basis of the subspace's twists; a whole basis for no motion.
     pub(crate) fn complement(&self) -> Vec<LocalTwist> {
         of_motion!(self, G, m => G::complement(m), kind => kind.basis())
     }

@@ -25,7 +25,8 @@ pub struct PlanarDisplacement {
 pub enum PlanarMotion {
     /// Rotation about the frame's origin.
     Rotation,
-    /// Translation along a direction of the plane, which is a unit complex number.
+    /// Translation in the plane, by this vector for a unit of displacement. It is a unit complex number, or a shorter one
+    /// if the motion also has a part along the plane's normal, which is a height.
     Translation(Complex<f64>),
 }
 
@@ -201,7 +202,7 @@ impl Subgroup for Planar {
         match motion {
             PlanarMotion::Rotation => vec![LocalTwist::y(), LocalTwist::z()],
             PlanarMotion::Translation(along) => {
-                vec![LocalTwist::x(), angular_and_linear(0.0, quarter(*along))]
+                vec![LocalTwist::x(), angular_and_linear(0.0, quarter(*along) / along.norm())]
             }
         }
     }

@@ -79,7 +79,7 @@ pub(crate) trait Subgroup {
     /// The unit twist of an intersection motion.
     fn unit_twist(motion: &Self::Intersection) -> LocalTwist;
 
-    /// Twists that complete the unit twist of an intersection motion to a basis of the subgroup's twists.
+    /// Orthonormal twists that complete the unit twist of an intersection motion to a basis of the subgroup's twists.
     fn complement(motion: &Self::Intersection) -> Vec<LocalTwist>;
 
     /// The product `v · exp(I τ)`.

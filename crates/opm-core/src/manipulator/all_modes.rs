@@ -146,7 +146,6 @@ impl Manipulator {
     ) -> Option<(Mode, &'a Solution)> {
         let first = (all.completions.iter().enumerate())
             .filter(|(_, completion)| completion.missed.is_none())
-            .filter(|(_, completion)| self.lifts_admit(self.task.rise(&completion.solved.pose)))
             .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
         self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
@@ -155,11 +154,9 @@ impl Manipulator {
     /// coordinates.
     fn first_within_limits(&self, number: usize, completion: &Completion) -> Option<Mode> {
         let mut first = self.dependent.as_ref().map_or(Mode::default(), |d| d.mode(number));
+        let rise = self.task.rise(&completion.solved.pose);
         for (number, (leg, modes)) in self.legs.iter().zip(&completion.legs).enumerate() {
-            let within = |solution: &LegSolution| {
-                leg.lower.admits(&self.limits, &solution.lower)
-                    && leg.upper.admits(&self.limits, &solution.upper)
-            };
+            let within = |solution: &LegSolution| self.admits(leg, solution, rise);
             // Legs share no choices, so that the first mode consists of the first choices of each leg.
             let mode = (self.modes.leg_modes(number).zip(modes))
                 .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
@@ -175,18 +172,15 @@ impl Manipulator {
     pub fn within_limits_in_any(&self, all: &AllModes, mut used: impl FnMut(usize, f64)) -> bool {
         let mut reached = false;
         for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
+            let rise = self.task.rise(&completion.solved.pose);
             let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
-                let (lower, upper) = (&leg.lower, &leg.upper);
                 modes.map(|solution| {
-                    solution.and_then(Result::ok).filter(|solution| {
-                        lower.admits(&self.limits, &solution.lower)
-                            && upper.admits(&self.limits, &solution.upper)
-                    })
+                    let solution = solution.and_then(Result::ok);
+                    solution.filter(|solution| self.admits(leg, solution, rise))
                 })
             };
             let legs = || self.legs.iter().zip(&completion.legs);
-            let closes = legs().all(|leg| within(leg).iter().any(Option::is_some));
-            if !(closes && self.lifts_admit(self.task.rise(&completion.solved.pose))) {
+            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
                 continue;
             }
             reached = true;

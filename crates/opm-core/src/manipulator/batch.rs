@@ -193,8 +193,8 @@ impl Manipulator {
             return Err(BatchError::Poses { given: poses.len(), width });
         }
         out.check(count, widths)?;
-        if self.dependent.is_some() || !self.lifts_straight() {
-            // Each pose has to be completed first, or has chains of its own.
+        if !self.decides_many() {
+            // Each pose has to be completed first, or has chains or legs' heights of its own.
             for (row, pose) in poses.chunks(width).enumerate() {
                 self.inverse_one(pose, mode, &mut batch.solution, row, out)
                     .map_err(|error| BatchError::Pose { row, error })?;

@@ -11,7 +11,7 @@ use super::section::{ChainCoordinate, CompiledSection};
 use super::solution::{ActuatedJoints, Solution, SolvedPose, Unreachable};
 use super::{Manipulator, Mode};
 use crate::chain::Chain;
-use crate::group::JointDisplacement;
+use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -112,14 +112,34 @@ impl Manipulator {
                 buffer.imaginary[imaginary] = joint.value(tau, joint.home);
             }
         }
-        for lift in self.lifts() {
-            let (value, within) = self.lifted(lift, rise);
-            buffer.within_limits &= within;
-            if let Some(actuated) = lift.coordinate.actuated {
-                buffer.actuated[actuated] = value;
-            }
+        if self.task.height.is_some() {
+            self.write_actuated_lifts(mode, [&v, &b], rise, buffer);
         }
         Ok(Some(buffer))
+    }
+
+    /// Writes the values of the lifts at a pose that is in reach, with the Schoenflies section at `rise`.
+    #[inline(never)]
+    fn write_actuated_lifts(
+        &self,
+        mode: Mode,
+        pose: [&Displacement; 2],
+        rise: f64,
+        out: &mut ActuatedJoints,
+    ) {
+        for (number, lift) in self.lifts_of_legs() {
+            let mut rise = rise;
+            if lift.slope != 0.0 {
+                let branches = self.modes.branches(mode, number);
+                let solved = self.legs[number].solve_actuated(&self.task, pose, rise, branches);
+                rise = solved.map_or(rise, |(_, tau)| self.task.rise_of_leg(rise, tau));
+            }
+            let (value, within) = self.lifted(lift, rise);
+            out.within_limits &= within;
+            if let Some(actuated) = lift.coordinate.actuated {
+                out.actuated[actuated] = value;
+            }
+        }
     }
 
     /// Stores a pose and its displacements, or returns an error if the pose is not valid. Returns `false` where
@@ -175,14 +195,20 @@ impl Manipulator {
                 }
             }
         }
-        self.write_lifts(out);
+        if self.task.height.is_some() {
+            self.write_lifts(out);
+        }
     }
 
-    /// Writes the values of the lifts at the pose that `out` holds.
-    #[inline]
+    /// Writes the values of the lifts at the pose and the legs' solutions that `out` holds.
+    #[inline(never)]
     pub(crate) fn write_lifts(&self, out: &mut Solution) {
-        for lift in self.lifts() {
-            let (value, within) = self.lifted(lift, self.task.rise(&out.solved.pose));
+        for (number, lift) in self.lifts_of_legs() {
+            // The height of a leg that is out of reach is not known where it has one of its own.
+            if lift.slope != 0.0 && out.unreachable.iter().any(|missed| missed.leg == number) {
+                continue;
+            }
+            let (value, within) = self.lifted(lift, self.leg_rise(out, number));
             out.joints[lift.coordinate.number] = value;
             out.within_limits &= within;
         }

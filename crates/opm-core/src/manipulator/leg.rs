@@ -2,7 +2,7 @@
 
 use super::lift::{self, Lean, Lift, Separated};
 use super::refused::RefusedLeg;
-use super::section::{ChainCoordinate, CompiledSection, chain_joints, coordinate_number};
+use super::section::{ChainCoordinate, CompiledSection, Slider, chain_joints, coordinate_number};
 use crate::chain::limits::Limits;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
@@ -13,6 +13,7 @@ use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, Subspa
 use crate::mechanism::leg::Leg;
 pub use crate::mechanism::leg::Section;
 use crate::task::Task;
+use nalgebra::{Unit, Vector3};
 
 /// A leg, split into two sections.
 #[derive(Clone, Debug)]
@@ -124,10 +125,15 @@ impl CompiledLeg {
         let mut compiled = found?;
         let Some(Separated { lift, mut lean, joint, .. }) = separated else { return Ok(compiled) };
         if let Some(Lean { section, before, .. }) = &mut lean {
+            let name = || leg.joints[joint].name.clone();
+            let refused = |reason| RefusedLeg::from(HeightMiss { leg: leg.name.clone(), reason });
             if compiled.section(*section).partial.is_some() {
                 // What its locked joints demand would depend on the height.
-                let reason = HeightReason::Constraining(leg.joints[joint].name.clone());
-                return Err(HeightMiss { leg: leg.name.clone(), reason }.into());
+                return Err(refused(HeightReason::Constraining(name())));
+            }
+            if compiled.section(*section).slider.is_some() {
+                // What it does in the plane would depend on the imaginary joint, and that on the plane.
+                return Err(refused(HeightReason::Inclined(name())));
             }
             *before += usize::from(
                 compiled.bridge() == Some(Section::Upper) && *section == Section::Upper,
@@ -146,9 +152,21 @@ impl CompiledLeg {
         CompileContext { task, actuated, limits, size }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let bridged = task.intersection.is_some();
-        let imaginary_joint = task.intersection.as_ref().map(|axis| match axis.point {
-            Some(point) => ChainJoint::Screw { axis: axis.direction, point, pitch: 0.0 },
-            None => ChainJoint::Slide { axis: axis.direction },
+        // Of an inclined one, the chain of a Schoenflies section has the part in the plane.
+        let in_plane = |axis: Unit<Vector3<f64>>| match &task.height {
+            Some(height) if height.section == split_section && height.slope != 0.0 => {
+                let part = axis.into_inner() - height.up * height.up.dot(&axis);
+                let (axis, rate) = Unit::new_and_get(part);
+                (axis, Some(rate))
+            }
+            Some(_) | None => (axis, None),
+        };
+        let imaginary = task.intersection.as_ref().map(|axis| match axis.point {
+            Some(point) => (ChainJoint::Screw { axis: axis.direction, point, pitch: 0.0 }, None),
+            None => {
+                let (axis, rate) = in_plane(axis.direction);
+                (ChainJoint::Slide { axis }, rate)
+            }
         });
         let compile = |section: Section, subspace: &Subspace, freedoms: &[Freedom]| {
             let mut joints = chain_joints(leg, freedoms);
@@ -169,7 +187,7 @@ impl CompiledLeg {
                 }
                 RefusedLeg::Chain { section, joints, error }
             };
-            let bridge = imaginary_joint.filter(|_| section == split_section);
+            let (bridge, rate) = imaginary.filter(|_| section == split_section).unzip();
             let bridge_at = if section == Section::Upper { 0 } else { joints.len() };
             joints.splice(bridge_at..bridge_at, bridge);
             // A section with too few freedoms is completed by locked joints, on the side of its other end.
@@ -185,18 +203,28 @@ impl CompiledLeg {
                 partial = Some(locked);
             }
             let chain = Chain::new(subspace, &joints).map_err(refused)?;
-            let screws = screws(subspace, &joints).map_err(refused)?;
+            let mut screws = screws(subspace, &joints).map_err(refused)?;
             let partial = partial.map(|locked| PartialChain::new(subspace.kind, screws, locked));
+            let mut scale = determinant_scale(subspace.kind, &screws, size);
+            let slider = rate.flatten().map(|rate| {
+                let joint = if section == Section::Upper { 0 } else { joints.len() - 1 };
+                // The screw is for a unit of the imaginary joint's displacement.
+                screws[joint] *= rate;
+                scale *= rate;
+                Slider { joint, rate }
+            });
             let own = || coordinates.iter().flatten();
             Ok::<_, RefusedLeg>(CompiledSection {
                 chain,
                 screws,
-                scale: determinant_scale(subspace.kind, &screws, size),
+                scale,
                 coordinates,
                 limited: own().any(|c| limits[c.number].any()),
                 driven: partial.is_some() || own().any(|c| c.actuated.is_some()),
                 partial,
-                offset: None,
+                // See `CompiledSection::slider`.
+                offset: slider.map(|_| subspace.kind.identity()),
+                slider,
             })
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
@@ -223,6 +251,12 @@ impl CompiledLeg {
     /// Whether an actuated joint carries the height.
     pub fn drives_height(&self) -> bool {
         self.lift.is_some_and(|lift| lift.coordinate.actuated.is_some())
+    }
+
+    /// Whether an input depends on the imaginary joint of a leg that is split in its lower section: a joint that is held
+    /// in the upper section, or an actuated lift, where the imaginary joint has a part in the height.
+    pub fn passes_on(&self) -> bool {
+        self.upper.driven || self.drives_height() && self.lift.is_some_and(|lift| lift.slope != 0.0)
     }
 
     /// The sections in the order in which they are solved.
@@ -346,7 +380,27 @@ impl CompiledLeg {
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        let rise = match task.slope() != 0.0 {
+            true => task.rise_of_leg(rise, self.first_tau([v, b], branches)?),
+            false => rise,
+        };
         self.at(rise)?.solve(task, [v, b], rise, branches, near)
+    }
+
+    /// The displacement along the intersection motion, a translation, from the section that is solved first. It does not
+    /// contain a lift that leans, where it tells the leg's height.
+    fn first_tau(
+        &self,
+        [v, b]: [&Displacement; 2],
+        branches: LegBranches,
+    ) -> Result<JointDisplacement, (Section, ReachDeficit)> {
+        match self.split_section {
+            Section::Upper => self.first_step(b, branches.upper),
+            Section::Lower => {
+                self.lower.inverse(v, branches.lower).map(|q| self.step(&q).inverse())
+            }
+        }
+        .map_err(|deficit| (self.split_section, deficit))
     }
 
     /// The region in which the lower section closes, if it is a region of the plane.

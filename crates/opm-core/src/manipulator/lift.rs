@@ -13,11 +13,17 @@
 //! ```
 //!
 //! has the joints behind the lift displaced by `D`. It has to reach the target times `D⁻¹`.
+//!
+//! A cylinder beside the section may have an axis that is inclined to the direction. A displacement τ along it has a part
+//! in the height: the leg has a height of its own, higher than the section's by a multiple of τ
+//! ([`Height::slope`](crate::task::Height)). In the plane it is a slide by the rest of τ. Where that slider is in the
+//! section's chain ([`Slider`](super::section::Slider)), τ follows from the chain, and the height from τ; so a lift that
+//! leans has to be in a leg whose imaginary joint is in the other section.
 
 use super::leg::{CompileContext, CompiledLeg};
 use super::refused::RefusedLeg;
 use super::section::{ChainCoordinate, coordinate_number};
-use super::{Manipulator, Section};
+use super::{LegSolution, Manipulator, Section, Solution};
 use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;
 use crate::chain::screws::screw;
@@ -36,6 +42,9 @@ pub(crate) struct Lift {
     pub coordinate: ChainCoordinate,
     /// Its displacement for a unit of height: 1, or -1 where it moves down, for a slider along the direction.
     pub rate: f64,
+    /// What a unit of the leg's displacement along the intersection motion adds to the height: see
+    /// [`Height::slope`](crate::task::Height).
+    pub slope: f64,
 }
 
 /// The motion of a lift in the plane.
@@ -123,7 +132,8 @@ pub(super) fn separate(
     let number = first + coordinate_number(leg, lift);
     let coordinate = ChainCoordinate { number, actuated: context.actuated[number] };
     let joint = lift.joint;
-    Ok(Some(Separated { lift: Lift { coordinate, rate: advance.recip() }, lean, joint, rest }))
+    let lift = Lift { coordinate, rate: advance.recip(), slope: height.slope };
+    Ok(Some(Separated { lift, lean, joint, rest }))
 }
 
 /// The screw in the plane's frame of what a lift does in the plane; `None` for a slider along the direction.
@@ -197,8 +207,14 @@ impl Manipulator {
     /// The lifts, leg by leg; none without a height.
     #[inline]
     pub(crate) fn lifts(&self) -> impl Iterator<Item = &Lift> {
-        let any = self.task().height.is_some();
-        self.legs.iter().take(if any { usize::MAX } else { 0 }).filter_map(|leg| leg.lift.as_ref())
+        self.lifts_of_legs().map(|(_, lift)| lift)
+    }
+
+    /// The lifts with the numbers of their legs; none without a height.
+    #[inline]
+    pub(crate) fn lifts_of_legs(&self) -> impl Iterator<Item = (usize, &Lift)> {
+        let legs = if self.task().height.is_some() { &*self.legs } else { &[] };
+        legs.iter().enumerate().filter_map(|(number, leg)| Some((number, leg.lift.as_ref()?)))
     }
 
     /// The names of the joints that carry the height of a Schoenflies section and also move their legs in the plane:
@@ -211,12 +227,19 @@ impl Manipulator {
         })
     }
 
-    /// The legs at a height above home, metres. One without a closed form there is as it is at home, and does not close.
-    pub(crate) fn legs_at(&self, rise: f64) -> Cow<'_, [CompiledLeg]> {
+    /// The legs at heights above home that `rise` gives, metres. One without a closed form there does not close: it is as
+    /// it is at home, as one is whose height is not given, with its lift.
+    pub(crate) fn legs_at(
+        &self,
+        rise: impl Fn(&CompiledLeg) -> Option<f64>,
+    ) -> Cow<'_, [CompiledLeg]> {
         if self.lifts_straight() {
             return Cow::Borrowed(&self.legs);
         }
-        let at = |leg: &CompiledLeg| leg.at(rise).map_or_else(|_| leg.clone(), Cow::into_owned);
+        let at = |leg: &CompiledLeg| {
+            let raised = rise(leg).map(|rise| leg.at(rise));
+            raised.and_then(Result::ok).map_or_else(|| leg.clone(), Cow::into_owned)
+        };
         self.legs.iter().map(at).collect()
     }
 
@@ -238,6 +261,28 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn lifts_straight(&self) -> bool {
         self.leaning_joints().next().is_none()
+    }
+
+    /// Whether the sections share a translation that is inclined to the direction of a Schoenflies section. Then the
+    /// displacements of imaginary joints have a part in the height, and each leg has a height of its own.
+    #[doc(hidden)]
+    pub fn shares_height(&self) -> bool {
+        self.task().slope() != 0.0
+    }
+
+    /// The height above home of a leg's own section at a solution, metres.
+    #[inline]
+    pub(crate) fn leg_rise(&self, at: &Solution, number: usize) -> f64 {
+        self.task().rise_of_leg(self.task().rise(&at.solved.pose), at.legs[number].tau)
+    }
+
+    /// Whether a solution of a leg is within its limits, with the Schoenflies section at a height above home, metres.
+    #[inline]
+    pub(super) fn admits(&self, leg: &CompiledLeg, solution: &LegSolution, rise: f64) -> bool {
+        let lifted = |lift: &Lift| self.lifted(lift, self.task().rise_of_leg(rise, solution.tau)).1;
+        leg.lower.admits(&self.limits, &solution.lower)
+            && leg.upper.admits(&self.limits, &solution.upper)
+            && leg.lift.as_ref().is_none_or(lifted)
     }
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.

@@ -3,7 +3,7 @@
 
 mod flat;
 
-use super::{CompiledLeg, CompiledSection, Section};
+use super::{CompiledLeg, CompiledSection, Lean, Section};
 use crate::chain::Chain;
 use crate::chain::condition::{Condition, flat_joints};
 use crate::chain::track::Track;
@@ -33,6 +33,13 @@ pub enum NoClosedForm {
     /// No actuated joint carries the height of a Schoenflies section.
     #[error("no actuated joint carries the height")]
     Height,
+    /// The height of a leg depends on its imaginary joint, and is needed to find it.
+    #[error(
+        "the sections share a translation that is inclined to the direction of the height: closed forms expect that \
+         the other actuated joints determine the imaginary joints, without those of a section whose height a passive \
+         screw or inclined slider carries"
+    )]
+    Inclined,
     /// A spherical joint is actuated.
     #[error("a spherical joint is actuated")]
     Ball,
@@ -106,6 +113,20 @@ impl Plan {
         if task.height.is_some() && !legs.iter().any(CompiledLeg::drives_height) {
             return Err(NoClosedForm::Height);
         }
+        // The chain of a leg that leans is not known before its own height.
+        let inclined = task.slope() != 0.0;
+        let unknown = |(leg, held): (&CompiledLeg, &HeldLeg)| match leg.lean {
+            Some(Lean { section: Section::Lower, .. }) if !leg.drives_height() => {
+                !held.lower.is_empty()
+            }
+            Some(Lean { section: Section::Upper, .. }) if !leg.drives_height() => {
+                !held.upper.is_empty()
+            }
+            Some(_) | None => false,
+        };
+        if inclined && legs.iter().zip(&held).any(unknown) {
+            return Err(NoClosedForm::Inclined);
+        }
         if task.shared().is_none() {
             if !fixes(task.lower.kind, &conditions(legs, &held, Section::Lower)) {
                 return Err(NoClosedForm::Lower);
@@ -122,8 +143,11 @@ impl Plan {
         let anchors = anchors(task, legs, &held);
         let found = !anchors.is_empty();
         let enough = |anchor: &Anchor| fixes_upper(task, legs, &held, anchor);
+        let lifts = legs.iter().filter(|leg| leg.drives_height()).count();
         match anchors.into_iter().find(enough) {
             Some(anchor) => Ok(Self { legs: held, anchor }),
+            // The heights of several legs are conditions on the imaginary joints.
+            None if inclined && lifts > 1 => Err(NoClosedForm::Inclined),
             None if found => Err(NoClosedForm::Upper),
             None => Err(NoClosedForm::Lower),
         }

@@ -171,9 +171,12 @@ impl Manipulator {
     }
 
     /// Whether the two sections together decide the reachability of every pose: no leg that is split in its
-    /// lower section has upper joints that are limited, actuated, or may be out of reach.
+    /// lower section has upper joints that are limited, actuated, or may be out of reach, and no imaginary joint has a part
+    /// in a height.
     pub fn workspace_factorises(&self) -> bool {
-        self.legs.iter().all(|leg| leg.split_section == Section::Upper || !leg.upper_constrains)
+        let free = |leg: &CompiledLeg| !leg.upper_constrains;
+        !self.shares_height()
+            && self.legs.iter().all(|leg| leg.split_section == Section::Upper || free(leg))
     }
 
     /// The number and the value (radians or metres) of the imaginary joint of a branch; `None` where its leg

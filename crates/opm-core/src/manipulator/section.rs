@@ -39,8 +39,20 @@ pub(crate) struct CompiledSection {
     /// by locked joints.
     pub partial: Option<PartialChain>,
     /// What the section's displacement is multiplied by, on its right, to be what the chain has to reach: see
-    /// [`lift`](super::lift). `None` where that is the displacement itself.
+    /// [`lift`](super::lift). `None` where that is the displacement itself, and the chain has no
+    /// [`slider`](Self::slider).
     pub offset: Option<Displacement>,
+    /// The imaginary joint, where the chain has a part of it alone: see [`lift`](super::lift).
+    pub slider: Option<Slider>,
+}
+
+/// A slider of a chain in the plane that is the part in the plane of an inclined imaginary joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slider {
+    /// Its number in the chain.
+    pub joint: usize,
+    /// Its displacement for a unit of the imaginary joint's.
+    pub rate: f64,
 }
 
 impl CompiledSection {
@@ -57,8 +69,31 @@ impl CompiledSection {
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         match (&self.partial, &self.offset) {
             (None, None) => self.chain.inverse(target, branch),
-            (None, Some(offset)) => self.chain.inverse(&target.after(offset), branch),
-            (Some(partial), _) => Ok(partial.inverse(target)),
+            (None, Some(offset)) => {
+                let found = self.chain.inverse(&target.after(offset), branch)?;
+                Ok(self.with_imaginary(found))
+            }
+            (Some(partial), _) => Ok(self.with_imaginary(partial.inverse(target))),
+        }
+    }
+
+    /// The displacements of the section's joints from those of its chain's: of an inclined imaginary joint, the chain has
+    /// a part.
+    #[inline]
+    fn with_imaginary(&self, mut found: [JointDisplacement; 3]) -> [JointDisplacement; 3] {
+        if let Some(Slider { joint, rate }) = self.slider {
+            found[joint] = JointDisplacement::Value(found[joint].value() / rate);
+        }
+        found
+    }
+
+    /// The displacement of a joint of the chain from that of the section's joint.
+    fn in_chain(&self, joint: usize, displacement: JointDisplacement) -> JointDisplacement {
+        match self.slider {
+            Some(slider) if slider.joint == joint => {
+                JointDisplacement::Value(displacement.value() * slider.rate)
+            }
+            _ => displacement,
         }
     }
 
@@ -74,8 +109,7 @@ impl CompiledSection {
     ) -> Result<JointDisplacement, ReachDeficit> {
         match (&self.partial, &self.offset) {
             (None, None) => self.chain.first(target, branch),
-            (None, Some(offset)) => self.chain.first(&target.after(offset), branch),
-            (Some(partial), _) => Ok(partial.inverse(target)[0]),
+            (None, Some(_)) | (Some(_), _) => Ok(self.inverse(target, branch)?[0]),
         }
     }
 
@@ -87,7 +121,7 @@ impl CompiledSection {
     /// The condition on the section's displacement that one of its joints imposes, held at a displacement: see
     /// [`Condition::new`].
     pub fn condition(&self, joint: usize, displacement: JointDisplacement) -> Option<Condition> {
-        let condition = Condition::new(&self.chain, joint, displacement)?;
+        let condition = Condition::new(&self.chain, joint, self.in_chain(joint, displacement))?;
         Some(match &self.offset {
             None => condition,
             Some(offset) => condition.before(offset),

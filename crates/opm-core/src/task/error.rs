@@ -51,16 +51,6 @@ pub enum TaskError {
         /// The name of the joint.
         joint: &'static str,
     },
-    /// The shared translation of a Schoenflies and a cylindrical section has a component along the direction of the
-    /// Schoenflies section.
-    #[error(
-        "the two sections share a translation with a component along the rotation axes of the {section} section: \
-         closed forms expect one perpendicular to them"
-    )]
-    Inclined {
-        /// The Schoenflies section.
-        section: Section,
-    },
     /// The mechanism's hint `axis` is perpendicular to the intersection motion, so that it chooses neither of
     /// its two directions.
     #[error(
@@ -103,7 +93,6 @@ impl TaskError {
             | Self::Screw
             | Self::Height { .. }
             | Self::JointName { .. }
-            | Self::Inclined { .. }
             | Self::Unknown { .. } => None,
         }
     }

@@ -28,7 +28,8 @@ impl Task {
         ([v, b], rise)
     }
 
-    /// The height of `g` above home. The other section keeps a point, or moves it across the direction of the height.
+    /// The height of `g` above home, where the other section does not move a point of its own: the centre of a sphere, or
+    /// a point of a cylinder's axis, with which [`Task::factors`] leaves the translation along it to this section.
     fn rise_of(&self, g: &Isometry3<f64>) -> f64 {
         match &self.height {
             None => 0.0,
@@ -100,8 +101,8 @@ impl Task {
             SubspaceKind::Planar | SubspaceKind::Spherical => {
                 planar(rotation, moved.x - by_upper.x, moved.y - by_upper.y)
             }
-            // The plane of `b` holds the axis: across it, `b` alone moves.
-            SubspaceKind::Cylindrical => cylindrical(rotation.arg(), moved.z),
+            // `b` makes every translation along the axis.
+            SubspaceKind::Cylindrical => cylindrical(rotation.arg(), 0.0),
             SubspaceKind::TranslationalPlane => Displacement::Translational(Complex::new(
                 moved.x - by_upper.x,
                 moved.y - by_upper.y,

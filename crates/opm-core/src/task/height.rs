@@ -1,8 +1,9 @@
 //! The height of a Schoenflies section.
 
-use super::Task;
+use super::{IntersectionAxis, Task};
 use crate::decomposition::Decomposition;
-use crate::group::subspace::SubspaceClass;
+use crate::group::JointDisplacement;
+use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::mechanism::leg::Section;
 use nalgebra::{Isometry3, Translation3, Vector3};
 use std::ops::Range;
@@ -17,6 +18,9 @@ pub(crate) struct Height {
     pub coordinate: usize,
     /// The unit direction in which it grows, as it is at home, in base coordinates.
     pub up: Vector3<f64>,
+    /// What a unit of a leg's displacement τ along the intersection motion adds to the height of the leg's section. It is
+    /// zero, but for a translation that is inclined to the direction.
+    pub slope: f64,
 }
 
 impl Height {
@@ -32,7 +36,41 @@ impl Height {
     }
 }
 
+/// The slope of a height. With `I` the shared translation, of which `up · I` is along the direction, and `L`, `U` a leg's
+/// sections:
+///
+/// * below, `L = v · exp(I τ)` is raised by `τ up · I` more than `v`;
+/// * above, `U = exp(-I τ) · b` by as much less than `b`.
+pub(super) fn slope(
+    section: Section,
+    up: &Vector3<f64>,
+    intersection: Option<&IntersectionAxis>,
+) -> f64 {
+    let Some(IntersectionAxis { direction, point: None }) = intersection else { return 0.0 };
+    let cosine = up.dot(direction);
+    match section {
+        _ if cosine.abs() <= TOLERANCE => 0.0,
+        Section::Lower => cosine,
+        Section::Upper => -cosine,
+    }
+}
+
 impl Task {
+    /// The slope of the height; zero where there is none.
+    #[inline]
+    pub(crate) fn slope(&self) -> f64 {
+        self.height.as_ref().map_or(0.0, |height| height.slope)
+    }
+
+    /// The height above home of a leg's own section, where the Schoenflies section is at `rise`, and the leg is displaced
+    /// by `tau` along the intersection motion; metres.
+    #[inline]
+    pub(crate) fn rise_of_leg(&self, rise: f64, tau: JointDisplacement) -> f64 {
+        let slope = self.slope();
+        // The value of a rotation costs time.
+        if slope == 0.0 { rise } else { rise + slope * tau.value() }
+    }
+
     /// The height of the Schoenflies section above its home at a pose, metres; zero where there is none.
     #[doc(hidden)]
     #[inline]

@@ -29,11 +29,13 @@ impl Task {
         let number = |i: usize| i + usize::from(i >= height);
         let lower_count = self.lower_count - usize::from(height < self.lower_count);
         let home = |i: usize| self.coordinates[number(i)].home;
-        // Moves the displacement along I to the factor that is not taken modulo I.
+        // Moves the displacement along I to the factor that is not taken modulo I. Of an inclined one, a part is height.
+        let mut rise = rise;
         let (v, handed) = match self.shared() {
             Some(MotionType::Rotation) => self.without_shared_rotation(v),
             Some(MotionType::Translation) => {
                 let translation = self.shared_translation(b);
+                rise = self.rise_of_leg(rise, translation);
                 (self.lower_intersection.after(v, translation), translation.inverse())
             }
             None => (*v, JointDisplacement::Value(0.0)),
@@ -154,8 +156,9 @@ impl Task {
     fn shared_translation(&self, b: &Displacement) -> JointDisplacement {
         let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
         JointDisplacement::Value(match self.upper_intersection {
+            // `along` is shorter than one where the motion is inclined.
             IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
-                component(b.planar().translation, along)
+                component(b.planar().translation, along) / along.norm_sqr()
             }
             IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
                 component(*b.translational(), along)

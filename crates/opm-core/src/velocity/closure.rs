@@ -23,7 +23,7 @@ pub(super) fn inputs(leg: &CompiledLeg, section: Section) -> [bool; 3] {
     if let Some(joint) = leg.imaginary_joint() {
         inputs[joint] |= match (leg.split_section, section) {
             (Section::Upper, Section::Upper) => true,
-            (Section::Lower, Section::Lower) => leg.upper.driven,
+            (Section::Lower, Section::Lower) => leg.passes_on(),
             (Section::Upper, Section::Lower) | (Section::Lower, Section::Upper) => false,
         };
     }

@@ -58,7 +58,8 @@ pub struct Jacobians {
     pub upper: DMatrix<f64>,
     /// `J_p` (Eq. 23): rates of the actuated joints in the lower section ([`Jacobians::lower_rows`]) from
     /// the rates along the intersection motion, in the order of the rows of [`Jacobians::upper`], and the lower section's
-    /// twist, at constant height. The joints that carry a height follow it alone, and have no row here.
+    /// twist, at constant height. The joints that carry a height have no row here: they follow the height and, if that
+    /// motion is inclined, the rates along it.
     pub lower: DMatrix<f64>,
     /// Rates of every joint coordinate, in the order of [`Manipulator::coordinates`], from the section
     /// twist. For the actuated joints of the lower section `q̇ = J_p [J_s upper; lower]`.
@@ -255,22 +256,30 @@ impl Manipulator {
         let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
             let differential = self.leg_differential(at, number);
-            if self.note_singular(number, &differential, &mut out.singular) {
-                self.leg_rows(number, &differential, at.legs[number].tau, &moved, out);
+            let leg = &self.legs[number];
+            if let Some(lean) = &leg.lean {
+                let displacements = at.legs[number].section(lean.section);
+                out.leans[number] = lean.moved_screw(leg, displacements);
+            }
+            let tau_rates = if self.note_singular(number, &differential, &mut out.singular) {
+                self.leg_rows(number, &differential, at.legs[number].tau, &moved, out)
             } else {
                 self.clear_rows(number, out);
-            }
+                [0.0; 6]
+            };
             out.legs[number] = differential;
             out.taus[number] = at.legs[number].tau;
-        }
-        for (number, leg) in self.legs.iter().enumerate() {
-            let Some(lift) = &leg.lift else { continue };
-            let column = out.basis.in_base.len() - 1;
-            let row = lift.coordinate.number;
-            out.joints.row_mut(row).fill(0.0);
-            out.joints[(row, column)] = lift.displacement(1.0);
+            if let Some(lift) = &leg.lift {
+                // The height has the last column. It does not move the imaginary joint.
+                let height = out.basis.in_base.len() - 1;
+                let row = lift.coordinate.number;
+                for (column, rate) in tau_rates[..height].iter().enumerate() {
+                    out.joints[(row, column)] = lift.displacement(lift.slope * rate);
+                }
+                out.joints[(row, height)] = lift.displacement(1.0);
+            }
             if let Some(lean) = &leg.lean {
-                self.lean_column(at, number, lean, &moved, out);
+                self.lean_column(number, lean, &moved, out);
             }
         }
         self.pose_columns(at, out);
@@ -282,18 +291,10 @@ impl Manipulator {
     /// Computes the rates of a leg's joints for a unit rate of the height, where its lift leans: the other joints of the
     /// section take back what the lift does in the plane.
     #[cold]
-    fn lean_column(
-        &self,
-        at: &Solution,
-        number: usize,
-        lean: &Lean,
-        moved: &Moved,
-        out: &mut Jacobians,
-    ) {
+    fn lean_column(&self, number: usize, lean: &Lean, moved: &Moved, out: &mut Jacobians) {
         let (leg, column) = (&self.legs[number], out.basis.in_base.len() - 1);
         let LegDifferential { lower, upper } = out.legs[number];
         let none = LocalTwist::zeros();
-        out.leans[number] = lean.moved_screw(leg, at.legs[number].section(lean.section));
         let own = -out.leans[number];
         let [own_lower, own_upper] = match lean.section {
             Section::Lower => [own, none],
@@ -340,7 +341,8 @@ impl Manipulator {
         }
     }
 
-    /// Computes the rows of a leg.
+    /// Computes the rows of a leg, and returns the rates along the intersection motion for each component of the section
+    /// twist.
     #[inline]
     fn leg_rows(
         &self,
@@ -349,15 +351,15 @@ impl Manipulator {
         tau: JointDisplacement,
         moved: &Moved,
         out: &mut Jacobians,
-    ) {
+    ) -> [f64; 6] {
         let task = self.task();
         let leg = &self.legs[number];
         let sign = leg.imaginary.map_or(1.0, |i| self.imaginary()[i].sign);
         let [n_upper, n_lower] = out.basis.counts;
-        // Rates along the intersection motion for each component of the section twist. In the section that is solved second,
-        // they add to the twist: `carried` is the twist of a unit rate.
+        // Rates of the imaginary joint in its chain for each component of the section twist. In the section that is solved
+        // second, they add to the twist: `carried` is the twist of a unit rate. `τ` grows in the sense `forward`.
         let mut along = [0.0; 6];
-        let (upper_twists, carried) = match leg.split_section {
+        let (upper_twists, mut carried, forward) = match leg.split_section {
             Section::Upper => {
                 if let Some(bridge) = out.bridges[number] {
                     for (i, twist) in out.basis.upper[..n_upper].iter().enumerate() {
@@ -365,7 +367,7 @@ impl Manipulator {
                         out.upper[(bridge, i)] = sign * along[i];
                     }
                 }
-                (out.basis.upper, moved.along)
+                (out.basis.upper, moved.along, 1.0)
             }
             Section::Lower => {
                 let last = leg.lower.chain.freedoms() - 1;
@@ -374,9 +376,13 @@ impl Manipulator {
                 }
                 let inverse = tau.inverse();
                 let carried = |twist: LocalTwist| task.upper_intersection.adjoint(inverse, &twist);
-                (out.basis.upper.map(carried), task.upper_intersection.unit_twist())
+                (out.basis.upper.map(carried), task.upper_intersection.unit_twist(), -1.0)
             }
         };
+        if leg.lean.is_some() {
+            // A lift that leans takes a part back, where the imaginary joint has a part in the height.
+            carried -= out.leans[number] * (forward * task.slope());
+        }
         let (n, bridges, joints) = (n_upper + n_lower, out.bridged.len(), out.joints.nrows());
         if let Some(dependent) = &self.dependent {
             for (row, (_, section, joint)) in
@@ -434,6 +440,7 @@ impl Manipulator {
                 }
             }
         }
+        along.map(|rate| forward * rate)
     }
 
     /// Computes the rates of the dependent coordinates for a unit rate of each independent one, NaN where they are
@@ -482,6 +489,10 @@ impl Manipulator {
         let rotation = task.shared() == Some(MotionType::Rotation);
         let lower_along = task.lower_intersection.unit_twist();
         let upper_along = task.upper_intersection.unit_twist();
+        let upper_reciprocal = match rotation {
+            true => LocalTwist::zeros(),
+            false => task.upper_intersection.reciprocal(),
+        };
         let (v_screws, b_screws) = (task.lower_screws(pose), task.upper_screws(pose));
         if let Some(height) = &task.height {
             out.pose.fill(0.0);
@@ -494,6 +505,7 @@ impl Manipulator {
         };
         for (section, component, column) in of(Section::Lower).chain(of(Section::Upper)) {
             let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
+            let mut along = 0.0;
             match section {
                 Section::Lower => lower = v.adjoint_of_inverse(&v_screws.moved[component]),
                 Section::Upper => upper = b_screws.moved[component],
@@ -503,7 +515,8 @@ impl Manipulator {
             if rotation {
                 upper += upper_along * lower.dot(&lower_along);
             } else {
-                lower += lower_along * upper.dot(&upper_along);
+                along = upper.dot(&upper_reciprocal);
+                lower += lower_along * along;
             }
             let entries = &mut out.pose.as_mut_slice()[column * n..(column + 1) * n];
             for (entry, twist) in entries.iter_mut().zip(&out.basis.upper[..n_upper]) {
@@ -511,6 +524,10 @@ impl Manipulator {
             }
             for (entry, twist) in entries[n_upper..].iter_mut().zip(&out.basis.lower) {
                 *entry = lower.dot(twist);
+            }
+            // The upper section has the part of an inclined motion in the plane: the height gets the rest.
+            if let Some(height) = &task.height {
+                out.pose[(n - 1, column)] = height.slope * along;
             }
         }
     }

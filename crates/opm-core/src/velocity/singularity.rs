@@ -138,8 +138,9 @@ impl Layout {
             .map(|leg| {
                 let moves = match leg.split_section {
                     Section::Upper => leg.imaginary.is_some(),
-                    // The lower section passes that motion on to an upper section that has an actuated joint.
-                    Section::Lower => leg.upper.driven,
+                    // The lower section passes that motion on to an upper section that has an actuated joint, or to an
+                    // actuated joint that carries a height.
+                    Section::Lower => leg.passes_on(),
                 };
                 moves.then(|| {
                     along_count += 1;
@@ -301,8 +302,19 @@ impl Manipulator {
         let along = v.adjoint(&task.lower_intersection.unit_twist());
         let upper_along = task.upper_intersection.unit_twist();
         let lifts = self.legs.iter().filter(|leg| leg.drives_height()).count();
+        // The rate of the imaginary joint that the columns `along` are for, by that of τ.
+        let forward =
+            |leg: &CompiledLeg| if leg.split_section == Section::Upper { 1.0 } else { -1.0 };
+        let slope = task.slope();
         if let Some((column, rows)) = layout.height_block(lifts) {
-            rows.for_each(|row| closure[(row, column)] = 1.0);
+            let driven = self.legs.iter().enumerate().filter(|(_, leg)| leg.drives_height());
+            for (row, (number, leg)) in rows.zip(driven) {
+                closure[(row, column)] = 1.0;
+                if let Some(column) = layout.along[number].filter(|_| slope != 0.0) {
+                    let unit = along_unit(leg, task.lower_intersection, length) / length;
+                    closure[(row, column)] = forward(leg) * slope * unit;
+                }
+            }
         }
         let height = |section: Section| {
             let block = layout.height_block(lifts).filter(|_| layout.height == Some(section));
@@ -323,6 +335,10 @@ impl Manipulator {
                             -unit * w.dot(&differential.lower.screws.moved[last])
                         }
                     };
+                    if height_below.is_some() {
+                        closure[(row, column)] -=
+                            forward(leg) * slope * unit * w.dot(&leans[number]);
+                    }
                 }
                 for (i, twist) in layout.lower_basis.iter().enumerate() {
                     closure[(row, layout.along_count + i)] =
@@ -345,6 +361,10 @@ impl Manipulator {
                         Section::Upper => -unit * w.dot(&upper_along),
                         Section::Lower => unit * w.dot(&upper_along),
                     };
+                    if height_above.is_some() {
+                        closure[(row, column)] -=
+                            forward(leg) * slope * unit * w.dot(&leans[number]);
+                    }
                 }
                 for (i, twist) in layout.upper_basis.iter().enumerate() {
                     let carried = match leg.split_section {

@@ -135,6 +135,11 @@ pub enum RequestError {
         /// The names of the dependent coordinates.
         dependent: Vec<String>,
     },
+    /// The kind is of one section alone, but heights of legs depend on the imaginary joints.
+    Inclined {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
     /// A conditioning index is requested, but the points of the kind are not poses.
     NotOfPoses {
         /// The kind.
@@ -227,7 +232,8 @@ impl RequestError {
             Self::NoImaginaryJoints { .. }
             | Self::OneSubspace { .. }
             | Self::NoPart { .. }
-            | Self::Dependent { .. } => RequestOption::Kind,
+            | Self::Dependent { .. }
+            | Self::Inclined { .. } => RequestOption::Kind,
             Self::NotOfPoses { .. } => RequestOption::Conditioning,
             Self::Follows { option, .. } | Self::UnknownColumn { option, .. } => *option,
             Self::UnknownCoordinate { .. } | Self::CloudAxes { .. } => RequestOption::Axes,
@@ -301,6 +307,10 @@ impl RequestError {
                 "{kind}: the sections of this mechanism have no workspaces of their own, because its legs tie its \
                  coordinates together (dependent: {}); use grid",
                 dependent.join(", ")
+            ),
+            Self::Inclined { kind } => format!(
+                "{kind}: the sections of this mechanism have no workspaces of their own, because they share a \
+                 translation that is inclined to the direction of its height; use grid"
             ),
             Self::NotOfPoses { kind } => format!(
                 "with {}: only poses have a condition number; ask for it of grid, \

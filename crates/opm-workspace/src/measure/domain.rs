@@ -125,6 +125,12 @@ pub enum DomainError {
         /// The names of the dependent coordinates.
         dependent: Vec<&'static str>,
     },
+    /// The heights of legs depend on the imaginary joints.
+    #[error(
+        "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
+         the height; a grid of its workspace can be counted"
+    )]
+    Inclined,
     /// No coordinate has the name of the range.
     #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
     Unknown {
@@ -210,6 +216,9 @@ impl Domain {
         if !dependent.is_empty() {
             let dependent = dependent.iter().map(|c| c.name).collect();
             return Err(DomainError::Dependent { dependent });
+        }
+        if manipulator.shares_height() {
+            return Err(DomainError::Inclined);
         }
         let mut axes = axes(manipulator, sections);
         if axes.is_empty() {

@@ -70,7 +70,8 @@ pub enum SheetKind {
     Regions,
     /// Some leg has several branches, or one that is none: branches are decided one by one.
     Branches,
-    /// Some task coordinates follow from those of the grid: poses are decided one by one.
+    /// Some task coordinates follow from those of the grid, or heights of legs from imaginary joints: poses are decided one
+    /// by one.
     Single,
 }
 
@@ -210,7 +211,9 @@ impl<'a> Sheet<'a> {
         let first = lower.saturating_sub(1);
         fill(&sweep.grid.axes()[lower..], slice, &mut self.others[first..]);
         self.open = true;
-        if !sweep.manipulator.dependent_coordinates().is_empty() {
+        if !sweep.manipulator.dependent_coordinates().is_empty()
+            || sweep.manipulator.shares_height()
+        {
             self.kind = SheetKind::Single;
             return;
         }

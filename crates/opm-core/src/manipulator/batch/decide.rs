@@ -39,7 +39,7 @@ impl Manipulator {
     /// others.
     #[doc(hidden)]
     pub fn decides_many(&self) -> bool {
-        self.dependent.is_none() && self.lifts_straight()
+        self.dependent.is_none() && self.lifts_straight() && !self.shares_height()
     }
 
     /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
