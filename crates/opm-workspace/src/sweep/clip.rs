@@ -460,7 +460,7 @@ fn subtract(
         let inside = chord(rows.at[i]);
         let first = larger(from.first[i], inside.from);
         let last = smaller(from.last[i], inside.to);
-        doubts.add(i, !inside.sure | is_tie(first) | is_tie(last));
+        doubts.add(i, !inside.sure | is_close(first, last, &is_tie));
         let (first, last) = (first.ceil(), last.floor());
         (missing.first[i], missing.last[i]) = (first, last);
         let number = larger(last - first + 1.0, 0.0);
@@ -468,6 +468,12 @@ fn subtract(
         some |= number.to_bits();
     }
     *any = some != 0;
+}
+
+/// Whether an end of an interval is too close to a pose. It does not matter where the interval is empty by far.
+#[inline(always)]
+fn is_close(first: f64, last: f64, is_tie: impl Fn(f64) -> bool) -> bool {
+    (is_tie(first) | is_tie(last)) & (first - last <= 1.0)
 }
 
 /// The first and last whole numbers in intervals, and how many there are.
@@ -482,7 +488,7 @@ fn round(
 ) {
     for i in rows.all() {
         let (first, last) = (from.first[i], from.last[i]);
-        doubts.add(i, is_tie(first) | is_tie(last));
+        doubts.add(i, is_close(first, last, &is_tie));
         let (first, last) = (first.ceil(), last.floor());
         (to.first[i], to.last[i]) = (first, last);
         counts[i] = larger(last - first + 1.0, 0.0);
