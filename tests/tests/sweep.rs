@@ -7,12 +7,19 @@ use opm_tests::by_inverse::{by_inverse, by_predicate};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sweep};
 
-/// A grid about home with more values along the coordinates of the lower section.
+/// A grid about home with more values along the coordinates of the lower section, or with few of them, so that slices
+/// have few poses.
 fn grid(rng: &mut Rng, manipulator: &Manipulator) -> Grid {
     let lower = manipulator.task().lower_count;
+    let few = rng.u8(..3) == 0;
     let axes = manipulator.task_coordinates().iter().enumerate().map(|(number, c)| {
         let (below, above) = (rng.f64() * 1.5, rng.f64() * 1.5);
-        let count = if number < lower { 2 + rng.u64(..9) } else { 1 + rng.u64(..3) };
+        let count = match (number < lower, few) {
+            (true, false) => 2 + rng.u64(..9),
+            (true, true) => 1 + rng.u64(..2),
+            (false, false) => 1 + rng.u64(..3),
+            (false, true) => 2 + rng.u64(..5),
+        };
         if count == 1 {
             Axis::fixed(c.name, c.home + below - above)
         } else {
