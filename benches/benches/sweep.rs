@@ -248,10 +248,9 @@ fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
     };
     let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
     let v = manipulator.task().lower(&manipulator.home_pose()[..grid.lower()]);
-    let mut roots = 0;
-    for way in &ways {
-        let regions = manipulator.regions(way, &v, 1.0, |Region { whole, .. }| roots += of(&whole));
-        regions.expect("only sliders are limited");
-    }
-    roots
+    let regions = ways.iter().map(|way| {
+        let region = manipulator.region(way, &v, 1.0);
+        region.expect("only sliders are limited")
+    });
+    regions.map(|Region { whole, .. }| of(&whole)).sum()
 }

@@ -3,9 +3,7 @@
 //! poses.
 
 use fastrand::Rng;
-use opm_core::chain::region::Region;
 use opm_core::decomposition::Decomposition;
-use opm_core::group::Displacement;
 use opm_core::manipulator::{LegBranch, Manipulator, Solution};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
@@ -251,13 +249,6 @@ fn holes_overlap() {
     println!("{reachable} poses");
 }
 
-/// The region in which a leg without limits on angles closes.
-fn region(manipulator: &Manipulator, way: &LegBranch, v: &Displacement) -> Option<Region> {
-    let mut found = None;
-    manipulator.regions(way, v, 1.0, |region| found = Some(region))?;
-    found
-}
-
 /// Legs that are independent of the slice, in one of two ways.
 #[test]
 fn legs_independent_of_the_slice_are_joined() {
@@ -278,7 +269,7 @@ fn legs_independent_of_the_slice_are_joined() {
             let mut ways = Vec::new();
             manipulator.leg_branches(leg, &b, None, &mut ways);
             let regions: Vec<_> =
-                ways.iter().filter_map(|way| region(&manipulator, way, &v)).collect();
+                ways.iter().filter_map(|way| manipulator.region(way, &v, 1.0)).collect();
             ways[0].is_independent_of_slice() && regions.iter().any(|region| region != &regions[0])
         });
         if !differ {

@@ -88,34 +88,36 @@ impl Shape {
         Self { rotation_limits, ..self }
     }
 
-    /// Calls `found` with the regions whose intersection is the shape, for targets with this rotation, with each of their
-    /// points `z` moved to `scale · (z + shift)`; returns `None` where sliders are nearly parallel.
-    #[inline(always)]
-    pub fn regions(
+    /// Calls `found` with the regions that limits on a link's direction leave, which are all to be met, placed as that of
+    /// [`Shape::at`].
+    pub fn link_regions(
         &self,
         rotation: Complex<f64>,
         shift: Complex<f64>,
         scale: f64,
-        found: &mut impl FnMut(Region),
-    ) -> Option<()> {
-        found(self.at(rotation, shift, scale)?);
-        if let Some(limits) = &self.link_limits {
-            match &self.motion {
-                ShapeMotion::Carried(_, pivot) => limits.places(rotation, |places| {
-                    found(places.placed(shift - rotation * pivot, scale));
-                }),
-                ShapeMotion::Turned(_, pivot) => limits.places(rotation.conj(), |places| {
-                    found(places.turned(-rotation).placed(shift + pivot, scale));
-                }),
-                ShapeMotion::Sheared(..) => {}
-            }
+        mut found: impl FnMut(Region),
+    ) {
+        let Some(limits) = &self.link_limits else { return };
+        match &self.motion {
+            ShapeMotion::Carried(_, pivot) => limits.places(rotation, |places| {
+                found(places.placed(shift - rotation * pivot, scale));
+            }),
+            ShapeMotion::Turned(_, pivot) => limits.places(rotation.conj(), |places| {
+                found(places.turned(-rotation).placed(shift + pivot, scale));
+            }),
+            ShapeMotion::Sheared(..) => {}
         }
-        Some(())
     }
 
-    /// The region for targets with this rotation, without limits on links.
+    /// Whether a link's direction is limited.
+    pub fn limits_link(&self) -> bool {
+        self.link_limits.is_some()
+    }
+
+    /// The region for targets with this rotation, with each of its points `z` moved to `scale · (z + shift)`, without limits
+    /// on links; `None` where sliders are nearly parallel.
     #[inline(always)]
-    fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
+    pub fn at(&self, rotation: Complex<f64>, shift: Complex<f64>, scale: f64) -> Option<Region> {
         if let Some(RotationLimits { reversed, limits }) = &self.rotation_limits {
             let angle = if *reversed { rotation.conj() } else { rotation };
             if !limits.admits(JointDisplacement::Direction(angle)) {

@@ -14,6 +14,7 @@
 use super::leg::{CompiledLeg, LegBranches, Section};
 use super::{ImaginaryJoint, Manipulator, Mode};
 use crate::chain::region::Region;
+use crate::chain::shape::Shape;
 use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Complex;
 
@@ -210,19 +211,43 @@ impl Manipulator {
         }
     }
 
-    /// Calls `found` with regions of translations that can be added to the displacement `v`: a leg closes on a branch for
-    /// those that are in all of them, in units of `1 / scale`. They agree with [`Manipulator::reaches`] up to rounding.
-    /// Returns `None` where `v` is not a displacement of a plane, or where limits on angles make the translations more
-    /// than convex sets with convex holes have in common.
+    /// The translations that can be added to the displacement `v` such that a leg closes on a branch, in units
+    /// of `1 / scale`. With [`Manipulator::link_regions`], it agrees with [`Manipulator::reaches`] up to rounding. `None`
+    /// where `v` is not a displacement of a plane, or where limits on angles, other than those of a link that slides, make
+    /// the translations more than a convex set with a convex hole.
     #[doc(hidden)]
     #[inline(always)]
-    pub fn regions(
+    pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
+        let (shape, rotation, shift) = self.shape_at(branch, v)?;
+        shape.at(rotation, shift, scale)
+    }
+
+    /// Calls `found` with regions as [`Manipulator::region`], which limits on a link that slides leave: a leg closes for
+    /// the translations that all of them have in common.
+    #[doc(hidden)]
+    #[inline]
+    pub fn link_regions(
         &self,
         branch: &LegBranch,
         v: &Displacement,
         scale: f64,
-        mut found: impl FnMut(Region),
-    ) -> Option<()> {
+        found: impl FnMut(Region),
+    ) {
+        let shape = self.legs[branch.leg].shape(branch.branches.lower);
+        if shape.is_some_and(Shape::limits_link)
+            && let Some((shape, rotation, shift)) = self.shape_at(branch, v)
+        {
+            shape.link_regions(rotation, shift, scale, found);
+        }
+    }
+
+    /// The shape in which a leg closes, the rotation of its target, and what is added to its points to be translations.
+    #[inline(always)]
+    fn shape_at(
+        &self,
+        branch: &LegBranch,
+        v: &Displacement,
+    ) -> Option<(&Shape, Complex<f64>, Complex<f64>)> {
         if branch.with_upper.is_some() {
             return None;
         }
@@ -238,8 +263,8 @@ impl Manipulator {
             target = &displaced;
         }
         match target {
-            Displacement::Planar(g) => shape.regions(g.rotation, -g.translation, scale, &mut found),
-            Displacement::Translational(t) => shape.regions(Complex::ONE, -t, scale, &mut found),
+            Displacement::Planar(g) => Some((shape, g.rotation, -g.translation)),
+            Displacement::Translational(t) => Some((shape, Complex::ONE, -t)),
             Displacement::Identity(_)
             | Displacement::Spherical(_)
             | Displacement::Cylindrical(_)

@@ -272,12 +272,14 @@ pub struct Intersect<'a, R> {
 }
 
 /// The step that clips rows to `regions` and to those that `begun` was made of, and counts what they have in
-/// common. All of these regions are in `with_holes`.
+/// common. All of these regions are in `with_holes`, but for those of `links`.
 pub struct Clip<'a, R, H> {
     pub rows: &'a Rows,
     pub begun: &'a Intersection,
     pub regions: R,
     pub with_holes: H,
+    /// Regions that are like `regions`; in most sheets there are none.
+    pub links: &'a [(Region, ClipPlan)],
     pub clipped: &'a mut ClippedRows,
 }
 
@@ -301,7 +303,7 @@ impl<'a, R: Iterator<Item = (&'a Region, &'a ClipPlan)>> WithSimd for Intersect<
     }
 }
 
-impl<'a, R, H> WithSimd for Clip<'_, R, H>
+impl<'a, R, H> WithSimd for Clip<'a, R, H>
 where
     R: Iterator<Item = (&'a Region, &'a ClipPlan)> + Clone,
     H: Iterator<Item = (&'a Region, &'a ClipPlan)> + Clone,
@@ -333,43 +335,66 @@ where
     }
 }
 
-impl<'a, R, H> Clip<'_, R, H>
+impl<'a, R, H> Clip<'a, R, H>
 where
     R: Iterator<Item = (&'a Region, &'a ClipPlan)> + Clone,
     H: Iterator<Item = (&'a Region, &'a ClipPlan)> + Clone,
 {
     #[inline(always)]
     fn clip(&mut self, doubts: &mut impl Doubts) {
-        let Self { rows, begun, regions, with_holes, clipped } = self;
+        let Self { rows, begun, regions, with_holes, links, clipped } = self;
         let ClippedRows { intersection, holes, crowded, counts, partial, .. } = &mut **clipped;
         let [now, next] = partial;
-        let (mut now, mut next, mut tie) = (now, next, begun.tie);
-        now.clone_from(&begun.left);
+        let mut left = Left { now, next, tie: begun.tie };
+        left.now.clone_from(&begun.left);
+        // In two loops: in most sheets there are no links.
         for (region, plan) in regions.clone() {
-            let set = ConvexClip { set: &region.whole, precision: &plan.precision };
-            set.intersect(rows, now, next, doubts);
-            (now, next) = (next, now);
-            tie = larger(tie, plan.tie);
+            left.intersect(rows, region, plan, doubts);
         }
+        for (region, plan) in *links {
+            left.intersect(rows, region, plan, doubts);
+        }
+        let Left { now, tie, .. } = left;
         let is_tie = |end: f64| (end - end.round_ties_even()).abs() <= tie;
         round(rows, now, intersection, counts, is_tie, doubts);
         let mut number = 0;
         for (region, plan) in with_holes.clone() {
             let Some(set) = &region.hole else { continue };
-            let met = rows.between(plan.hole_rows);
-            if met.is_empty() {
-                continue;
-            }
-            if number == holes.len() {
-                holes.push(Hole { rows: 0..0, missing: Intervals::NONE, met: false });
-            }
-            let set = ConvexClip { set, precision: &plan.precision };
-            holes[number].rows = met;
-            set.subtract(rows, now, &mut holes[number], counts, is_tie, doubts);
-            number += 1;
+            let hole = ConvexClip { set, precision: &plan.precision };
+            number += hole.subtract_as(number, holes, plan, rows, now, counts, is_tie, doubts);
+        }
+        for (region, plan) in *links {
+            let Some(set) = &region.hole else { continue };
+            let hole = ConvexClip { set, precision: &plan.precision };
+            number += hole.subtract_as(number, holes, plan, rows, now, counts, is_tie, doubts);
         }
         holes.truncate(number);
         count_overlaps(holes, counts, crowded);
+    }
+}
+
+/// What regions leave of rows, and where that of one region more goes.
+struct Left<'a> {
+    now: &'a mut Intervals,
+    next: &'a mut Intervals,
+    /// How far an end may be off.
+    tie: f64,
+}
+
+impl Left<'_> {
+    /// Leaves what is in the convex set of a region.
+    #[inline(always)]
+    fn intersect(
+        &mut self,
+        rows: &Rows,
+        region: &Region,
+        plan: &ClipPlan,
+        doubts: &mut impl Doubts,
+    ) {
+        let set = ConvexClip { set: &region.whole, precision: &plan.precision };
+        set.intersect(rows, self.now, self.next, doubts);
+        std::mem::swap(&mut self.now, &mut self.next);
+        self.tie = larger(self.tie, plan.tie);
     }
 }
 
@@ -399,6 +424,35 @@ impl ConvexClip<'_> {
                 intersect(rows, from, to, doubts, |y| capsule.chord(y, precision));
             }
         }
+    }
+
+    /// Takes from each row what is in the set, as hole number `number`; returns how many holes that makes.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the compiler tells arrays apart that are arguments"
+    )]
+    fn subtract_as(
+        self,
+        number: usize,
+        holes: &mut Vec<Hole>,
+        plan: &ClipPlan,
+        rows: &Rows,
+        from: &Intervals,
+        counts: &mut [f64; ROWS],
+        is_tie: impl Fn(f64) -> bool,
+        doubts: &mut impl Doubts,
+    ) -> usize {
+        let met = rows.between(plan.hole_rows);
+        if met.is_empty() {
+            return 0;
+        }
+        if number == holes.len() {
+            holes.push(Hole { rows: 0..0, missing: Intervals::NONE, met: false });
+        }
+        holes[number].rows = met;
+        self.subtract(rows, from, &mut holes[number], counts, is_tie, doubts);
+        1
     }
 
     /// Takes from each row what is in the set.

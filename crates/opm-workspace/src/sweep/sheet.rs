@@ -13,9 +13,12 @@ use std::cell::OnceCell;
 #[derive(Clone, Debug)]
 pub struct SliceBranch {
     pub follow: LegBranch,
-    /// Regions whose common part are the poses that it reaches, and how rows are clipped to them; none where rows cannot
-    /// be clipped to it.
-    regions: Vec<(Region, ClipPlan)>,
+    /// The poses that it reaches, if they are a region of the plane and meet `links`.
+    region: Option<Region>,
+    /// How rows are clipped to the region, if they can be.
+    plan: Option<ClipPlan>,
+    /// The regions that limits on a link leave, and how rows are clipped to them.
+    links: Vec<(Region, ClipPlan)>,
     /// Where along rows its feasibility changes, if that has a closed form; found when first needed.
     pub transitions: OnceCell<Option<Transitions>>,
     /// No reachable pose has used it yet.
@@ -24,20 +27,33 @@ pub struct SliceBranch {
 
 impl SliceBranch {
     fn new(follow: LegBranch) -> Self {
-        Self { follow, regions: vec![], transitions: OnceCell::new(), unused: true }
+        Self {
+            follow,
+            region: None,
+            plan: None,
+            links: vec![],
+            transitions: OnceCell::new(),
+            unused: true,
+        }
     }
 
-    /// The regions that rows are clipped to, if they can be.
-    pub fn clipped_to(&self) -> impl Iterator<Item = (&Region, &ClipPlan)> + Clone {
-        self.regions.iter().map(|(region, plan)| (region, plan))
+    /// The region that rows are clipped to, if they can be, without those of links.
+    pub fn clipped_to(&self) -> Option<(&Region, &ClipPlan)> {
+        self.region.as_ref().zip(self.plan.as_ref())
+    }
+
+    /// The regions of links that rows are clipped to as well.
+    pub fn links(&self) -> &[(Region, ClipPlan)] {
+        &self.links
     }
 
     /// Whether rows can be clipped to its regions.
     pub fn is_clippable(&self) -> bool {
-        !self.regions.is_empty()
+        self.plan.is_some()
     }
 
     /// Finds its regions in a sheet whose first pose has the displacement `v`.
+    #[inline(always)]
     fn find_regions(
         &mut self,
         manipulator: &Manipulator,
@@ -45,19 +61,19 @@ impl SliceBranch {
         scale: &RowScale,
         last: f64,
     ) {
-        self.regions.clear();
         let per_unit = scale.step.recip();
+        self.region = manipulator.region(&self.follow, v, per_unit);
         // Steps may be too small to count in.
-        let mut all = per_unit.is_finite();
-        let found = manipulator.regions(&self.follow, v, per_unit, |region| {
+        let region = self.region.as_ref().filter(|_| per_unit.is_finite());
+        self.plan = region.and_then(|region| ClipPlan::new(region, last, scale.extent));
+        self.links.clear();
+        let Self { follow, plan, links, .. } = self;
+        manipulator.link_regions(follow, v, per_unit, |region| {
             match ClipPlan::new(&region, last, scale.extent) {
-                Some(plan) => self.regions.push((region, plan)),
-                None => all = false,
+                Some(of_link) => links.push((region, of_link)),
+                None => *plan = None,
             }
         });
-        if !(all && found.is_some()) {
-            self.regions.clear();
-        }
     }
 }
 
@@ -66,9 +82,9 @@ impl SliceBranch {
 pub enum SheetKind {
     /// The upper section of some leg does not close: no pose is reachable.
     Unreachable,
-    /// Every leg has one branch, and that is regions' common part: rows are clipped to all regions together.
+    /// Every leg has one branch, and that is what regions have in common: rows are clipped to all regions together.
     Regions,
-    /// Some leg has several branches, or one that is none: branches are decided one by one.
+    /// Some leg has several branches, or one without regions: branches are decided one by one.
     Branches,
     /// Some task coordinates follow from those of the grid, or heights of legs from imaginary joints: poses are decided one
     /// by one.
@@ -124,6 +140,8 @@ pub struct Sheet<'a> {
     /// All coordinates but the first.
     pub others: Vec<f64>,
     pub scale: RowScale,
+    /// The regions of links of all legs, in a sheet of [`SheetKind::Regions`].
+    pub links: Vec<(Region, ClipPlan)>,
     /// The number, in any slice, of the sheet for which regions were found that are the same in every slice.
     fixed_regions_of: Option<u64>,
     /// Working memory for branches.
@@ -146,6 +164,7 @@ impl<'a> Sheet<'a> {
             // A row of the upper section alone has no first coordinate that could differ.
             others: vec![0.0; grid.axes().len() - usize::from(grid.lower() > 0)],
             scale: RowScale::new(grid.axes(), grid.lower() > 1),
+            links: Vec::new(),
             fixed_regions_of: None,
             found: Vec::new(),
         }
@@ -288,6 +307,12 @@ impl<'a> Sheet<'a> {
             }
             if branches.len() != 1 {
                 self.kind = SheetKind::Branches;
+            }
+        }
+        self.links.clear();
+        if self.kind == SheetKind::Regions {
+            for branch in self.legs.iter().flatten().filter(|branch| !branch.links.is_empty()) {
+                self.links.extend_from_slice(&branch.links);
             }
         }
     }

@@ -91,7 +91,7 @@ impl Clipping {
                 .branches()
                 .filter(|branch| regions && branch.follow.is_independent_of_slice());
             let (rows, intersection) = (&self.rows, &mut self.shared);
-            let regions = fixed.flat_map(SliceBranch::clipped_to);
+            let regions = fixed.filter_map(SliceBranch::clipped_to);
             self.arch.dispatch(Intersect { regions, rows, intersection });
         }
         let branches = sheet.legs.iter().map(Vec::len).sum();
@@ -99,15 +99,15 @@ impl Clipping {
         let (rows, begun) = (&self.rows, &self.shared);
         if regions {
             let moving = sheet.branches().filter(|branch| !branch.follow.is_independent_of_slice());
-            let regions = moving.flat_map(SliceBranch::clipped_to);
-            let with_holes = sheet.branches().flat_map(SliceBranch::clipped_to);
-            let clipped = &mut self.clipped[0];
-            self.arch.dispatch(Clip { rows, begun, regions, with_holes, clipped });
+            let regions = moving.filter_map(SliceBranch::clipped_to);
+            let with_holes = sheet.branches().filter_map(SliceBranch::clipped_to);
+            let (links, clipped) = (&*sheet.links, &mut self.clipped[0]);
+            self.arch.dispatch(Clip { rows, begun, regions, with_holes, links, clipped });
         } else {
             for (clipped, branch) in self.clipped.iter_mut().zip(sheet.branches()) {
-                let regions = branch.clipped_to();
-                let with_holes = regions.clone();
-                self.arch.dispatch(Clip { rows, begun, regions, with_holes, clipped });
+                let regions = branch.clipped_to().into_iter();
+                let (with_holes, links) = (regions.clone(), branch.links());
+                self.arch.dispatch(Clip { rows, begun, regions, with_holes, links, clipped });
             }
         }
     }

@@ -120,8 +120,8 @@ impl WithSimd for Decide<'_> {
         block.lift(manipulator);
         let Status { open, within_limits, .. } = &block.status;
         block.decided.open = *open;
-        for lane in 0..LANES {
-            block.decided.missed[lane] = within_limits[lane] ^ 1;
+        for (missed, within) in block.decided.missed.iter_mut().zip(within_limits) {
+            *missed = within ^ 1;
         }
         let mut number = 0;
         for (leg, compiled) in manipulator.legs.iter().enumerate() {
