@@ -197,7 +197,7 @@ def test_threads_and_memory_orders_do_not_matter(manipulator, poses):
 def test_modes(manipulator):
     plus, minus = (manipulator.inverse([manipulator.home], mode=m) for m in ("home", "++ ++ ++ -"))
     column = manipulator.actuated[-1]
-    # The elbow is bent to the other side. Angles are reported within half a turn of home.
+    # The elbow bends in the other direction. Joint angles are between -180 and 180 degrees from home.
     assert np.cos(plus.joints[0, column]) == pytest.approx(np.cos(minus.joints[0, column]))
     assert np.sin(plus.joints[0, column]) == pytest.approx(-np.sin(minus.joints[0, column]))
 

@@ -4,6 +4,7 @@
 
 pub mod by_inverse;
 pub mod differences;
+pub mod displace;
 pub mod height;
 pub mod newton;
 pub mod paper;

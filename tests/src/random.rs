@@ -326,60 +326,6 @@ pub fn displacement(rng: &mut Rng) -> Isometry3<f64> {
     )
 }
 
-/// The mechanism displaced as a rigid body, including its task hints.
-pub fn displace(mechanism: &Mechanism, g: &Isometry3<f64>) -> Mechanism {
-    let mut displaced = mechanism.clone();
-    for joint in displaced.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
-        (joint.axis, joint.point) = (g * joint.axis, g * joint.point);
-        if let JointKind::Universal { second } = &mut joint.kind {
-            *second = g * *second;
-        }
-    }
-    for label in displaced.legs.iter_mut().filter_map(|leg| leg.imaginary.as_mut()) {
-        label.positive = g * label.positive;
-    }
-    displaced.platform = g * mechanism.platform;
-    let task = &mut displaced.task;
-    let turned = |v: &mut Option<Vector3<f64>>| *v = v.map(|v| g * v);
-    turned(&mut task.axis);
-    for frame in [&mut task.lower, &mut task.upper] {
-        turned(&mut frame.x);
-        turned(&mut frame.axis);
-        turned(&mut frame.w);
-        turned(&mut frame.normal);
-        frame.origin = frame.origin.map(|point| g * point);
-    }
-    displaced
-}
-
-/// The decomposition of the displaced mechanism.
-pub fn displace_decomposition(decomposition: &Decomposition, g: &Isometry3<f64>) -> Decomposition {
-    let class = |class: &SubspaceClass| match *class {
-        SubspaceClass::Rotation { axis, point } => {
-            SubspaceClass::Rotation { axis: g * axis, point: g * point }
-        }
-        SubspaceClass::Translation { axis } => SubspaceClass::Translation { axis: g * axis },
-        SubspaceClass::Planar { normal } => SubspaceClass::Planar { normal: g * normal },
-        SubspaceClass::TranslationalPlane { normal } => {
-            SubspaceClass::TranslationalPlane { normal: g * normal }
-        }
-        SubspaceClass::Cylindrical { axis, point } => {
-            SubspaceClass::Cylindrical { axis: g * axis, point: g * point }
-        }
-        SubspaceClass::Spherical { centre } => SubspaceClass::Spherical { centre: g * centre },
-        SubspaceClass::Schoenflies { axis } => SubspaceClass::Schoenflies { axis: g * axis },
-        SubspaceClass::TranslationalSpace => SubspaceClass::TranslationalSpace,
-        SubspaceClass::Identity => SubspaceClass::Identity,
-        other => panic!("{other}: not a subspace of these mechanisms"),
-    };
-    Decomposition {
-        lower: class(&decomposition.lower),
-        upper: class(&decomposition.upper),
-        intersection: class(&decomposition.intersection),
-        ..decomposition.clone()
-    }
-}
-
 fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
     let side = Vector3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let (normal, point) = match kind {

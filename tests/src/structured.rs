@@ -1,7 +1,7 @@
 //! Inputs that iterations and case distinctions trip over, and random ones never hit: half and quarter turns,
 //! rotations about coordinate axes and diagonals, zeros, home, whole turns, and values a rounding away from these.
 
-use crate::random::displace;
+use crate::displace::displace;
 use fastrand::Rng;
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use opm_core::Quantity;

@@ -117,8 +117,8 @@ fn displaced(angle: f64, [x, y, z, theta, phi]: [f64; 5]) -> [Isometry3<f64>; 2]
 }
 
 /// Legs close at poses with half turns, at angles of 45 and 135 degrees, and where the axis is nearly along the
-/// direction or nearly perpendicular to it. The imaginary joint is the
-/// slider along the axis that would have to be between the sections, and the lift has its height.
+/// direction or nearly perpendicular to it. The imaginary joint is the slider along the axis that would have to be
+/// between the sections, and the lift has its height.
 #[test]
 fn imaginary_joints_have_a_part_in_the_height() {
     let mut rng = Rng::with_seed(1);

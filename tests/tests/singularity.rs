@@ -12,12 +12,11 @@ use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, SINGULAR, SingularCause, SingularLeg, Singularities,
 };
+use opm_tests::displace::{displace, displace_decomposition};
 use opm_tests::height;
 use opm_tests::paper::{self, PlanoSpherical, Signs, e, n};
 use opm_tests::random;
-use opm_tests::random::{
-    Options, PAIRS, displace, displace_decomposition, displacement, mechanism,
-};
+use opm_tests::random::{Options, PAIRS, displacement, mechanism};
 use std::f64::consts::{PI, TAU};
 
 /// Relative tolerance for a number that is computed in two ways.

@@ -13,10 +13,9 @@ use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{FrameHints, Mechanism, TaskHints, examples, file};
 use opm_core::task::{CoordinateKind, Subspace, SubspaceKind, TaskError};
+use opm_tests::displace::{displace, displace_decomposition};
 use opm_tests::random;
-use opm_tests::random::{
-    Options, PAIRS, direction, displace, displace_decomposition, displacement, mechanism, vector,
-};
+use opm_tests::random::{Options, PAIRS, direction, displacement, mechanism, vector};
 
 /// Poses here are of unit size; solutions near the boundary of a leg's reach lose some digits.
 const AGREE: f64 = 1e-9;

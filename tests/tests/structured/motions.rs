@@ -74,7 +74,11 @@ fn standing_at_home_nothing_moves() {
         }
         followed += 1;
     }
-    assert_eq!(followed, examples::EXAMPLES.len() - 2, "all but those that are moved by one joint");
+    assert_eq!(
+        followed,
+        examples::EXAMPLES.len() - 2,
+        "every mechanism but Bennett's two linkages"
+    );
 }
 
 /// Exact half and quarter turns, zeros and whole turns of a motion file arrive as they are written.

@@ -108,12 +108,7 @@ impl Limits {
     /// The ends of the limits of an angle that does not count revolutions; `None` where it is free or may
     /// make a full revolution.
     pub(crate) fn direction_ends(&self) -> Option<[JointDisplacement; 2]> {
-        match self {
-            Self::Range { arc: Some(arc), .. } => {
-                Some([arc.from, arc.to].map(JointDisplacement::Direction))
-            }
-            _ => None,
-        }
+        self.arc().map(|arc| [arc.from, arc.to].map(JointDisplacement::Direction))
     }
 
     /// The limits of an angle that does not count revolutions; `None` where it is free or may make a full revolution.
@@ -140,6 +135,16 @@ impl Limits {
 }
 
 impl Arc {
+    /// The arc turned by a rotation.
+    pub(crate) fn turned(self, rotation: Complex<f64>) -> Self {
+        Self { from: rotation * self.from, to: rotation * self.to, ..self }
+    }
+
+    /// The arc reflected by a map of the directions.
+    pub(crate) fn reflected(self, reflect: impl Fn(Complex<f64>) -> Complex<f64>) -> Self {
+        Self { from: reflect(self.to), to: reflect(self.from), ..self }
+    }
+
     /// Whether a direction is left of the first end and right of the second; for a wide arc either suffices.
     #[inline(always)]
     fn contains(&self, e: Complex<f64>) -> bool {

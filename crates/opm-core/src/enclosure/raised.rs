@@ -24,20 +24,22 @@ impl<const N: usize> RaisedChain<N> {
         target: &PlanarTarget<N>,
     ) -> Self {
         let step = displacement(lean, rise);
-        let mut number = 0..;
-        let joints = chain.joints().map(|joint| {
-            let behind = number.next() >= Some(lean.before);
-            match Joint::from(joint) {
-                Joint::Revolute { at, reversed } if behind => {
-                    Joint::Revolute { at: step.rotation * at + step.translation, reversed }
+        let carried = |place| step.rotation * place + step.translation;
+        let joints = chain.joints();
+        let joints = std::array::from_fn(|number| {
+            match (Joint::from(joints[number]), number >= lean.before) {
+                (Joint::Revolute { at, reversed }, true) => {
+                    Joint::Revolute { at: carried(at), reversed }
                 }
-                Joint::Prismatic { along } if behind => {
+                (Joint::Prismatic { along }, true) => {
                     Joint::Prismatic { along: step.rotation * along }
                 }
-                Joint::Revolute { at, reversed } => {
+                (Joint::Revolute { at, reversed }, false) => {
                     Joint::Revolute { at: Plane::constant(at), reversed }
                 }
-                Joint::Prismatic { along } => Joint::Prismatic { along: Plane::constant(along) },
+                (Joint::Prismatic { along }, false) => {
+                    Joint::Prismatic { along: Plane::constant(along) }
+                }
             }
         });
         Self { joints, target: target.after(&step.inverse()) }

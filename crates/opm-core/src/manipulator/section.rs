@@ -109,7 +109,7 @@ impl CompiledSection {
     ) -> Result<JointDisplacement, ReachDeficit> {
         match (&self.partial, &self.offset) {
             (None, None) => self.chain.first(target, branch),
-            (None, Some(_)) | (Some(_), _) => Ok(self.inverse(target, branch)?[0]),
+            _ => Ok(self.inverse(target, branch)?[0]),
         }
     }
 

@@ -112,7 +112,7 @@ impl Task {
         }
     }
 
-    /// The values of a section's coordinates in the plane: all but the height.
+    /// The values of a section's coordinates in the plane, without that of its height.
     #[inline]
     pub(crate) fn in_plane<T>(
         &self,

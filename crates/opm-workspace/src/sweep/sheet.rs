@@ -74,6 +74,9 @@ impl SliceBranch {
                 None => *plan = None,
             }
         });
+        if plan.is_none() {
+            links.clear();
+        }
     }
 }
 
@@ -177,7 +180,7 @@ impl<'a> Sheet<'a> {
 
     /// The manipulator, at the sheet's height where lifts lean.
     pub fn manipulator(&self) -> &Manipulator {
-        self.raised.as_ref().map_or(self.sweep.manipulator, |(_, raised)| raised)
+        at_height(self.sweep, &self.raised)
     }
 
     /// Goes to a height above home, metres, if the section has one. Returns whether the lifts admit it, and the legs have
@@ -243,7 +246,7 @@ impl<'a> Sheet<'a> {
             self.kind = SheetKind::Unreachable;
             return;
         }
-        let manipulator = self.raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised);
+        let manipulator = at_height(sweep, &self.raised);
         let mode = sweep.modes.one();
         let upper = &self.others[first..];
         let b = whole.then(|| task.upper(upper));
@@ -290,7 +293,7 @@ impl<'a> Sheet<'a> {
             self.kind = SheetKind::Unreachable;
             return;
         }
-        let manipulator = self.raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised);
+        let manipulator = at_height(sweep, &self.raised);
         let v = task.lower(&first[..axes.len()]);
         let last = (axes[0].count - 1) as f64;
         let fixed_are_known = self.fixed_regions_of == Some(self.number);
@@ -316,4 +319,9 @@ impl<'a> Sheet<'a> {
             }
         }
     }
+}
+
+/// The manipulator of a sweep, as it is at a height where lifts lean.
+fn at_height<'m>(sweep: &Sweep<'m>, raised: &'m Option<(f64, Manipulator)>) -> &'m Manipulator {
+    raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised)
 }

@@ -21,18 +21,9 @@ pub struct LinkLimits {
     /// Whether the link points ahead along the slide.
     ahead: bool,
     /// The directions from the slide that the slider's pivot allows.
-    inner: Option<Directions>,
+    inner: Option<Arc>,
     /// The directions from the slide that the outer pivot allows where the target does not rotate. They rotate with it.
-    outer: Option<Directions>,
-}
-
-/// An arc of directions, counter-clockwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Directions {
-    from: Complex<f64>,
-    to: Complex<f64>,
-    /// Whether the arc is longer than a semicircle.
-    wide: bool,
+    outer: Option<Arc>,
 }
 
 /// The components across a half circle's axis, from -1 to 1, of an arc's directions on it: those in a range that are not
@@ -54,8 +45,12 @@ impl LinkLimits {
     ) -> Option<Self> {
         let home = slide.conj() * link / link.norm();
         // The inner pivot turns the link; the outer one turns the target against it.
-        let inner = inner.0.arc().map(|arc| Directions::new(arc, inner.1).turned(home));
-        let outer = outer.0.arc().map(|arc| Directions::new(arc, !outer.1).turned(home));
+        let directions = |limits: &Limits, clockwise: bool| {
+            let arc = *limits.arc()?;
+            let arc = if clockwise { arc.reflected(|e| e.conj()) } else { arc };
+            Some(arc.turned(home))
+        };
+        let (inner, outer) = (directions(inner.0, inner.1), directions(outer.0, !outer.1));
         let limits = Self { slide, pivot, length: link.norm(), ahead, inner, outer };
         (inner.is_some() || outer.is_some()).then_some(limits)
     }
@@ -64,8 +59,8 @@ impl LinkLimits {
     pub fn places(&self, rotation: Complex<f64>, mut found: impl FnMut(Region)) {
         let outer = self.outer.map(|arc| arc.turned(rotation));
         for arc in [self.inner, outer].into_iter().flatten() {
-            let ahead = if self.ahead { arc } else { arc.mirrored() };
-            let Components { whole, hole } = ahead.components();
+            let ahead = if self.ahead { arc } else { arc.reflected(|e| -e.conj()) };
+            let Components { whole, hole } = Components::of(&ahead);
             let across = self.slide * Complex::i();
             let middle = (across.conj() * self.pivot).re;
             let band = |range: [f64; 2]| {
@@ -77,42 +72,22 @@ impl LinkLimits {
     }
 }
 
-impl Directions {
-    /// The rotations that an arc of a joint's angles makes.
-    fn new(arc: &Arc, clockwise: bool) -> Self {
-        let Arc { from, to, wide } = *arc;
-        if clockwise {
-            Self { from: to.conj(), to: from.conj(), wide }
-        } else {
-            Self { from, to, wide }
-        }
-    }
-
-    fn turned(self, rotation: Complex<f64>) -> Self {
-        Self { from: rotation * self.from, to: rotation * self.to, ..self }
-    }
-
-    /// The arc reflected about the imaginary axis.
-    fn mirrored(self) -> Self {
-        let reflect = |e: Complex<f64>| Complex::new(-e.re, e.im);
-        Self { from: reflect(self.to), to: reflect(self.from), ..self }
-    }
-
-    /// The imaginary parts of those directions whose real part is not negative.
-    fn components(self) -> Components {
+impl Components {
+    /// The imaginary parts of those directions of an arc whose real part is not negative.
+    fn of(arc: &Arc) -> Self {
         let ahead = |e: Complex<f64>| (e.re >= 0.0).then_some(e.im);
-        let all = |whole| Components { whole, hole: None };
+        let all = |whole| Self { whole, hole: None };
         let [least, most] = EVERYTHING;
-        match [ahead(self.from), ahead(self.to)] {
+        match [ahead(arc.from), ahead(arc.to)] {
             // Around the half circle, or within it.
-            [Some(from), Some(to)] if self.wide => {
-                Components { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
+            [Some(from), Some(to)] if arc.wide => {
+                Self { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
             }
             // An arc of no more than its slack may be rounded to the other order.
             [Some(from), Some(to)] => all([from.min(to), from.max(to)]),
             [Some(from), None] => all([from, most]),
             [None, Some(to)] => all([least, to]),
-            [None, None] if self.wide => all(EVERYTHING),
+            [None, None] if arc.wide => all(EVERYTHING),
             [None, None] => all([most, least]),
         }
     }

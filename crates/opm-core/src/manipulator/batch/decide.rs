@@ -47,7 +47,7 @@ impl Manipulator {
     /// largest of its values in solutions of reached poses.
     ///
     /// # Panics
-    /// If there are more than [`Manipulator::DECIDED`] poses, if they are not finite, or there is no answer for each.
+    /// If there are more answers than [`Manipulator::DECIDED`], or fewer poses than answers.
     #[doc(hidden)]
     pub fn decide_many(
         &self,
