@@ -382,8 +382,9 @@ impl Chain {
         }
     }
 
-    /// The targets at which the two branches meet, or at which the chain stops closing.
-    pub(crate) fn folds(&self) -> Vec<Surface> {
+    /// The targets at which the two branches meet, or at which the chain stops closing, without those that limits of the
+    /// middle joint clearly exclude.
+    pub(crate) fn folds(&self, limits: &Limits) -> Vec<Surface> {
         let middle = match self {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
@@ -393,18 +394,23 @@ impl Chain {
             | Self::Translational(_)
             | Self::Spatial(_) => Vec::new(),
         };
-        middle.into_iter().filter_map(|displacement| self.held(1, displacement)).collect()
+        let within = middle.into_iter().filter(|&displacement| limits.nearly_admits(displacement));
+        within.filter_map(|displacement| self.held(1, displacement)).collect()
     }
 
     /// The two ends of a joint's limits, as displacements at which the joint can be held.
     pub(crate) fn ends(&self, joint: usize, limits: &Limits) -> Option<[JointDisplacement; 2]> {
-        let rotation = match self {
+        if self.is_rotation(joint) { limits.direction_ends() } else { limits.value_ends() }
+    }
+
+    /// Whether a joint's displacement is a rotation that does not count revolutions.
+    pub(crate) fn is_rotation(&self, joint: usize) -> bool {
+        match self {
             Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
             Self::Rigid | Self::Ball(_) | Self::Translational(_) | Self::Spatial(_) => false,
             Self::Cylindrical(chain) => chain.is_rotation(joint),
-        };
-        if rotation { limits.direction_ends() } else { limits.value_ends() }
+        }
     }
 
     /// An upper bound of the chain's lengths at home, metres.

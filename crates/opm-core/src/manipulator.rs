@@ -31,7 +31,7 @@ mod solution;
 mod transitions;
 
 pub use all_modes::AllModes;
-pub use batch::{Batch, BatchError, BatchOutput};
+pub use batch::{Batch, BatchError, BatchOutput, RowEnds, SheetRows};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::Section;

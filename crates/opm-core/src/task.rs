@@ -283,6 +283,7 @@ impl Task {
     }
 
     /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`.
+    #[inline(always)]
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
         match *start {

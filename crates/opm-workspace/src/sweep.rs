@@ -3,8 +3,9 @@
 //! The poses that share the upper section's coordinates are a slice. The upper section is solved once in
 //! a slice, and leaves each leg one or several branches, each a set of poses. Where all of them are
 //! regions of the plane, whole rows are clipped to them ([`clip`]). Other branches are asked for in pieces
-//! of rows, between the places where their feasibility changes ([`transitions`]).
+//! of rows, between the places where their feasibility changes ([`asked`]).
 
+mod asked;
 mod clip;
 mod known_range;
 mod row;
@@ -12,7 +13,6 @@ pub(crate) mod runs;
 mod shard;
 mod sheet;
 mod together;
-mod transitions;
 mod worker;
 
 pub use runs::Run;

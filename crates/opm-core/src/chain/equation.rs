@@ -4,6 +4,7 @@
 use super::REACH_TOLERANCE;
 use super::condition::VERGE;
 use crate::group::JointDisplacement;
+use crate::numeric::angle::atan2;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -34,11 +35,6 @@ pub struct Span {
 }
 
 impl Span {
-    /// The largest absolute value in the span.
-    pub(crate) fn reach(&self) -> f64 {
-        self.from.abs().max(self.to.abs())
-    }
-
     fn give(&self, from: f64, to: f64, found: &mut impl FnMut([f64; 2])) {
         // An end that is NaN is replaced by that of the span.
         if !(to < self.from || from > self.to) {
@@ -136,65 +132,90 @@ impl Equation {
         }
     }
 
-    /// Calls `found` with the intervals of a span in which the absolute value of the function is at most
-    /// `tolerance`, in any order. Between them the function keeps its sign.
-    #[inline]
-    pub fn zeros(&self, tolerance: f64, span: &Span, found: &mut impl FnMut([f64; 2])) {
+    /// At most two intervals outside of which the absolute value of the function is larger than `tolerance`; of a
+    /// function that repeats itself ([`Equation::period`]), those of one period. An interval is empty where its second
+    /// number is less than its first; an end that is NaN is beyond all numbers. There are no branches: a loop over many
+    /// functions is vectorised.
+    #[inline(always)]
+    pub(crate) fn near_zeros(&self, tolerance: f64) -> [[f64; 2]; 2] {
         match *self {
-            Self::Polynomial([c0, c1, 0.0]) => linear(c0, c1, tolerance, span, found),
+            Self::Polynomial([c0, c1, 0.0]) => linear(c0, c1, tolerance),
+            Self::Periodic([c0, c1], period) => {
+                linear(c0 - period * (c0 / period).round_ties_even(), c1, tolerance)
+            }
             Self::Polynomial([c0, c1, c2]) => {
+                // c₂ ((t - middle)² - square)
                 let middle = -0.5 * c1 / c2;
                 let square = middle * middle - c0 / c2;
-                let [inner, outer] = [square - tolerance / c2, square + tolerance / c2];
-                if outer < 0.0 {
-                    return;
-                }
-                let outer = outer.sqrt();
-                if inner > 0.0 {
-                    let inner = inner.sqrt();
-                    span.give(middle - outer, middle - inner, found);
-                    span.give(middle + inner, middle + outer, found);
-                } else {
-                    span.give(middle - outer, middle + outer, found);
-                }
+                let (apart, tolerance) = (square.max(0.0).sqrt(), tolerance / c2);
+                // Where the zeros are apart, the slope is 2 · apart, and no less than half of it up to the ends.
+                let half =
+                    if square > tolerance { tolerance / apart } else { 3.0 * tolerance.sqrt() };
+                let half = if square < -tolerance { -f64::INFINITY } else { half };
+                around([middle - apart, middle + apart], half)
             }
             Self::Harmonic([c0, c1, c2]) => {
-                // c₀ + r cos (t - phase)
-                let r = c1.hypot(c2);
-                let [high, low] = [tolerance - c0, -tolerance - c0];
-                if high < -r || low > r {
-                    return;
-                }
-                let phase = c2.atan2(c1);
-                let near = if high >= r { 0.0 } else { (high / r).acos() };
-                let far = if low <= -r { TAU / 2.0 } else { (low / r).acos() };
-                for [from, to] in [[near, far], [-far, -near]] {
-                    every(TAU, phase + from, phase + to, span, found);
-                }
+                // c₀ + r cos(t - phase); the square of the slope at the zeros.
+                let r = (c1 * c1 + c2 * c2).sqrt();
+                let square = (r - c0) * (r + c0);
+                let slope = square.max(0.0).sqrt();
+                let (phase, apart) = (atan2(c2, c1), atan2(slope, -c0));
+                // |c₀ (1 - cos d) - slope · sin d|, by d off a zero, is over the tolerance from twice the quotient on.
+                // Where the zeros meet, |c₀| and r differ by 4 tolerances at most, and r (1 - cos d) by 5.
+                let parted = square > 4.0 * r * tolerance;
+                let half =
+                    if parted { 2.0 * tolerance / slope } else { 10.0 * (tolerance / r).sqrt() };
+                let half = if c0.abs() > r + tolerance { -f64::INFINITY } else { half };
+                around([phase - apart, phase + apart], half)
             }
-            Self::Periodic([c0, c1], period) => {
-                let repeat = (period / c1).abs();
-                if !repeat.is_finite() {
-                    let rest = c0 - period * (c0 / period).round();
-                    linear(rest, 0.0, tolerance, span, found);
-                } else if repeat > 2.0 * span.step {
-                    let (zero, half) = (-c0 / c1, tolerance / c1.abs());
-                    every(repeat, zero - half, zero + half, span, found);
-                } else {
-                    found([span.from, span.to]);
-                }
+        }
+    }
+
+    /// The change of `t` after which the function repeats itself; `None` where it does not, infinite where it is constant.
+    #[inline(always)]
+    pub(crate) fn period(&self) -> Option<f64> {
+        match *self {
+            Self::Polynomial(_) => None,
+            Self::Harmonic(_) => Some(TAU),
+            Self::Periodic([_, c1], period) => Some((period / c1).abs()),
+        }
+    }
+
+    /// Calls `found` with intervals of a span, in any order, outside of which the absolute value of the function is larger
+    /// than `tolerance`: there it keeps its sign.
+    #[inline]
+    pub fn zeros(&self, tolerance: f64, span: &Span, found: &mut impl FnMut([f64; 2])) {
+        let period = self.period().unwrap_or(f64::INFINITY);
+        for [from, to] in self.near_zeros(tolerance) {
+            if to < from {
+                continue;
+            }
+            if period.is_infinite() {
+                span.give(from, to, found);
+            } else if to - from < period && period > 2.0 * span.step {
+                every(period, from, to, span, found);
+            } else {
+                found([span.from, span.to]);
             }
         }
     }
 }
 
-fn linear(c0: f64, c1: f64, tolerance: f64, span: &Span, found: &mut impl FnMut([f64; 2])) {
-    if c1 != 0.0 {
-        let (zero, half) = (-c0 / c1, tolerance / c1.abs());
-        span.give(zero - half, zero + half, found);
-    } else if c0.abs() <= tolerance {
-        found([span.from, span.to]);
-    }
+/// The intervals of [`Equation::near_zeros`] of `c₀ + c₁ t`.
+#[inline(always)]
+fn linear(c0: f64, c1: f64, tolerance: f64) -> [[f64; 2]; 2] {
+    let half = tolerance / c1.abs();
+    let constant = if c0.abs() <= tolerance { f64::INFINITY } else { -f64::INFINITY };
+    let [zero, half] = if c1 == 0.0 { [0.0, constant] } else { [-c0 / c1, half] };
+    let [only, _] = around([zero; 2], half);
+    [only, [f64::INFINITY, f64::NEG_INFINITY]]
+}
+
+/// The intervals of this half width about two numbers; nothing where it is negative.
+#[inline(always)]
+fn around(zeros: [f64; 2], half: f64) -> [[f64; 2]; 2] {
+    let [a, b] = zeros;
+    [[a - half, a + half], [b - half, b + half]]
 }
 
 /// Calls `found` with the interval shifted by every whole number of periods that meets the span.

@@ -9,6 +9,10 @@ use std::f64::consts::{PI, TAU};
 /// computed from, counts as inside: the rounding of a solution on a limit must not decide.
 const SLACK: f64 = 1e-12;
 
+/// How far past a limit a displacement is that is clearly not allowed: radians, or a fraction of the lengths. It is far
+/// more than rounding makes of a joint's displacement where branches meet.
+const NEARLY: f64 = 1e-3;
+
 /// The displacements from home that a coordinate may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limits {
@@ -66,6 +70,21 @@ impl Limits {
                 arc.contains(e)
             }
         }
+    }
+
+    /// Whether a displacement from home is allowed, or past an end by no more than [`NEARLY`].
+    pub(crate) fn nearly_admits(&self, displacement: JointDisplacement) -> bool {
+        let near = match (self, displacement) {
+            (Self::Range { low, high, .. }, JointDisplacement::Value(value)) => {
+                let margin = NEARLY * (low.abs() + high.abs() + value.abs());
+                value >= low - margin && value <= high + margin
+            }
+            (Self::Range { arc: Some(arc), .. }, JointDisplacement::Direction(e)) => {
+                [arc.from, arc.to].iter().any(|end| (e - end).norm_sqr() <= NEARLY * NEARLY)
+            }
+            _ => true,
+        };
+        near || self.admits(displacement)
     }
 
     /// The value to report for a displacement from home. Of a direction, it is the angle nearest to home, but

@@ -13,7 +13,7 @@
 
 use super::equation::{Equation, Span};
 use crate::group::{CylindricalDisplacement, Path, PlanarPath};
-use nalgebra::{Complex, Vector3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// A function may be zero where its absolute value is below this, as a fraction of the largest number that
 /// it can be computed from: a hundred times what rounding and
@@ -111,9 +111,15 @@ impl Surface {
         &self,
         path: &Path,
         span: &Span,
-        Uncertainty { size, blur }: Uncertainty,
+        uncertainty: Uncertainty,
         found: &mut impl FnMut([f64; 2]),
     ) {
+        self.along(path).zeros(self.tolerance(uncertainty), span, found);
+    }
+
+    /// The least absolute value of the function ([`Surface::along`]) at which a target is certainly not on the surface. The
+    /// size of the uncertainty covers both the chain and the target.
+    pub(crate) fn tolerance(&self, Uncertainty { size, blur }: Uncertainty) -> f64 {
         let scale = match *self {
             Self::Circle { .. } => size * size,
             Self::Line { .. } | Self::Carried { .. } | Self::Band { .. } | Self::Slab { .. } => {
@@ -124,11 +130,12 @@ impl Surface {
                 (rotation.abs() + advance.abs()) * size.max(1.0) + at.abs()
             }
         };
-        self.along(path).zeros((SHARE + 2.0 * blur) * scale, span, found);
+        (SHARE + 2.0 * blur) * scale
     }
 
     /// The function of the path parameter whose zeros are the targets on the surface. Panics if the path is in
     /// another kind of subspace.
+    #[inline(always)]
     pub(crate) fn along(&self, path: &Path) -> Equation {
         match *self {
             Self::Circle { point, centre, square } => match *path.planar() {
@@ -177,10 +184,10 @@ impl Surface {
             },
             Self::Cone { fixed, carried, cosine } => {
                 let (start, axis) = path.spherical();
-                let carried = start * carried;
-                let kept = fixed.dot(axis) * axis.dot(&carried);
-                let sine = fixed.dot(&axis.cross(&carried));
-                Equation::Harmonic([kept - cosine, fixed.dot(&carried) - kept, sine])
+                let carried = apply(start, &carried);
+                let kept = inner(&fixed, axis) * inner(axis, &carried);
+                let sine = inner(&cross(&fixed, axis), &carried);
+                Equation::Harmonic([kept - cosine, inner(&fixed, &carried) - kept, sine])
             }
             Self::Coaxial { rotation, advance, at, period } => {
                 let [start, rate] = path.cylindrical();
@@ -203,6 +210,28 @@ impl Surface {
     }
 }
 
+#[inline(always)]
 fn dot(a: Complex<f64>, b: Complex<f64>) -> f64 {
     a.re * b.re + a.im * b.im
+}
+
+// Written out, so that a loop over many paths is vectorised.
+
+#[inline(always)]
+fn apply(r: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(
+        r.m11 * v.x + r.m12 * v.y + r.m13 * v.z,
+        r.m21 * v.x + r.m22 * v.y + r.m23 * v.z,
+        r.m31 * v.x + r.m32 * v.y + r.m33 * v.z,
+    )
+}
+
+#[inline(always)]
+fn inner(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+#[inline(always)]
+fn cross(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }

@@ -93,6 +93,7 @@ impl Path {
     }
 
     /// The planar path. Panics if the path is of another kind.
+    #[inline(always)]
     pub(crate) fn planar(&self) -> &PlanarPath {
         match self {
             Self::Planar(path) => path,
@@ -105,6 +106,7 @@ impl Path {
     }
 
     /// The start and the axis of a spherical path. Panics if the path is of another kind.
+    #[inline(always)]
     pub(crate) fn spherical(&self) -> (&Matrix3<f64>, &Vector3<f64>) {
         match self {
             Self::Spherical { start, axis } => (start, axis),
@@ -117,6 +119,7 @@ impl Path {
     }
 
     /// The start and the rate of a cylindrical path. Panics if the path is of another kind.
+    #[inline(always)]
     pub(crate) fn cylindrical(&self) -> [&CylindricalDisplacement; 2] {
         match self {
             Self::Cylindrical { start, rate } => [start, rate],
@@ -129,6 +132,7 @@ impl Path {
     }
 
     /// The start and the rate of a translational path. Panics if the path is of another kind.
+    #[inline(always)]
     pub(crate) fn translational(&self) -> [&Complex<f64>; 2] {
         match self {
             Self::Translational { start, rate } => [start, rate],
@@ -141,6 +145,7 @@ impl Path {
     }
 
     /// The start and the rate of a path of translations in space. Panics if the path is of another kind.
+    #[inline(always)]
     pub(crate) fn spatial(&self) -> [&Vector3<f64>; 2] {
         match self {
             Self::Spatial { start, rate } => [start, rate],

@@ -36,6 +36,7 @@
 //!   away to infinity.
 
 use super::drive::Drive;
+use crate::chain::limits::Limits;
 use crate::chain::planar::PlanarChain;
 use crate::chain::screws::screws;
 use crate::chain::{Branch, Chain, ChainError, ChainJoint, ReachDeficit};
@@ -110,7 +111,7 @@ impl DrivenLoop {
         let chain = Chain::new(&subspace, others)?;
         let is_pole = matches!(chain, Chain::Planar(PlanarChain::Prp(_)));
         let dead_point = |at| DeadPoint { at, is_pole };
-        let folds = chain.folds();
+        let folds = chain.folds(&Limits::Free);
         let zeros = folds.iter().flat_map(|surface| surface.along(&drive.path()).roots());
         let mut driven = Self {
             dead_points: zeros.map(|zero| dead_point(drive.at(zero))).collect(),

@@ -8,6 +8,7 @@
 
 mod decide;
 mod lanes;
+mod rows;
 mod section;
 
 use super::all_modes::AllModes;
@@ -21,6 +22,7 @@ use crate::numeric::angle::MOST_REDUCED;
 use decide::Decided;
 use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
+pub use rows::{RowEnds, SheetRows};
 use section::{Found, Side, Step};
 
 /// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose. See the
@@ -335,7 +337,7 @@ impl Block {
     #[inline(always)]
     fn displace(&mut self, manipulator: &Manipulator) {
         let task = &manipulator.task;
-        let Self { pose, status, v, b, .. } = self;
+        let Self { pose, status, .. } = self;
         *status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
         for (coordinate, column) in task.coordinates.iter().zip(&*pose) {
             if coordinate.quantity == Quantity::Angle {
@@ -346,14 +348,25 @@ impl Block {
                 }
             }
         }
-        for (section, to) in [(Section::Lower, v), (Section::Upper, b)] {
-            let mut at = [&[0.0; LANES]; 3];
-            let mut home = [0.0; 3];
-            for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
-                (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
-            }
-            section::displace(task, section, at, home, to);
+        self.displace_section(manipulator, Section::Lower);
+        self.displace_section(manipulator, Section::Upper);
+    }
+
+    /// Computes the displacements of a section.
+    #[inline(always)]
+    fn displace_section(&mut self, manipulator: &Manipulator, section: Section) {
+        let task = &manipulator.task;
+        let Self { pose, v, b, .. } = self;
+        let mut at = [&[0.0; LANES]; 3];
+        let mut home = [0.0; 3];
+        for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
+            (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
         }
+        let to = match section {
+            Section::Lower => v,
+            Section::Upper => b,
+        };
+        section::displace(task, section, at, home, to);
     }
 
     /// Solves both chains of a leg.

@@ -30,6 +30,8 @@ pub(crate) struct CompiledLeg {
     /// The region in which the lower section closes, on each branch; `None` where it is not a region of the
     /// plane.
     pub shapes: [Option<Shape>; 2],
+    /// Where it has none of these: see [`CompiledSection::bounds`].
+    pub bounds: [Option<Shape>; 2],
     /// Whether the upper section constrains the leg: it is limited or actuated, or may be out of reach though
     /// the lower section closes.
     pub upper_constrains: bool,
@@ -229,7 +231,7 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let shapes = lower.shapes(limits);
+        let (shapes, bounds) = (lower.shapes(limits), lower.bounds(limits));
         // An upper section that does not give τ may be out of reach; a spherical joint never is.
         let gives_tau = bridged && split_section == Section::Upper;
         let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);
@@ -240,6 +242,7 @@ impl CompiledLeg {
             split_section,
             bridged,
             shapes,
+            bounds,
             imaginary: None,
             lift: None,
             lean: None,
@@ -405,11 +408,12 @@ impl CompiledLeg {
 
     /// The region in which the lower section closes, if it is a region of the plane.
     pub fn shape(&self, branch: Branch) -> Option<&Shape> {
-        let [plus, minus] = &self.shapes;
-        match branch {
-            Branch::Plus => plus.as_ref(),
-            Branch::Minus => minus.as_ref(),
-        }
+        of_branch(&self.shapes, branch)
+    }
+
+    /// The region outside of which the lower section does not close, if there is one in the plane.
+    pub fn shape_or_bounds(&self, branch: Branch) -> Option<&Shape> {
+        self.shape(branch).or(of_branch(&self.bounds, branch))
     }
 
     /// Whether the imaginary joint rotates about an axis on which full revolutions are counted.
@@ -434,6 +438,13 @@ impl CompiledLeg {
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         self.lower.inverse(&task.lower_intersection.after(v, tau), branch)
+    }
+}
+
+fn of_branch([plus, minus]: &[Option<Shape>; 2], branch: Branch) -> Option<&Shape> {
+    match branch {
+        Branch::Plus => plus.as_ref(),
+        Branch::Minus => minus.as_ref(),
     }
 }
 

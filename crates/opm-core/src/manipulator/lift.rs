@@ -252,6 +252,7 @@ impl Manipulator {
             if let Some(lean) = &leg.lean {
                 *of_height = leg.raised(lean, rise).ok()?;
                 of_height.shapes = of_height.lower.shapes(&self.limits);
+                of_height.bounds = of_height.lower.bounds(&self.limits);
             }
         }
         Some(raised)

@@ -211,15 +211,21 @@ impl Manipulator {
         }
     }
 
-    /// The translations that can be added to the displacement `v` such that a leg closes on a branch, in units
-    /// of `1 / scale`. With [`Manipulator::link_regions`], it agrees with [`Manipulator::reaches`] up to rounding. `None`
-    /// where `v` is not a displacement of a plane, or where limits on angles, other than those of a link that slides, make
-    /// the translations more than a convex set with a convex hole.
+    /// Translations that can be added to the displacement `v`, in units of `1 / scale`: where the lower section of a leg closes
+    /// on a branch. With [`Manipulator::link_regions`], where it also is within its limits, but for limits on angles that make
+    /// the translations more than a convex set with a convex hole: these are left aside. `None` where `v` is not a
+    /// displacement of a plane.
     #[doc(hidden)]
     #[inline(always)]
     pub fn region(&self, branch: &LegBranch, v: &Displacement, scale: f64) -> Option<Region> {
         let (shape, rotation, shift) = self.shape_at(branch, v)?;
         shape.at(rotation, shift, scale)
+    }
+
+    /// Whether the regions of a branch leave nothing aside: they agree with [`Manipulator::reaches`] up to rounding.
+    #[doc(hidden)]
+    pub fn regions_decide(&self, branch: &LegBranch) -> bool {
+        branch.with_upper.is_none() && self.legs[branch.leg].shape(branch.branches.lower).is_some()
     }
 
     /// Calls `found` with regions as [`Manipulator::region`], which limits on a link that slides leave: a leg closes for
@@ -248,11 +254,8 @@ impl Manipulator {
         branch: &LegBranch,
         v: &Displacement,
     ) -> Option<(&Shape, Complex<f64>, Complex<f64>)> {
-        if branch.with_upper.is_some() {
-            return None;
-        }
         let leg = &self.legs[branch.leg];
-        let shape = leg.shape(branch.branches.lower)?;
+        let shape = leg.shape_or_bounds(branch.branches.lower)?;
         let mut target = match branch.tau {
             Some(tau) => &self.task.lower_intersection.after(v, tau),
             None => v,

@@ -134,6 +134,16 @@ impl CompiledSection {
         Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
     }
 
+    /// The region in which the section closes whatever its limits on angles, on each branch, where these make the region in
+    /// which it closes more than [`CompiledSection::shapes`] can tell.
+    pub fn bounds(&self, limits: &[Limits]) -> [Option<Shape>; 2] {
+        let of_joint = [0, 1, 2].map(|joint| match self.coordinates[joint] {
+            Some(c) if !self.chain.is_rotation(joint) => &limits[c.number],
+            Some(_) | None => &Limits::Free,
+        });
+        Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
+    }
+
     /// Whether a target has two solutions.
     pub fn has_choice(&self) -> bool {
         self.partial.is_none() && self.chain.has_choice()

@@ -24,7 +24,10 @@ const FAR: f64 = 1e4;
 /// The targets at which a leg's feasibility can change within a slice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transitions {
-    surfaces: Vec<Surface>,
+    /// Those at which the lower chain's branches meet.
+    folds: Vec<Surface>,
+    /// Those at which a joint of the lower chain is at an end of its limits.
+    ends: Vec<Surface>,
     /// The targets at which the imaginary joint is at an end of what the upper section allows, each with the
     /// uncertainty of that end.
     tau_limits: Vec<(Surface, f64)>,
@@ -35,11 +38,35 @@ pub struct Transitions {
     largest_tau: Option<f64>,
 }
 
+impl Transitions {
+    /// The surfaces, each with the uncertainty of where it is; with or without those where branches meet.
+    pub(super) fn surfaces(&self, folds: bool) -> impl Iterator<Item = (&Surface, f64)> {
+        let folds = self.folds.iter().filter(move |_| folds);
+        let known = folds.chain(&self.ends).map(|surface| (surface, 0.0));
+        known.chain(self.tau_limits.iter().map(|(surface, blur)| (surface, *blur)))
+    }
+
+    /// An upper bound of the leg's lengths, metres.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Whether the surfaces are all that matter for targets of this size, metres: a translation of the imaginary joint is
+    /// no longer than the target's and the leg's lengths together.
+    pub(super) fn are_complete(&self, size: f64) -> bool {
+        self.largest_tau.is_none_or(|largest| self.size + size <= largest)
+    }
+}
+
 impl CompiledSection {
-    /// The surfaces at which the section's chain enters and leaves its limits, and at which its branches
-    /// meet; `None` where they have no closed form.
-    fn surfaces(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
-        let mut surfaces = self.chain.folds();
+    /// The surfaces at which the branches of the section's chain meet within its limits.
+    fn folds(&self, limits: &[Limits]) -> Vec<Surface> {
+        self.chain.folds(self.coordinates[1].map_or(&Limits::Free, |middle| &limits[middle.number]))
+    }
+
+    /// The surfaces at which the section's chain enters and leaves its limits; `None` where they have no closed form.
+    fn ends(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
+        let mut surfaces = Vec::new();
         for (joint, coordinate) in self.coordinates.iter().enumerate() {
             let Some(coordinate) = coordinate else { continue };
             for end in self.chain.ends(joint, &limits[coordinate.number]).into_iter().flatten() {
@@ -70,7 +97,8 @@ impl Manipulator {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
         let mut transitions = Transitions {
-            surfaces: leg.lower.surfaces(&self.limits)?,
+            folds: leg.lower.folds(&self.limits),
+            ends: leg.lower.ends(&self.limits)?,
             tau_limits: Vec::new(),
             size,
             largest_tau: None,
@@ -107,7 +135,8 @@ impl Manipulator {
         };
         let size = transitions.size;
         let tau_limits = &mut transitions.tau_limits;
-        for surface in leg.upper.surfaces(&self.limits)? {
+        let (folds, ends) = (leg.upper.folds(&self.limits), leg.upper.ends(&self.limits)?);
+        for surface in folds.iter().chain(&ends) {
             surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
                 let share = if rotation { blur } else { blur / size };
@@ -119,51 +148,5 @@ impl Manipulator {
             tau_limits.extend(hold(PI).map(|surface| (surface, 0.0)));
         }
         Some(())
-    }
-
-    /// Calls `found` with the intervals of a span of the first coordinate in which the leg's feasibility may
-    /// change, with the other coordinates of `v` at `others`. Between two of them, [`Manipulator::reaches`] is
-    /// the same everywhere.
-    #[doc(hidden)]
-    pub fn feasibility_changes(
-        &self,
-        branch: &LegBranch,
-        transitions: &Transitions,
-        others: &[f64],
-        span: &Span,
-        found: &mut impl FnMut([f64; 2]),
-    ) {
-        let leg = &self.legs[branch.leg];
-        let home = self.task.coordinates[0].home;
-        let moved = Span { from: span.from - home, to: span.to - home, step: span.step };
-        let mut found = |[from, to]: [f64; 2]| found([from + home, to + home]);
-        let at = |first: f64| {
-            let mut pose = [first, 0.0, 0.0, 0.0];
-            pose[1..=others.len()].copy_from_slice(others);
-            self.task.lower(&pose)
-        };
-        let start = match branch.tau {
-            Some(tau) => self.task.lower_intersection.after(&at(home), tau),
-            None => at(home),
-        };
-        let path = self.task.row(&leg.lower.of_chain(&start));
-        let size = transitions.size + path.size(moved.reach());
-        for surface in &transitions.surfaces {
-            surface.meet(&path, &moved, Uncertainty { size, blur: 0.0 }, &mut found);
-        }
-        // A translation far longer than the leg is linear along the row: it is largest at one of the ends.
-        let beyond = |most: f64| {
-            [span.from, span.to].into_iter().any(|first| {
-                let displacements = leg.lower.inverse(&at(first), branch.branches.lower);
-                let last = leg.lower.chain.freedoms() - 1;
-                displacements.is_ok_and(|displacements| displacements[last].value().abs() > most)
-            })
-        };
-        if transitions.largest_tau.is_some_and(beyond) {
-            found([moved.from, moved.to]);
-        }
-        for (surface, blur) in &transitions.tau_limits {
-            surface.meet(&path, &moved, Uncertainty { size, blur: *blur }, &mut found);
-        }
     }
 }

@@ -253,6 +253,9 @@ impl ClippedRows {
         };
         let [mut next, last] = self.intersection.ends(row);
         std::iter::from_fn(move || {
+            if next > last {
+                return None;
+            }
             while let Some([_, end]) = holes().find(|&[start, end]| start <= next && next <= end) {
                 next = end + 1.0;
             }

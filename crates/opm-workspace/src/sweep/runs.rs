@@ -27,15 +27,9 @@ pub fn append(runs: &mut Vec<Run>, run: Run) {
     }
 }
 
-/// The parts of some runs that lie in another run.
-pub fn within(runs: &[Run], run: Run) -> impl Iterator<Item = Run> {
-    let parts = runs.iter().map(move |r| Run { from: r.from.max(run.from), to: r.to.min(run.to) });
-    parts.filter(|part| part.from < part.to)
-}
-
-/// Whether any number of `run` is among `runs`.
-pub fn meet(runs: &[Run], run: Run) -> bool {
-    runs.iter().any(|other| other.from < run.to && run.from < other.to)
+/// Whether two runs have a number in common.
+pub fn overlap(run: Run, other: Run) -> bool {
+    other.from < run.to && run.from < other.to
 }
 
 /// The union of `parts`, which come in any order and may overlap.

@@ -13,8 +13,10 @@ use std::cell::OnceCell;
 #[derive(Clone, Debug)]
 pub struct SliceBranch {
     pub follow: LegBranch,
-    /// The poses that it reaches, if they are a region of the plane and meet `links`.
+    /// The poses that it reaches at most, if they are a region of the plane and meet `links`.
     region: Option<Region>,
+    /// Whether nothing else limits what it reaches.
+    decided: bool,
     /// How rows are clipped to the region, if they can be.
     plan: Option<ClipPlan>,
     /// The regions that limits on a link leave, and how rows are clipped to them.
@@ -30,6 +32,7 @@ impl SliceBranch {
         Self {
             follow,
             region: None,
+            decided: false,
             plan: None,
             links: vec![],
             transitions: OnceCell::new(),
@@ -52,6 +55,11 @@ impl SliceBranch {
         self.plan.is_some()
     }
 
+    /// Whether rows that are clipped to its regions are what it reaches.
+    pub fn is_decided(&self) -> bool {
+        self.plan.is_some() && self.decided
+    }
+
     /// Finds its regions in a sheet whose first pose has the displacement `v`.
     #[inline(always)]
     fn find_regions(
@@ -63,6 +71,7 @@ impl SliceBranch {
     ) {
         let per_unit = scale.step.recip();
         self.region = manipulator.region(&self.follow, v, per_unit);
+        self.decided = manipulator.regions_decide(&self.follow);
         // Steps may be too small to count in.
         let region = self.region.as_ref().filter(|_| per_unit.is_finite());
         self.plan = region.and_then(|region| ClipPlan::new(region, last, scale.extent));
@@ -87,11 +96,21 @@ pub enum SheetKind {
     Unreachable,
     /// Every leg has one branch, and that is what regions have in common: rows are clipped to all regions together.
     Regions,
+    /// Every leg has one branch, and its regions contain what that reaches: rows are clipped to all regions together, and
+    /// legs are asked for what is left.
+    Bounds,
     /// Some leg has several branches, or one without regions: branches are decided one by one.
     Branches,
     /// Some task coordinates follow from those of the grid, or heights of legs from imaginary joints: poses are decided one
     /// by one.
     Single,
+}
+
+impl SheetKind {
+    /// Whether rows are clipped to the regions of all legs together.
+    pub fn clips_together(self) -> bool {
+        matches!(self, Self::Regions | Self::Bounds)
+    }
 }
 
 /// The lengths of rows, in the units in which they are clipped.
@@ -143,7 +162,7 @@ pub struct Sheet<'a> {
     /// All coordinates but the first.
     pub others: Vec<f64>,
     pub scale: RowScale,
-    /// The regions of links of all legs, in a sheet of [`SheetKind::Regions`].
+    /// The regions of links of all legs, in a sheet whose rows are clipped to all regions together.
     pub links: Vec<(Region, ClipPlan)>,
     /// The number, in any slice, of the sheet for which regions were found that are the same in every slice.
     fixed_regions_of: Option<u64>,
@@ -306,6 +325,8 @@ impl<'a> Sheet<'a> {
                 }
                 if !branch.is_clippable() {
                     self.kind = SheetKind::Branches;
+                } else if !branch.is_decided() && self.kind == SheetKind::Regions {
+                    self.kind = SheetKind::Bounds;
                 }
             }
             if branches.len() != 1 {
@@ -313,7 +334,7 @@ impl<'a> Sheet<'a> {
             }
         }
         self.links.clear();
-        if self.kind == SheetKind::Regions {
+        if self.kind.clips_together() {
             for branch in self.legs.iter().flatten().filter(|branch| !branch.links.is_empty()) {
                 self.links.extend_from_slice(&branch.links);
             }

@@ -1,6 +1,7 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
-use super::clip::{Clip, ClippedRows, Intersect, Intersection, RowState, Rows};
+use super::asked::{AskedRows, Clipped};
+use super::clip::{Clip, ClippedRows, Intersect, Intersection, ROWS, RowState, Rows};
 use super::known_range::KnownRanges;
 use super::row::Row;
 use super::runs::{self, Run};
@@ -22,6 +23,9 @@ pub struct Worker<'a> {
     pub sheet: Sheet<'a>,
     clipping: Clipping,
     row: Row,
+    asked: Option<Box<AskedRows>>,
+    /// The poses that the legs reach that are the same in every slice, of the rows of the range.
+    fixed: Option<(Range<u64>, Box<AskedRows>)>,
     hits: HitPoses,
     limit: Option<LimitedRow<'a>>,
     one: OnePose,
@@ -37,9 +41,13 @@ struct Clipping {
     shared: Intersection,
     /// What `rows` and `shared` belong to.
     shared_of: Option<(u64, Range<u64>, Run, SheetKind)>,
-    /// The rows clipped to all legs together in a sheet of [`SheetKind::Regions`], else to each branch of
+    /// The rows clipped to all legs together in a sheet of regions, else to each branch of
     /// every leg, in their order.
     clipped: Vec<ClippedRows>,
+    /// What is left of a row, and working memory for it.
+    left: Vec<Run>,
+    union: Vec<Run>,
+    next: Vec<Run>,
     arch: Arch,
 }
 
@@ -73,13 +81,16 @@ impl Clipping {
             shared: Intersection::new(),
             shared_of: None,
             clipped: Vec::new(),
+            left: Vec::new(),
+            union: Vec::new(),
+            next: Vec::new(),
             arch: Arch::new(),
         }
     }
 
     /// Clips a window of some rows of a sheet to its regions.
     fn clip(&mut self, sheet: &Sheet<'_>, numbers: &Range<u64>, window: Run) {
-        let regions = sheet.kind == SheetKind::Regions;
+        let regions = sheet.kind.clips_together();
         let here = Some((sheet.number, numbers.clone(), window, sheet.kind));
         if self.shared_of != here {
             self.shared_of = here;
@@ -112,11 +123,58 @@ impl Clipping {
         }
     }
 
-    /// Whether any answer in row number `i` is too close to call.
-    fn in_doubt(&self, kind: SheetKind, i: usize) -> bool {
-        let clipped = if kind == SheetKind::Regions { &self.clipped[..1] } else { &self.clipped };
-        clipped.iter().any(|clipped| clipped.state(i) == RowState::Doubtful)
+    /// Begins to ask for the rows that were clipped, or those that are not `counted`, with what clipping leaves of them.
+    /// Of rows of which `fixed` is known, that is kept.
+    fn begin(
+        &mut self,
+        (sweep, sheet): (&Sweep<'_>, &Sheet<'_>),
+        numbers: &Range<u64>,
+        window: Run,
+        (counted, fixed): (bool, Option<&AskedRows>),
+        asked: &mut AskedRows,
+    ) {
+        asked.begin(sweep, window);
+        let Self { left, union, next, .. } = self;
+        for (i, number) in numbers.clone().enumerate() {
+            if counted && self.clipped[0].state(i) == RowState::Counted {
+                continue;
+            }
+            let doubt = in_doubt(&self.clipped, sheet.kind, i);
+            left.clear();
+            if doubt || !sheet.kind.clips_together() {
+                left.push(window);
+            } else {
+                left.extend(self.clipped[0].runs(i));
+            }
+            let mut keep = |runs: &[Run]| {
+                runs::intersection(left, runs, next);
+                std::mem::swap(left, next);
+            };
+            if let Some(fixed) = fixed {
+                union.clear();
+                union.extend(fixed.runs(i));
+                keep(union);
+            }
+            if !doubt && !sheet.kind.clips_together() {
+                let mut clipped = &self.clipped[..];
+                for branches in &sheet.legs {
+                    let (of_leg, others) = clipped.split_at(branches.len());
+                    clipped = others;
+                    if are_clippable(branches) {
+                        runs::union(of_leg.iter().flat_map(|rows| rows.runs(i)), union);
+                        keep(union);
+                    }
+                }
+            }
+            asked.push(sweep, number, left, if doubt { Clipped::Not } else { Clipped::Surely });
+        }
     }
+}
+
+/// Whether any answer in row number `i` is too close to call.
+fn in_doubt(clipped: &[ClippedRows], kind: SheetKind, i: usize) -> bool {
+    let clipped = if kind.clips_together() { &clipped[..1] } else { clipped };
+    clipped.iter().any(|clipped| clipped.state(i) == RowState::Doubtful)
 }
 
 impl<'a> Worker<'a> {
@@ -130,6 +188,8 @@ impl<'a> Worker<'a> {
             sheet: Sheet::new(sweep),
             clipping: Clipping::new(),
             row: Row::default(),
+            asked: None,
+            fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
             limit: sweep.limit.map(limited),
             one: OnePose {
@@ -182,60 +242,114 @@ impl<'a> Worker<'a> {
         }
         self.clipping.clip(&self.sheet, &numbers, window);
         // Nobody has to know which poses these are.
-        let count_alone =
-            self.sheet.kind == SheetKind::Regions && hit.is_none() && self.limit.is_none();
+        let count_alone = hit.is_none() && self.limit.is_none();
+        let counted = count_alone && self.sheet.kind == SheetKind::Regions;
         let mut reachable = 0;
-        if count_alone {
+        if counted {
             reachable += self.clipping.clipped[0].total();
-            if !self.clipping.clipped[0].all_counted() {
-                for (i, number) in numbers.enumerate() {
-                    if self.clipping.clipped[0].state(i) != RowState::Counted {
-                        reachable += self.decide_row((i, number), window, found, hit);
-                    }
+        }
+        if !(counted && self.clipping.clipped[0].all_counted()) {
+            let fixed = self.fixed_rows(&numbers, window);
+            let mut asked = self.asked.take().unwrap_or_else(|| AskedRows::new(sweep.manipulator));
+            let known = self.fixed.as_ref().filter(|_| fixed).map(|(_, rows)| &**rows);
+            let sheet = &self.sheet;
+            self.clipping.begin((sweep, sheet), &numbers, window, (counted, known), &mut asked);
+            asked.ask(sweep, sheet, |branches| !(fixed && is_fixed(branches)));
+            let unused = self.sheet.branches().any(|branch| branch.unused);
+            if unused && self.limit.is_none() && asked.count() > 0 {
+                self.use_branches(&asked, numbers.start, fixed, found);
+            }
+            if count_alone {
+                reachable += asked.count();
+            } else {
+                for place in 0..asked.numbers().len() {
+                    reachable += self.take_row(&asked, place, window, found, hit);
                 }
             }
-            if reachable > 0 {
-                for branch in self.sheet.legs.iter_mut().flatten() {
-                    if std::mem::take(&mut branch.unused) {
-                        found.used(sweep.manipulator, &branch.follow, &mut self.known);
-                    }
+            self.asked = Some(asked);
+        }
+        if counted && reachable > 0 {
+            for branch in self.sheet.legs.iter_mut().flatten() {
+                if std::mem::take(&mut branch.unused) {
+                    found.used(sweep.manipulator, &branch.follow, &mut self.known);
                 }
-            }
-        } else {
-            for (i, number) in numbers.enumerate() {
-                reachable += self.decide_row((i, number), window, found, hit);
             }
         }
         found.reachable += reachable;
     }
 
-    /// Decides row number `i` of those that were clipped, which is row `number` of the sheet. Returns how many
-    /// of its poses are reachable.
-    fn decide_row(
+    /// Finds which poses of some rows the legs reach that are the same in every slice, once for all slices. Returns whether
+    /// there are such legs, and slices that have these rows alone.
+    fn fixed_rows(&mut self, numbers: &Range<u64>, window: Run) -> bool {
+        let (sweep, sheet) = (self.sweep, &self.sheet);
+        let same_rows = sweep.sheets == 1 && sweep.segments == 1 && sweep.side <= ROWS as u64;
+        let same_legs = sweep.manipulator.lifts_straight();
+        if !(same_rows && same_legs) || !sheet.legs.iter().any(|branches| is_fixed(branches)) {
+            return false;
+        }
+        let (of, asked) =
+            self.fixed.get_or_insert_with(|| (0..0, AskedRows::new(sweep.manipulator)));
+        if of != numbers {
+            of.clone_from(numbers);
+            asked.begin(sweep, window);
+            for number in numbers.clone() {
+                asked.push(sweep, number, &[window], Clipped::Not);
+            }
+            asked.ask(sweep, sheet, is_fixed);
+        }
+        true
+    }
+
+    /// Takes the imaginary joints of the branches that reach any of the poses that are left of the rows that were asked for.
+    /// `first` is the number of the first row that was clipped.
+    fn use_branches(&mut self, asked: &AskedRows, first: u64, fixed: bool, found: &mut Count) {
+        let mut number = 0;
+        for branches in &mut self.sheet.legs {
+            let decided = branches.iter().all(SliceBranch::is_decided);
+            let known = branches.len() == 1 || fixed && is_fixed(branches);
+            for branch in branches {
+                let clipped = self.clipping.clipped.get(number);
+                let clips = |place: usize| {
+                    let i = (asked.numbers()[place] - first) as usize;
+                    let mut clipped = clipped.into_iter().flat_map(|clipped| clipped.runs(i));
+                    clipped.any(|run| asked.runs(place).any(|other| runs::overlap(run, other)))
+                };
+                let used = branch.unused
+                    && (known
+                        || if decided && !asked.any_unclipped() {
+                            (0..asked.numbers().len()).any(clips)
+                        } else {
+                            asked.uses(number)
+                        });
+                if used {
+                    found.used(self.sweep.manipulator, &branch.follow, &mut self.known);
+                    branch.unused = false;
+                }
+                number += 1;
+            }
+        }
+    }
+
+    /// Takes the reachable poses of the row that is number `place` of those that were asked for. Returns how many they are.
+    fn take_row(
         &mut self,
-        (i, number): (usize, u64),
+        asked: &AskedRows,
+        place: usize,
         window: Run,
         found: &mut Count,
         hit: &mut Visitor<'_>,
     ) -> u64 {
+        let number = asked.numbers()[place];
+        let mut count = self.row.take(asked.runs(place));
+        if count == 0 {
+            return 0;
+        }
         let grid = self.sweep.grid;
         if grid.lower() > 1 {
             self.sheet.others[0] = grid.axes()[1].value(number);
         }
-        let doubt = self.clipping.in_doubt(self.sheet.kind, i);
-        let clipped = &self.clipping.clipped;
-        let mut count = if self.sheet.kind == SheetKind::Regions && !doubt {
-            self.row.take(clipped[0].runs(i))
-        } else {
-            self.row.decide(self.sweep, &self.sheet, (i, clipped, doubt), window)
-        };
-        if count == 0 {
-            return 0;
-        }
         if self.limit.is_some() {
             count = self.limit_row(hit.is_none(), found);
-        } else {
-            self.use_branches(i, doubt, found);
         }
         self.hand_over(number, window, hit);
         count
@@ -317,29 +431,6 @@ impl<'a> Worker<'a> {
             })
         })
     }
-
-    /// Takes the imaginary joints of the branches that reach any of the row's poses.
-    fn use_branches(&mut self, i: usize, doubt: bool, found: &mut Count) {
-        let mut number = 0;
-        for branches in &mut self.sheet.legs {
-            let (alone, clipped) = (branches.len() == 1, !doubt && are_clippable(branches));
-            for branch in branches {
-                let reached = |run: Run| runs::meet(&self.row.reached, run);
-                let used = branch.unused
-                    && (alone
-                        || if clipped {
-                            self.clipping.clipped[number].runs(i).any(reached)
-                        } else {
-                            self.row.feasible[number].iter().copied().any(reached)
-                        });
-                if used {
-                    found.used(self.sweep.manipulator, &branch.follow, &mut self.known);
-                    branch.unused = false;
-                }
-                number += 1;
-            }
-        }
-    }
 }
 
 impl HitPoses {
@@ -357,6 +448,11 @@ impl HitPoses {
         }
         &self.hits
     }
+}
+
+/// Whether a leg reaches the same poses in every slice, and regions do not tell which.
+fn is_fixed(branches: &[SliceBranch]) -> bool {
+    branches.iter().all(|branch| branch.follow.is_independent_of_slice() && !branch.is_decided())
 }
 
 /// Whether rows can be clipped to all branches of a leg.

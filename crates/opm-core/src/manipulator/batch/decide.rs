@@ -134,7 +134,9 @@ impl WithSimd for Decide<'_> {
                 block.status =
                     Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
                 block.solve_leg(manipulator, branches, leg);
-                block.admit(manipulator, compiled);
+                for section in [Section::Lower, Section::Upper] {
+                    block.admit(manipulator, compiled, section);
+                }
                 let Status { beyond, open: of_branch, within_limits } = &block.status;
                 let mut reaches = [0; LANES];
                 for lane in 0..LANES {
@@ -158,20 +160,19 @@ impl WithSimd for Decide<'_> {
 }
 
 impl Block {
-    /// Notes whether a leg's joints are within their limits.
+    /// Notes whether a leg's joints of a section are within their limits.
     #[inline(always)]
-    fn admit(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
-        for section in [Section::Lower, Section::Upper] {
-            let found = match section {
-                Section::Lower => &self.lower,
-                Section::Upper => &self.upper,
-            };
-            let coordinates = &leg.section(section).coordinates;
-            for (coordinate, displacements) in coordinates.iter().zip(&found.displacements) {
-                if let Some(coordinate) = coordinate {
-                    let limits = &manipulator.limits[coordinate.number];
-                    section::admit(limits, displacements, &mut self.status.within_limits);
-                }
+    pub(super) fn admit(&mut self, manipulator: &Manipulator, leg: &CompiledLeg, section: Section) {
+        let found = match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        };
+        for (coordinate, displacements) in
+            leg.section(section).coordinates.iter().zip(&found.displacements)
+        {
+            if let Some(coordinate) = coordinate {
+                let limits = &manipulator.limits[coordinate.number];
+                section::admit(limits, displacements, &mut self.status.within_limits);
             }
         }
     }

@@ -86,7 +86,7 @@ pub fn displace(
 impl Displacement {
     /// Stores a displacement in the columns of its kind.
     #[inline(always)]
-    fn store(&self, to: &mut Displacements, lane: usize) {
+    pub(super) fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
             Self::Identity(_) => {}
             Self::Planar(g) => g.store(to, lane),

@@ -1,0 +1,463 @@
+//! Many rows of a sweep at once, for one branch of a leg: near which poses its feasibility may change, and whether it
+//! reaches some poses of theirs.
+//!
+//! In a row all coordinates except the first are fixed. Feasibility changes only on the surfaces of
+//! [`transitions`](crate::manipulator::transitions), each of which a row meets in at most two places of a period. Between
+//! two of them one pose answers for all.
+
+use super::lanes::{Displacements, LANES, Lane};
+use super::section::{self, Side, Step};
+use super::{Batch, Block, Status};
+use crate::chain::surface::{Surface, Uncertainty};
+use crate::group::{Displacement, Path, PlanarDisplacement, PlanarPath, SubspaceKind};
+use crate::manipulator::{LegBranch, Manipulator, Transitions};
+use crate::mechanism::leg::Section;
+use crate::numeric::angle::MOST_REDUCED;
+use pulp::{Simd, WithSimd};
+
+/// How near to the end of what a leg reaches a pose may be, in steps, and still be decided by another pose.
+const TIE: f64 = 1e-6;
+
+/// Rows that differ in the second coordinate alone, of poses that differ in the first one alone, evenly spaced.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetRows<'a> {
+    /// The first coordinate of the first pose of every row, radians or metres.
+    pub first: f64,
+    /// The distance between neighbouring poses of a row, radians or metres; not zero.
+    pub step: f64,
+    /// The number of poses of a row.
+    pub count: u64,
+    /// The largest number that the coordinates are computed from, in steps.
+    pub extent: f64,
+    /// The second coordinate of each row, radians or metres; not used where the lower section has one coordinate alone. These
+    /// are at most [`Manipulator::DECIDED`].
+    pub second: &'a [f64],
+    /// The other coordinates of the lower section, radians or metres.
+    pub others: &'a [f64],
+}
+
+/// For each of some rows, the numbers of poses near which a leg's feasibility may change: from the first one up to, not
+/// including, the other one. Where the two are equal, that is between this pose and the one before.
+#[derive(Clone, Debug)]
+pub struct RowEnds {
+    first: Numbers,
+    after: Numbers,
+}
+
+/// One number of a pose for each row.
+type Numbers = [i32; LANES];
+
+/// A number of a pose plus this has the number in its last bits.
+const WHOLE: f64 = 4503599627370496.0;
+
+impl RowEnds {
+    const NONE: Self = Self { first: [0; LANES], after: [0; LANES] };
+
+    /// All of so many poses of every row.
+    pub fn everything(count: u64) -> Self {
+        Self { first: [0; LANES], after: [count as i32; LANES] }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, row: usize, [first, after]: [f64; 2]) {
+        self.first[row] = (first + WHOLE).to_bits() as i32;
+        self.after[row] = (after + WHOLE).to_bits() as i32;
+    }
+
+    /// The numbers of a row.
+    #[inline(always)]
+    pub fn of(&self, row: usize) -> [i32; 2] {
+        [self.first[row], self.after[row]]
+    }
+
+    /// Marks the rows of which they cut what is left: the poses `from` up to, not including, `to` of each row.
+    #[inline]
+    pub fn meet(&self, from: &Numbers, to: &Numbers, marks: &mut Numbers) {
+        for row in 0..LANES {
+            let cuts = (self.first[row] < to[row]) & (self.after[row] > from[row]);
+            marks[row] |= i32::from(cuts);
+        }
+    }
+}
+
+impl Manipulator {
+    /// Finds the poses of some rows near which a leg's feasibility may change. Between them,
+    /// [`Manipulator::reaches`] is the same for all poses of a row. With `folds` being false, that is so only among poses at
+    /// which the leg closes, be it within its limits or not.
+    #[doc(hidden)]
+    pub fn row_ends(
+        &self,
+        branch: &LegBranch,
+        transitions: &Transitions,
+        rows: &SheetRows<'_>,
+        folds: bool,
+        batch: &mut Batch,
+        ends: &mut Vec<RowEnds>,
+    ) {
+        let Batch { arch, block, .. } = batch;
+        ends.clear();
+        arch.dispatch(FindEnds {
+            manipulator: self,
+            branch,
+            transitions,
+            rows,
+            folds,
+            block,
+            ends,
+        });
+    }
+
+    /// Whether a leg reaches poses within its limits, on a branch: [`Manipulator::reaches`] for each of at most
+    /// [`Manipulator::DECIDED`] poses. Their first and their second coordinates are given, and those of the lower section that
+    /// they share, radians or metres.
+    #[doc(hidden)]
+    pub fn reaches_many(
+        &self,
+        branch: &LegBranch,
+        [first, second]: [&[f64]; 2],
+        others: &[f64],
+        batch: &mut Batch,
+        reached: &mut [bool],
+    ) {
+        let mut pose = [0.0; 4];
+        pose[2..2 + others.len()].copy_from_slice(others);
+        let mut one = |lane: usize| {
+            [pose[0], pose[1]] = [first[lane], second[lane]];
+            self.reaches(branch, &self.task.lower(&pose[..self.task.lower_count.max(2)]))
+        };
+        let large = |value: &f64| value.abs() > 0.5 * MOST_REDUCED;
+        let leg = &self.legs[branch.leg];
+        let raised = [&leg.lower, &leg.upper].iter().any(|section| section.offset.is_some());
+        let large = first.iter().chain(second).chain(others).any(large);
+        if reached.len() < FEW || branch.with_upper.is_some() && raised || large {
+            for (lane, reached) in reached.iter_mut().enumerate() {
+                *reached = one(lane);
+            }
+            return;
+        }
+        let Batch { arch, block, .. } = batch;
+        block.take_rows(self.task.lower_count, first, second, others);
+        arch.dispatch(Reach { manipulator: self, branch, block });
+        let Status { beyond, open, within_limits } = &block.status;
+        for (lane, reached) in reached.iter_mut().enumerate() {
+            *reached = if beyond[lane] == 0 && open[lane] != 0 {
+                one(lane)
+            } else {
+                beyond[lane] == 0 && within_limits[lane] != 0
+            };
+        }
+    }
+}
+
+/// Fewer poses than this are asked for one by one: a block takes as long for one pose as for all.
+const FEW: usize = 6;
+
+/// Solves a branch for a block of poses.
+struct Reach<'a> {
+    manipulator: &'a Manipulator,
+    branch: &'a LegBranch,
+    block: &'a mut Block,
+}
+
+impl WithSimd for Reach<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, branch, block } = self;
+        block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        let leg = &manipulator.legs[branch.leg];
+        match &branch.with_upper {
+            Some(b) => {
+                block.displace_section(manipulator, Section::Lower);
+                for lane in 0..LANES {
+                    b.store(&mut block.b, lane);
+                }
+                block.solve_leg(manipulator, branch.branches, branch.leg);
+                block.admit(manipulator, leg, Section::Upper);
+            }
+            None => {
+                block.aim(manipulator, branch);
+                let Block { shifted, lower, status, .. } = block;
+                section::solve(&leg.lower.chain, branch.branches.lower, shifted, lower);
+                status.note(lower);
+            }
+        }
+        block.admit(manipulator, leg, Section::Lower);
+    }
+}
+
+/// Finds the ends of rows.
+struct FindEnds<'a> {
+    manipulator: &'a Manipulator,
+    branch: &'a LegBranch,
+    transitions: &'a Transitions,
+    rows: &'a SheetRows<'a>,
+    folds: bool,
+    block: &'a mut Block,
+    ends: &'a mut Vec<RowEnds>,
+}
+
+impl WithSimd for FindEnds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, branch, transitions, rows, folds, block, ends } = self;
+        let home = manipulator.task.coordinates[0].home;
+        let firsts = &[home; LANES][..rows.second.len()];
+        block.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
+        block.aim(manipulator, branch);
+        let starts = &block.shifted;
+        let kind = manipulator.task.form(Section::Lower).kind;
+        let path = |lane| manipulator.task.row(&load(kind, starts, lane));
+        // Along a row the first coordinate is a displacement from home.
+        let from = rows.first - home;
+        let to = from + rows.step * (rows.count - 1) as f64;
+        let reach = from.abs().max(to.abs()) + rows.step;
+        // The size is a convex function of the second coordinate.
+        let size = [0, rows.second.len().saturating_sub(1)].map(|row| path(row).size(reach));
+        let size = size[0].max(size[1]);
+        let finder = Finder {
+            path: path(0),
+            starts,
+            lanes: rows.second.len().next_multiple_of(8).min(LANES),
+            scale: RowScale {
+                first: from,
+                per_step: rows.step.recip(),
+                length: to - from,
+                count: rows.count as f64,
+                tie: TIE.max(rows.extent * 1e-12),
+            },
+        };
+        if !transitions.are_complete(size) {
+            return ends.push(RowEnds::everything(rows.count));
+        }
+        for (surface, blur) in transitions.surfaces(folds) {
+            let uncertainty = Uncertainty { size: transitions.size() + size, blur };
+            finder.find(surface, surface.tolerance(uncertainty), ends);
+        }
+    }
+}
+
+/// Finds the ends of rows that differ in where their paths start.
+struct Finder<'a> {
+    /// The path of any of the rows.
+    path: Path,
+    starts: &'a Displacements,
+    /// The number of rows, or more.
+    lanes: usize,
+    scale: RowScale,
+}
+
+/// How the poses of a row follow from the displacement along it.
+#[derive(Clone, Copy)]
+struct RowScale {
+    /// The displacement at the first pose, radians or metres.
+    first: f64,
+    /// The number of poses in a unit of it.
+    per_step: f64,
+    /// The displacement from the first to the last pose.
+    length: f64,
+    /// The number of poses.
+    count: f64,
+    /// How far an end may be off, in steps.
+    tie: f64,
+}
+
+impl Finder<'_> {
+    /// Finds where the rows meet a surface.
+    #[inline(always)]
+    fn find(&self, surface: &Surface, tolerance: f64, ends: &mut Vec<RowEnds>) {
+        // With a constant kind of path and of surface, the loop over the rows has no branches.
+        macro_rules! each {
+            ($start:ident => $path:expr, $surface:expr) => {{
+                let surface = $surface;
+                let function = |$start| surface.along(&$path);
+                // It is the same for all rows.
+                let period = function(Lane::load(self.starts, 0)).period();
+                let Some(repeats) = self.scale.repeats(period) else {
+                    return ends.push(RowEnds::everything(self.scale.count as u64));
+                };
+                for copy in 0..repeats.copies {
+                    let (mut near, mut far) = (RowEnds::NONE, RowEnds::NONE);
+                    let shift = repeats.shift(copy);
+                    for lane in 0..self.lanes.min(LANES) {
+                        let $start = Lane::load(self.starts, lane);
+                        let [first, second] = surface.along(&$path).near_zeros(tolerance);
+                        near.set(lane, self.scale.poses(shift.of(first)));
+                        far.set(lane, self.scale.poses(shift.of(second)));
+                    }
+                    ends.extend([near, far]);
+                }
+            }};
+        }
+        match (self.path, *surface) {
+            (
+                Path::Planar(PlanarPath::Translation { rate, .. }),
+                Surface::Circle { point, centre, square },
+            ) => each!(
+                start => Path::Planar(PlanarPath::Translation { start, rate }),
+                Surface::Circle { point, centre, square }
+            ),
+            (
+                Path::Planar(PlanarPath::Translation { rate, .. }),
+                Surface::Line { point, across, at },
+            ) => each!(
+                start => Path::Planar(PlanarPath::Translation { start, rate }),
+                Surface::Line { point, across, at }
+            ),
+            (
+                Path::Planar(PlanarPath::Translation { rate, .. }),
+                Surface::Carried { point, across, at },
+            ) => each!(
+                start => Path::Planar(PlanarPath::Translation { start, rate }),
+                Surface::Carried { point, across, at }
+            ),
+            (
+                Path::Planar(PlanarPath::Translation { rate, .. }),
+                Surface::Rotation { rotation },
+            ) => each!(
+                start => Path::Planar(PlanarPath::Translation { start, rate }),
+                Surface::Rotation { rotation }
+            ),
+            (Path::Spherical { axis, .. }, Surface::Cone { fixed, carried, cosine }) => each!(
+                start => Path::Spherical { start, axis },
+                Surface::Cone { fixed, carried, cosine }
+            ),
+            (
+                Path::Cylindrical { rate, .. },
+                Surface::Coaxial { rotation, advance, at, period: None },
+            ) => each!(
+                start => Path::Cylindrical { start, rate },
+                Surface::Coaxial { rotation, advance, at, period: None }
+            ),
+            (
+                Path::Cylindrical { rate, .. },
+                Surface::Coaxial { rotation, advance, at, period: Some(period) },
+            ) => each!(
+                start => Path::Cylindrical { start, rate },
+                Surface::Coaxial { rotation, advance, at, period: Some(period) }
+            ),
+            (Path::Translational { rate, .. }, Surface::Band { across, at }) => {
+                each!(start => Path::Translational { start, rate }, Surface::Band { across, at });
+            }
+            (Path::Spatial { rate, .. }, Surface::Slab { across, at }) => {
+                each!(start => Path::Spatial { start, rate }, Surface::Slab { across, at });
+            }
+            (path, surface) => panic!("no rows along {path:?} meet {surface:?}"),
+        }
+    }
+}
+
+/// The share of a period before a row's first pose in which an interval that reaches into the row may begin.
+const SLACK: f64 = 0.25;
+
+/// How often the zeros of a function are repeated in a row.
+#[derive(Clone, Copy)]
+struct Repeats {
+    /// How many repetitions of an interval there can be.
+    copies: usize,
+    /// The period; `None` where nothing is repeated.
+    period: Option<f64>,
+    /// Where the first one begins at the earliest.
+    from: f64,
+}
+
+/// What brings an interval to a place in a row.
+#[derive(Clone, Copy)]
+struct Shift {
+    repeats: Repeats,
+    /// The number of repetitions after the first.
+    copy: f64,
+}
+
+impl RowScale {
+    /// How often a function with this period is repeated; `None` where that is within two poses.
+    fn repeats(&self, period: Option<f64>) -> Option<Repeats> {
+        let Some(period) = period.filter(|period| period.is_finite()) else {
+            return Some(Repeats { copies: 1, period: None, from: 0.0 });
+        };
+        let copies = (self.length / period + SLACK) as usize + 1;
+        let repeats = Repeats { copies, period: Some(period), from: self.first - SLACK * period };
+        (period * self.per_step > 2.0).then_some(repeats)
+    }
+
+    /// The numbers of the poses near an interval.
+    #[inline(always)]
+    fn poses(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let first = ((from - self.first) * self.per_step - self.tie).ceil();
+        let after = ((to - self.first) * self.per_step + self.tie).floor() + 1.0;
+        // What is not a number is beyond all poses.
+        let first = if first > 0.0 { first } else { 0.0 };
+        let first = if first < self.count { first } else { self.count };
+        let after = if after < self.count { after } else { self.count };
+        let after = if after > first { after } else { first };
+        let empty = to < from;
+        [if empty { 0.0 } else { first }, if empty { 0.0 } else { after }]
+    }
+}
+
+impl Repeats {
+    fn shift(self, copy: usize) -> Shift {
+        Shift { repeats: self, copy: copy as f64 }
+    }
+}
+
+impl Shift {
+    /// The interval shifted by whole periods. One that is longer than the slack becomes everything.
+    #[inline(always)]
+    fn of(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let Some(period) = self.repeats.period else { return [from, to] };
+        let by = period * (self.copy - ((from - self.repeats.from) / period).floor());
+        let fits = to - from <= SLACK * period;
+        let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
+        [if fits { from + by } else { least }, if fits { to + by } else { most }]
+    }
+}
+
+impl Block {
+    /// Takes poses of a section of so many coordinates: the first and second ones, and those that they share. The remaining
+    /// lanes are filled with the last pose.
+    fn take_rows(&mut self, width: usize, first: &[f64], second: &[f64], others: &[f64]) {
+        for (column, values) in self.pose[..width].iter_mut().zip([first, second]) {
+            column[..values.len()].copy_from_slice(values);
+            column[values.len()..].fill(values.last().copied().unwrap_or_default());
+        }
+        for (column, &other) in self.pose[..width].iter_mut().skip(2).zip(others) {
+            *column = [other; LANES];
+        }
+    }
+
+    /// Computes the targets of a branch's lower chain, into `shifted`, of the poses of the block.
+    #[inline(always)]
+    fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch) {
+        self.displace_section(manipulator, Section::Lower);
+        let Self { v, tau, shifted, .. } = self;
+        match branch.tau {
+            Some(of_slice) => {
+                tau.fill(of_slice);
+                let step = Step { motion: manipulator.task.lower_intersection, side: Side::After };
+                section::shift(step, v, tau, shifted);
+            }
+            None => shifted.clone_from(v),
+        }
+        if let Some(Displacement::Planar(offset)) = manipulator.legs[branch.leg].lower.offset {
+            for lane in 0..LANES {
+                PlanarDisplacement::load(shifted, lane).after(&offset).store(shifted, lane);
+            }
+        }
+    }
+}
+
+/// The displacement of pose number `lane`, in a subspace of this kind.
+fn load(kind: SubspaceKind, from: &Displacements, lane: usize) -> Displacement {
+    match kind {
+        SubspaceKind::Identity => kind.identity(),
+        SubspaceKind::Planar => Displacement::Planar(Lane::load(from, lane)),
+        SubspaceKind::Spherical => Displacement::Spherical(Lane::load(from, lane)),
+        SubspaceKind::Cylindrical => Displacement::Cylindrical(Lane::load(from, lane)),
+        SubspaceKind::TranslationalPlane => Displacement::Translational(Lane::load(from, lane)),
+        SubspaceKind::TranslationalSpace => Displacement::Spatial(Lane::load(from, lane)),
+    }
+}
