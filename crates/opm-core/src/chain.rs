@@ -189,15 +189,17 @@ pub(crate) trait ClosedForm {
         Ok(self.attempt(target, branch).displacements)
     }
 
-    /// The joints' displacements that move the outer link by `target`.
+    /// Writes the joints' displacements that move the outer link by `target`; nothing where it is out of reach.
     #[inline(always)]
     fn solve(
         &self,
         target: &Self::Target,
         branch: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        out: &mut [JointDisplacement; 3],
+    ) -> Result<(), ReachDeficit> {
         let Attempt { displacements, holds, .. } = self.attempt(target, branch);
-        if holds { Ok(displacements) } else { self.exception(target, branch) }
+        *out = if holds { displacements } else { self.exception(target, branch)? };
+        Ok(())
     }
 }
 
@@ -329,16 +331,31 @@ impl Chain {
         target: &Displacement,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        let mut found = [JointDisplacement::Value(0.0); 3];
+        self.solve(target, branch, &mut found)?;
+        Ok(found)
+    }
+
+    /// Writes what [`Chain::inverse`] returns; nothing where the target is out of reach. Copying the displacements would
+    /// take as long as finding some of them.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+        out: &mut [JointDisplacement; 3],
+    ) -> Result<(), ReachDeficit> {
         let pad = |[a, b]: [JointDisplacement; 2]| [a, b, JointDisplacement::Value(0.0)];
         match self {
-            Self::Rigid => Ok([JointDisplacement::Value(0.0); 3]),
-            Self::Planar(chain) => chain.inverse(target.planar(), branch),
-            Self::Spherical(chain) => chain.inverse(target.spherical(), branch),
-            Self::Ball(ball) => Ok(ball.inverse(target.spherical())),
-            Self::Cylindrical(chain) => Ok(pad(chain.inverse(target.cylindrical()))),
-            Self::Translational(chain) => Ok(pad(chain.inverse(*target.translational()))),
-            Self::Spatial(chain) => Ok(chain.inverse(target.spatial())),
+            Self::Rigid => *out = [JointDisplacement::Value(0.0); 3],
+            Self::Planar(chain) => return chain.solve(target.planar(), branch, out),
+            Self::Spherical(chain) => return chain.solve(target.spherical(), branch, out),
+            Self::Ball(ball) => *out = ball.inverse(target.spherical()),
+            Self::Cylindrical(chain) => *out = pad(chain.inverse(target.cylindrical())),
+            Self::Translational(chain) => *out = pad(chain.inverse(*target.translational())),
+            Self::Spatial(chain) => *out = chain.inverse(target.spatial()),
         }
+        Ok(())
     }
 
     /// The first joint's displacement alone; cheaper than [`Chain::inverse`] for a spherical chain.

@@ -43,6 +43,7 @@ pub use frame::Subspace;
 pub use identity::IdentityDisplacement;
 pub use intersection::{IntersectionMotion, MotionType};
 pub use joint_displacement::JointDisplacement;
+pub(crate) use joint_displacement::nearest;
 pub use kind::SubspaceKind;
 pub use path::{Path, PlanarPath};
 pub use planar::{PlanarDisplacement, PlanarMotion};

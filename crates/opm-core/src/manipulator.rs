@@ -12,6 +12,7 @@
 //! [`Chain`](crate::chain::Chain).
 
 mod all_modes;
+mod angles;
 mod batch;
 mod closure;
 mod dependent;
@@ -67,6 +68,7 @@ pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;
+use pulp::Arch;
 use std::ops::Range;
 
 /// The largest number of choices in a [`Mode`].
@@ -155,6 +157,8 @@ pub struct Manipulator {
     pub(crate) plan: Result<Plan, NoClosedForm>,
     /// The legs' products of exponentials.
     pub(crate) closure: Closure,
+    /// The instructions of the processor at hand.
+    arch: Arch,
 }
 
 impl Manipulator {
@@ -416,12 +420,18 @@ impl Compiled {
         let length = frame(mechanism).length;
         let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
         let mut actuated = Vec::new();
-        let mut actuated_numbers = Vec::with_capacity(coordinates.len());
+        let mut chain_coordinates = Vec::with_capacity(coordinates.len());
         for joint in mechanism.joints() {
-            for _ in &joint.coordinates {
-                actuated_numbers.push(joint.actuated.then_some(actuated.len()));
+            for coordinate in &joint.coordinates {
+                let number = chain_coordinates.len();
+                chain_coordinates.push(ChainCoordinate {
+                    number,
+                    actuated: joint.actuated.then_some(actuated.len()),
+                    home: coordinate.home,
+                    limits: limits[number],
+                });
                 if joint.actuated {
-                    actuated.push(actuated_numbers.len() - 1);
+                    actuated.push(number);
                 }
             }
         }
@@ -430,12 +440,8 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let context = CompileContext {
-                task: &task,
-                actuated: &actuated_numbers,
-                limits: &limits,
-                size: length,
-            };
+            let context =
+                CompileContext { task: &task, coordinates: &chain_coordinates, size: length };
             let mut compiled = CompiledLeg::new(leg, split, first, context)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {
@@ -471,6 +477,7 @@ impl Compiled {
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
             closure,
+            arch: Arch::new(),
             mechanism,
             decomposition,
             task,

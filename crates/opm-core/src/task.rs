@@ -63,7 +63,9 @@ mod pose;
 
 pub use coordinate::{CoordinateKind, TaskCoordinate};
 pub use displacement::euler;
-pub(crate) use displacement::{Form, lower_displacement, upper_displacement};
+pub(crate) use displacement::{
+    Form, SectionValues, lower_angles, lower_displacement, upper_angles, upper_displacement,
+};
 pub use error::{FrameProblem, OddJoint, TaskError};
 pub(crate) use height::Height;
 
@@ -75,7 +77,7 @@ use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path, PlanarPath};
 use crate::mechanism::leg::Section;
 use crate::mechanism::{Mechanism, TaskKey};
-use crate::numeric::angle::sin_cos;
+use crate::numeric::angle::sin_cos_of_each;
 use frame::Meeting;
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
@@ -96,11 +98,37 @@ pub struct Task {
     pub coordinates: Vec<TaskCoordinate>,
     /// The number of coordinates of `v`.
     pub lower_count: usize,
-    /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
-    /// angles; `None` where the pose has no Euler angles, and where it is the identity.
     /// The height of a Schoenflies section; `None` where there is none.
     pub(crate) height: Option<Height>,
+    /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
+    /// angles; `None` where the pose has no Euler angles, and where it is the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
+    /// The coordinates other than a height of both sections.
+    in_plane: [InPlane; 2],
+}
+
+/// The coordinates of a section other than a height: three at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct InPlane {
+    count: usize,
+    /// Their numbers in the section; zero beyond the last.
+    numbers: [usize; 3],
+    /// Their values at home; zero beyond the last.
+    home: [f64; 3],
+}
+
+impl InPlane {
+    /// Their values in a pose that begins with the section's first coordinate; zero beyond the last.
+    #[inline(always)]
+    fn of(&self, pose: &[f64]) -> [f64; 3] {
+        let mut at = [0.0; 3];
+        for (place, at) in at.iter_mut().enumerate() {
+            if place < self.count {
+                *at = pose[self.numbers[place]];
+            }
+        }
+        at
+    }
 }
 
 /// The intersection motion at home, in base coordinates.
@@ -221,7 +249,7 @@ impl Task {
         };
         let lower_intersection = motion(&lower);
         let upper_intersection = motion(&upper);
-        Ok(Self {
+        let mut task = Self {
             lower,
             upper,
             lower_intersection,
@@ -231,7 +259,11 @@ impl Task {
             lower_count,
             height,
             home_orientation_inverse,
-        })
+            in_plane: [InPlane::default(); 2],
+        };
+        task.in_plane =
+            [Section::Lower, Section::Upper].map(|section| task.coordinates_of(section));
+        Ok(task)
     }
 
     /// The displacement `v` for the first [`Task::lower_count`] coordinates of a pose, radians and metres.
@@ -241,17 +273,37 @@ impl Task {
     #[doc(hidden)]
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
-        let (at, home) = self.section_of(pose, Section::Lower);
-        let displacement = lower_displacement(self.form(Section::Lower), at, home, sin_cos);
-        self.displaced_from_home(Section::Lower, displacement)
+        self.section(pose, Section::Lower)
     }
 
     /// The displacements `v` and `b` for all coordinates of a pose.
     ///
     /// # Panics
     /// If there are fewer than [`Task::lower_count`] coordinates.
+    #[inline(always)]
     pub(crate) fn sections(&self, pose: &[f64]) -> (Displacement, Displacement) {
-        (self.lower(pose), self.upper(&pose[self.lower_count..]))
+        let of_upper = &pose[self.lower_count..];
+        (self.section(pose, Section::Lower), self.section(of_upper, Section::Upper))
+    }
+
+    /// The displacement of a section. `pose` begins with the section's first coordinate.
+    #[inline(always)]
+    fn section(&self, pose: &[f64], section: Section) -> Displacement {
+        let (form, in_plane) = (self.form(section), &self.in_plane[section as usize]);
+        let values = SectionValues { at: in_plane.of(pose), home: in_plane.home };
+        let angles = match section {
+            Section::Lower => lower_angles(form, values),
+            Section::Upper => upper_angles(form, values),
+        };
+        let mut sines = [(0.0, 1.0); 3];
+        if let Some(angles) = angles {
+            sines = sin_cos_of_each(angles);
+        }
+        let displacement = match section {
+            Section::Lower => lower_displacement(form, values, sines),
+            Section::Upper => upper_displacement(form, values, sines),
+        };
+        self.displaced_from_home(section, displacement)
     }
 
     /// What the two subspaces share; `None` for the identity alone.
@@ -270,7 +322,7 @@ impl Task {
     }
 
     /// The displacement from home of a section that its coordinates describe: Euler angles are absolute.
-    #[inline]
+    #[inline(always)]
     fn displaced_from_home(&self, section: Section, displacement: Displacement) -> Displacement {
         match (displacement, &self.home_orientation_inverse) {
             (Displacement::Spherical(absolute), Some(inverse))
@@ -309,9 +361,7 @@ impl Task {
     #[doc(hidden)]
     #[inline]
     pub fn upper(&self, pose: &[f64]) -> Displacement {
-        let (at, home) = self.section_of(pose, Section::Upper);
-        let displacement = upper_displacement(self.form(Section::Upper), at, home, sin_cos);
-        self.displaced_from_home(Section::Upper, displacement)
+        self.section(pose, Section::Upper)
     }
 
     /// The form of a section, which determines its coordinates.
@@ -324,17 +374,16 @@ impl Task {
         }
     }
 
-    /// The values of a section's coordinates other than a height, and those at home; zeros beyond the last. `pose` begins
-    /// with the section's first coordinate.
-    #[inline]
-    fn section_of(&self, pose: &[f64], section: Section) -> ([f64; 3], [f64; 3]) {
-        let (mut at, mut home) = ([0.0; 3], [0.0; 3]);
-        let of_section = pose.iter().zip(&self.coordinates[self.range(section)]);
-        let of_section = self.in_plane(section, of_section);
-        for ((at, home), (&value, coordinate)) in at.iter_mut().zip(&mut home).zip(of_section) {
-            (*at, *home) = (value, coordinate.home);
+    /// The coordinates of a section other than a height.
+    fn coordinates_of(&self, section: Section) -> InPlane {
+        let mut found = InPlane::default();
+        let of_section = self.coordinates[self.range(section)].iter().enumerate();
+        for (number, coordinate) in self.in_plane(section, of_section) {
+            found.numbers[found.count] = number;
+            found.home[found.count] = coordinate.home;
+            found.count += 1;
         }
-        (at, home)
+        found
     }
 
     /// The platform's displacement from home at a pose, `g = v · b`, base coordinates.

@@ -92,11 +92,18 @@ impl Limits {
     #[inline(always)]
     pub fn report(&self, displacement: JointDisplacement) -> f64 {
         let nearest = displacement.value();
-        match (self, displacement) {
-            (Self::Range { low, high, .. }, JointDisplacement::Direction(_)) => {
-                brought_into(nearest, *low, *high)
-            }
-            _ => nearest,
+        match displacement {
+            JointDisplacement::Direction(_) => self.report_angle(nearest),
+            JointDisplacement::Value(_) => nearest,
+        }
+    }
+
+    /// The value to report for an angle within π of home, to which full revolutions may be added.
+    #[inline(always)]
+    pub(crate) fn report_angle(&self, angle: f64) -> f64 {
+        match self {
+            Self::Free => angle,
+            Self::Range { low, high, .. } => brought_into(angle, *low, *high),
         }
     }
 

@@ -177,20 +177,33 @@ impl PlanarChain {
     ///
     /// # Errors
     /// The reach deficit, where the target is out of reach.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(
         &self,
         target: &PlanarDisplacement,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        let mut found = [JointDisplacement::Value(0.0); 3];
+        self.solve(target, branch, &mut found)?;
+        Ok(found)
+    }
+
+    /// Writes what [`PlanarChain::inverse`] returns; nothing where the target is out of reach.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &self,
+        target: &PlanarDisplacement,
+        branch: Branch,
+        out: &mut [JointDisplacement; 3],
+    ) -> Result<(), ReachDeficit> {
         match self {
-            Self::Rrr(chain) => chain.solve(target, branch),
-            Self::Prr(chain) => chain.solve(target, branch),
-            Self::Rrp(chain) => chain.solve(target, branch),
-            Self::Rpr(chain) => chain.solve(target, branch),
-            Self::Rpp(chain) => chain.solve(target, branch),
-            Self::Ppr(chain) => chain.solve(target, branch),
-            Self::Prp(chain) => chain.solve(target, branch),
+            Self::Rrr(chain) => chain.solve(target, branch, out),
+            Self::Prr(chain) => chain.solve(target, branch, out),
+            Self::Rrp(chain) => chain.solve(target, branch, out),
+            Self::Rpr(chain) => chain.solve(target, branch, out),
+            Self::Rpp(chain) => chain.solve(target, branch, out),
+            Self::Ppr(chain) => chain.solve(target, branch, out),
+            Self::Prp(chain) => chain.solve(target, branch, out),
         }
     }
 

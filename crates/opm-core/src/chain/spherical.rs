@@ -50,7 +50,7 @@ impl SphericalChain {
     ///
     /// # Errors
     /// The angle by which `w` is too near to the first axis or too far from it, where it is out of reach.
-    #[inline]
+    #[inline(always)]
     pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
         if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_boundary(w) }
@@ -101,13 +101,15 @@ impl SphericalChain {
     ///
     /// # Errors
     /// The angle by which the target is out of reach.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(
         &self,
         target: &Matrix3<f64>,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        self.solve(target, branch)
+        let mut found = [JointDisplacement::Value(0.0); 3];
+        self.solve(target, branch, &mut found)?;
+        Ok(found)
     }
 
     /// The direction of the third axis at a target, the argument of [`SphericalChain::first`].
@@ -224,7 +226,7 @@ pub struct Ball {
 
 impl Ball {
     /// The three components of the rotation vector of `target`, whose length is at most π.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(&self, target: &Matrix3<f64>) -> [JointDisplacement; 3] {
         self.attempt(target, Branch::Plus).displacements
     }

@@ -253,7 +253,7 @@ impl Search<'_> {
     ) -> f64 {
         let mut error = 0.0_f64;
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
-            if let Some(ChainCoordinate { number, actuated: Some(actuated) }) = *coordinate {
+            if let Some(ChainCoordinate { number, actuated: Some(actuated), .. }) = *coordinate {
                 let (value, direction) = (self.displacements[actuated], self.directions[actuated]);
                 error = error.max(self.distance(number, displacement, value, direction));
             }

@@ -4,6 +4,13 @@ use crate::numeric::angle::{self, unit};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
+/// The angle plus full revolutions that is nearest to `reference`.
+#[inline]
+pub(crate) fn nearest(angle: f64, reference: f64) -> f64 {
+    let revolutions = (reference - angle) / TAU;
+    if revolutions.abs() <= 0.5 { angle } else { angle + TAU * revolutions.round() }
+}
+
 /// A joint's displacement from home, in the form in which a chain's closed form gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointDisplacement {
@@ -29,11 +36,7 @@ impl JointDisplacement {
     #[inline]
     pub fn nearest(self, reference: f64) -> f64 {
         match self {
-            Self::Direction(_) => {
-                let value = self.value();
-                let revolutions = (reference - value) / TAU;
-                if revolutions.abs() <= 0.5 { value } else { value + TAU * revolutions.round() }
-            }
+            Self::Direction(_) => nearest(self.value(), reference),
             Self::Value(value) => value,
         }
     }

@@ -1,6 +1,7 @@
 //! Inverse kinematics in every working mode: each choice of each leg is solved once, and the modes combine them.
 
-use super::inverse::Revolutions;
+use super::angles::Angles;
+use super::inverse::{AngleOf, Revolutions};
 use super::leg::{CompiledLeg, LegSolution};
 use super::pose::PoseError;
 use super::solution::{Solution, SolvedPose, Unreachable};
@@ -117,13 +118,19 @@ impl Manipulator {
             buffer.unreachable.push(missed);
             return None;
         }
+        let near = Revolutions::NearHome;
+        let mut angles = Angles::new(AngleOf::Leg(0));
         for (number, modes) in completion.legs.iter().enumerate() {
             match &modes[self.modes.of_leg(mode, number)] {
-                Some(Ok(solution)) => self.write(number, solution, buffer, Revolutions::NearHome),
+                Some(Ok(solution)) => {
+                    buffer.legs[number] = *solution;
+                    self.write(number, buffer, near, &mut angles);
+                }
                 Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
                 None => return None,
             }
         }
+        angles.answer(|of, angle| self.take(of, angle, buffer, near));
         let SolvedPose { pose, v, b } = &completion.solved;
         buffer.solved.pose.copy_from_slice(pose);
         (buffer.solved.v, buffer.solved.b) = (*v, *b);

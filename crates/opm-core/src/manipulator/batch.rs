@@ -310,11 +310,7 @@ impl Block {
             (&mut *out.imaginary, &self.imaginary, widths[1]),
         ];
         for (rows, columns, width) in &mut tables {
-            for (number, column) in columns.iter().enumerate() {
-                for (row, value) in rows.chunks_exact_mut(*width).zip(column) {
-                    row[number] = *value;
-                }
-            }
+            transpose(columns, rows, *width);
         }
         for row in 0..out.reachable.len() {
             let reached = self.status.beyond[row] == 0;
@@ -439,6 +435,31 @@ impl Block {
             let joint = &manipulator.imaginary[number];
             section::imaginary(joint, &self.tau, &mut self.imaginary[number]);
         }
+    }
+}
+
+/// Writes columns to rows of as many numbers, four rows at a time.
+fn transpose(columns: &[Column], rows: &mut [f64], width: usize) {
+    if width == 0 {
+        return;
+    }
+    let mut lane = 0;
+    let mut four = rows.chunks_exact_mut(4 * width);
+    for rows in &mut four {
+        let (a, rest) = rows.split_at_mut(width);
+        let (b, rest) = rest.split_at_mut(width);
+        let (c, d) = rest.split_at_mut(width);
+        for ((((column, a), b), c), d) in columns.iter().zip(a).zip(b).zip(c).zip(d) {
+            let values = &column[lane..lane + 4];
+            (*a, *b, *c, *d) = (values[0], values[1], values[2], values[3]);
+        }
+        lane += 4;
+    }
+    for row in four.into_remainder().chunks_exact_mut(width) {
+        for (column, to) in columns.iter().zip(row) {
+            *to = column[lane];
+        }
+        lane += 1;
     }
 }
 

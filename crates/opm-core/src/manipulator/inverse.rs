@@ -5,14 +5,16 @@
 //! reach it returns `Ok(None)`, and the buffer tells which legs do not reach it. An error means that the
 //! pose is not valid. Nothing allocates.
 
-use super::leg::LegSolution;
+use super::angles::Angles;
+use super::leg::{LegSolution, Section};
 use super::pose::PoseError;
 use super::section::{ChainCoordinate, CompiledSection};
-use super::solution::{ActuatedJoints, Solution, SolvedPose, Unreachable};
+use super::solution::{ActuatedJoints, Solution, Unreachable};
 use super::{Manipulator, Mode};
 use crate::chain::Chain;
-use crate::group::{Displacement, JointDisplacement};
+use crate::group::{Displacement, JointDisplacement, nearest};
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
 impl Manipulator {
@@ -41,9 +43,7 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        if self.displace(pose, mode, buffer, Revolutions::NearHome)? {
-            self.solve_legs(mode, buffer, Revolutions::NearHome);
-        }
+        self.solve(pose, mode, buffer, Revolutions::NearHome)?;
         Ok(buffer.reached())
     }
 
@@ -61,9 +61,7 @@ impl Manipulator {
         mode: Mode,
         buffer: &'a mut Solution,
     ) -> Result<Option<&'a Solution>, PoseError> {
-        if self.displace(pose, mode, buffer, Revolutions::NearHeld)? {
-            self.solve_legs(mode, buffer, Revolutions::NearHeld);
-        }
+        self.solve(pose, mode, buffer, Revolutions::NearHeld)?;
         Ok(buffer.reached())
     }
 
@@ -79,43 +77,14 @@ impl Manipulator {
         buffer: &'a mut ActuatedJoints,
     ) -> Result<Option<&'a ActuatedJoints>, PoseError> {
         self.check_pose(pose)?;
-        let ((v, b), rise) = match &self.dependent {
-            None => (self.task.sections(pose), self.task.rise(pose)),
-            Some(dependent) => {
-                let all = &mut buffer.all;
-                if dependent.complete_from_home(self, mode, pose, all).is_err() {
-                    return Ok(None);
-                }
-                (self.task.sections(all), self.task.rise(all))
-            }
-        };
-        buffer.within_limits = true;
-        for (number, leg) in self.legs.iter().enumerate() {
-            let branches = self.modes.branches(mode, number);
-            let tau = if leg.upper_constrains {
-                let Ok(solution) = leg.solve(&self.task, [&v, &b], rise, branches, 0.0) else {
-                    return Ok(None);
-                };
-                self.write_actuated(&leg.upper, &solution.upper, buffer);
-                self.write_actuated(&leg.lower, &solution.lower, buffer);
-                solution.tau
-            } else {
-                let Ok((lower, tau)) = leg.solve_actuated(&self.task, [&v, &b], rise, branches)
-                else {
-                    return Ok(None);
-                };
-                self.write_actuated(&leg.lower, &lower, buffer);
-                tau
-            };
-            if let Some(imaginary) = leg.imaginary {
-                let joint = &self.imaginary[imaginary];
-                buffer.imaginary[imaginary] = joint.value(tau, joint.home);
+        if let Some(dependent) = &self.dependent {
+            let all = &mut buffer.all;
+            if dependent.complete_from_home(self, mode, pose, all).is_err() {
+                return Ok(None);
             }
         }
-        if self.task.height.is_some() {
-            self.write_actuated_lifts(mode, [&v, &b], rise, buffer);
-        }
-        Ok(Some(buffer))
+        let reached = self.arch.dispatch(SolveActuated { manipulator: self, pose, mode, buffer });
+        Ok(reached.then_some(buffer))
     }
 
     /// Writes the values of the lifts at a pose that is in reach, with the Schoenflies section at `rise`.
@@ -131,8 +100,10 @@ impl Manipulator {
             let mut rise = rise;
             if lift.slope != 0.0 {
                 let branches = self.modes.branches(mode, number);
-                let solved = self.legs[number].solve_actuated(&self.task, pose, rise, branches);
-                rise = solved.map_or(rise, |(_, tau)| self.task.rise_of_leg(rise, tau));
+                let (leg, mut found) = (&self.legs[number], LegSolution::HOME);
+                if leg.solve_actuated(&self.task, pose, rise, branches, &mut found).is_ok() {
+                    rise = self.task.rise_of_leg(rise, found.tau);
+                }
             }
             let (value, within) = self.lifted(lift, rise);
             out.within_limits &= within;
@@ -142,61 +113,62 @@ impl Manipulator {
         }
     }
 
-    /// Stores a pose and its displacements, or returns an error if the pose is not valid. Returns `false` where
-    /// the dependent coordinates have no solution.
+    /// Solves a pose, or returns an error if it is not valid.
     #[inline]
-    fn displace(
+    fn solve(
         &self,
         pose: &[f64],
         mode: Mode,
         out: &mut Solution,
         revolutions: Revolutions,
-    ) -> Result<bool, PoseError> {
+    ) -> Result<(), PoseError> {
         self.check_pose(pose)?;
-        if self.dependent.is_some() {
-            return Ok(self.displace_dependent(pose, mode, out, revolutions));
+        if self.dependent.is_some() && !self.displace_dependent(pose, mode, out, revolutions) {
+            return Ok(());
         }
-        out.solved.pose.copy_from_slice(pose);
-        (out.solved.v, out.solved.b) = self.task.sections(pose);
-        Ok(true)
+        self.arch.dispatch(Solve { manipulator: self, pose, mode, out, revolutions });
+        Ok(())
     }
 
-    #[inline]
-    fn write_actuated(
-        &self,
-        section: &CompiledSection,
+    /// Writes the values of a section's actuated joints, or asks for their angles.
+    #[inline(always)]
+    fn write_actuated<'a>(
+        section: &'a CompiledSection,
         displacements: &[JointDisplacement; 3],
         out: &mut ActuatedJoints,
+        angles: &mut Angles<AngleOf<'a>>,
     ) {
-        out.within_limits &= section.admits(&self.limits, displacements);
+        out.within_limits &= section.admits(displacements);
         if !section.driven {
             return;
         }
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
-            if let Some(ChainCoordinate { number, actuated: Some(actuated) }) = *coordinate {
-                let home = self.coordinates[number].home;
-                out.actuated[actuated] = home + self.limits[number].report(displacement);
+            if let Some(joint @ ChainCoordinate { actuated: Some(actuated), .. }) = coordinate {
+                match displacement {
+                    JointDisplacement::Value(value) => {
+                        out.actuated[*actuated] = joint.home + value;
+                    }
+                    JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
+                }
             }
         }
     }
 
-    fn solve_legs(&self, mode: Mode, out: &mut Solution, revolutions: Revolutions) {
-        let SolvedPose { v, b, .. } = out.solved;
-        out.unreachable.clear();
-        out.within_limits = true;
-        let rise = self.task.rise(&out.solved.pose);
-        for (number, leg) in self.legs.iter().enumerate() {
-            let branches = self.modes.branches(mode, number);
-            let near = revolutions.near(out.taus[number], 0.0);
-            match leg.solve(&self.task, [&v, &b], rise, branches, near) {
-                Ok(solution) => self.write(number, &solution, out, revolutions),
-                Err((section, deficit)) => {
-                    out.unreachable.push(Unreachable { leg: number, section, deficit });
+    /// Takes an angle that was asked for.
+    #[inline(always)]
+    fn take_actuated(&self, of: AngleOf<'_>, angle: f64, out: &mut ActuatedJoints) {
+        match of {
+            AngleOf::Joint(joint) => {
+                if let Some(actuated) = joint.actuated {
+                    out.actuated[actuated] = joint.home + joint.limits.report_angle(angle);
                 }
             }
-        }
-        if self.task.height.is_some() {
-            self.write_lifts(out);
+            AngleOf::Leg(leg) => {
+                if let Some(imaginary) = self.legs[leg].imaginary {
+                    let joint = &self.imaginary[imaginary];
+                    out.imaginary[imaginary] = joint.home + joint.sign * angle;
+                }
+            }
         }
     }
 
@@ -216,60 +188,223 @@ impl Manipulator {
 
     /// Writes a leg's solution to `out`, with angles within π of home.
     pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
-        self.write(number, solution, out, Revolutions::NearHome);
+        let mut angles = Angles::new(AngleOf::Leg(number));
+        out.legs[number] = *solution;
+        self.write(number, out, Revolutions::NearHome, &mut angles);
+        angles.answer(|of, angle| self.take(of, angle, out, Revolutions::NearHome));
     }
 
-    /// Writes a leg's solution to `out`.
-    #[inline]
-    pub(super) fn write(
-        &self,
+    /// Writes the joints of a leg whose solution `out` holds, but for the angles of directions, which it asks for.
+    #[inline(always)]
+    pub(super) fn write<'a>(
+        &'a self,
         number: usize,
-        solution: &LegSolution,
         out: &mut Solution,
         revolutions: Revolutions,
+        angles: &mut Angles<AngleOf<'a>>,
     ) {
+        angles.make_room(|of, angle| self.take(of, angle, out, revolutions));
         let leg = &self.legs[number];
-        out.legs[number] = *solution;
-        self.write_section(&leg.lower, &solution.lower, out, revolutions);
-        self.write_section(&leg.upper, &solution.upper, out, revolutions);
-        out.taus[number] = solution.tau.nearest(revolutions.near(out.taus[number], 0.0));
-        if let Some(imaginary) = leg.imaginary {
-            let joint = &self.imaginary[imaginary];
-            let near = revolutions.near(out.imaginary[imaginary], joint.home);
-            out.imaginary[imaginary] = joint.value(solution.tau, near);
+        for section in [Section::Lower, Section::Upper] {
+            Self::write_section(leg.section(section), (number, section), out, revolutions, angles);
+        }
+        match out.legs[number].tau {
+            JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),
+            JointDisplacement::Value(value) => {
+                out.taus[number] = value;
+                if let Some(imaginary) = leg.imaginary {
+                    let joint = &self.imaginary[imaginary];
+                    out.imaginary[imaginary] = joint.home + joint.sign * value;
+                }
+            }
         }
     }
 
-    #[inline]
-    fn write_section(
-        &self,
-        section: &CompiledSection,
-        displacements: &[JointDisplacement; 3],
+    #[inline(always)]
+    fn write_section<'a>(
+        section: &'a CompiledSection,
+        (leg, of_leg): (usize, Section),
         out: &mut Solution,
         revolutions: Revolutions,
+        angles: &mut Angles<AngleOf<'a>>,
     ) {
-        let home = |number: usize| self.coordinates[number].home;
+        let Solution { joints, legs, within_limits, .. } = out;
+        let displacements = legs[leg].section(of_leg);
         // Otherwise the rotation vector, at most π long, is the one nearest to zero already.
         if matches!(section.chain, Chain::Ball(_)) && revolutions == Revolutions::NearHeld {
-            let first = section.coordinates[0].map_or(0, |coordinate| coordinate.number);
-            let near = Vector3::from_fn(|i, _| out.joints[first + i] - home(first + i));
-            let vector = nearest_rotation(Vector3::from_fn(|i, _| displacements[i].value()), &near);
-            for i in 0..3 {
-                out.within_limits &=
-                    self.limits[first + i].admits(JointDisplacement::Value(vector[i]));
-                out.joints[first + i] = home(first + i) + vector[i];
-            }
+            *within_limits &= write_ball_near(section, displacements, joints);
             return;
         }
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
-            let Some(ChainCoordinate { number, .. }) = *coordinate else { continue };
-            let home = home(number);
-            let held = (revolutions == Revolutions::NearHeld).then(|| out.joints[number] - home);
-            let (value, within) = self.limits[number].place(displacement, held);
-            out.joints[number] = home + value;
-            out.within_limits &= within;
+            let Some(joint) = coordinate else { continue };
+            match displacement {
+                JointDisplacement::Value(value) => joints[joint.number] = joint.home + value,
+                JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
+            }
+            // The angle nearest to what the buffer holds is tested when it is known.
+            let known = matches!(displacement, JointDisplacement::Value(_));
+            if known || revolutions == Revolutions::NearHome {
+                *within_limits &= joint.limits.admits(displacement);
+            }
         }
     }
+
+    /// Takes an angle that was asked for.
+    #[inline(always)]
+    pub(super) fn take(
+        &self,
+        of: AngleOf<'_>,
+        angle: f64,
+        out: &mut Solution,
+        revolutions: Revolutions,
+    ) {
+        match of {
+            AngleOf::Joint(joint) => {
+                let value = match revolutions {
+                    Revolutions::NearHome => joint.limits.report_angle(angle),
+                    Revolutions::NearHeld => {
+                        let value = nearest(angle, out.joints[joint.number] - joint.home);
+                        out.within_limits &= joint.limits.admits(JointDisplacement::Value(value));
+                        value
+                    }
+                };
+                out.joints[joint.number] = joint.home + value;
+            }
+            AngleOf::Leg(leg) => {
+                out.taus[leg] = revolutions.place(angle, out.taus[leg]);
+                if let Some(imaginary) = self.legs[leg].imaginary {
+                    let joint = &self.imaginary[imaginary];
+                    let held = joint.displacement(out.imaginary[imaginary]);
+                    let value = revolutions.place(angle, held);
+                    out.imaginary[imaginary] = joint.home + joint.sign * value;
+                }
+            }
+        }
+    }
+}
+
+/// What an angle is that was asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum AngleOf<'a> {
+    /// A joint's displacement from home.
+    Joint(&'a ChainCoordinate),
+    /// The displacement along the intersection motion of the leg with this number.
+    Leg(usize),
+}
+
+/// All joints at a pose, with the instructions of the processor at hand.
+struct Solve<'a> {
+    manipulator: &'a Manipulator,
+    pose: &'a [f64],
+    mode: Mode,
+    out: &'a mut Solution,
+    revolutions: Revolutions,
+}
+
+impl WithSimd for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, pose, mode, out, revolutions } = self;
+        let task = &manipulator.task;
+        if manipulator.dependent.is_none() {
+            out.solved.pose.copy_from_slice(pose);
+            (out.solved.v, out.solved.b) = task.sections(pose);
+        }
+        out.unreachable.clear();
+        out.within_limits = true;
+        let Solution { solved, taus, legs, unreachable, .. } = &mut *out;
+        let rise = task.rise(&solved.pose);
+        for (number, (leg, found)) in manipulator.legs.iter().zip(legs).enumerate() {
+            let branches = manipulator.modes.branches(mode, number);
+            let near = revolutions.near(taus[number], 0.0);
+            let pose = [&solved.v, &solved.b];
+            if let Err((section, deficit)) = leg.solve_in(task, pose, rise, branches, near, found) {
+                unreachable.push(Unreachable { leg: number, section, deficit });
+            }
+        }
+        let mut angles = Angles::new(AngleOf::Leg(0));
+        for number in 0..manipulator.legs.len() {
+            if out.unreachable.iter().all(|missed| missed.leg != number) {
+                manipulator.write(number, out, revolutions, &mut angles);
+            }
+        }
+        angles.answer(|of, angle| manipulator.take(of, angle, out, revolutions));
+        if task.height.is_some() {
+            manipulator.write_lifts(out);
+        }
+    }
+}
+
+/// The actuated and the imaginary joints at a pose, with the instructions of the processor at hand. Where coordinates of
+/// the pose are dependent, the buffer has all of them. The output is whether the pose is in reach.
+struct SolveActuated<'a> {
+    manipulator: &'a Manipulator,
+    pose: &'a [f64],
+    mode: Mode,
+    buffer: &'a mut ActuatedJoints,
+}
+
+impl WithSimd for SolveActuated<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let Self { manipulator, pose, mode, buffer: out } = self;
+        let task = &manipulator.task;
+        let pose = if manipulator.dependent.is_none() { pose } else { &out.all };
+        let ((v, b), rise) = (task.sections(pose), task.rise(pose));
+        out.within_limits = true;
+        let mut angles = Angles::new(AngleOf::Leg(0));
+        for (number, leg) in manipulator.legs.iter().enumerate() {
+            angles.make_room(|of, angle| manipulator.take_actuated(of, angle, out));
+            let branches = manipulator.modes.branches(mode, number);
+            let mut found = LegSolution::HOME;
+            if leg.upper_constrains {
+                if leg.solve_in(task, [&v, &b], rise, branches, 0.0, &mut found).is_err() {
+                    return false;
+                }
+                Manipulator::write_actuated(&leg.upper, &found.upper, out, &mut angles);
+            } else if leg.solve_actuated(task, [&v, &b], rise, branches, &mut found).is_err() {
+                return false;
+            }
+            Manipulator::write_actuated(&leg.lower, &found.lower, out, &mut angles);
+            if let Some(imaginary) = leg.imaginary {
+                match found.tau {
+                    JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),
+                    JointDisplacement::Value(value) => {
+                        let joint = &manipulator.imaginary[imaginary];
+                        out.imaginary[imaginary] = joint.home + joint.sign * value;
+                    }
+                }
+            }
+        }
+        angles.answer(|of, angle| manipulator.take_actuated(of, angle, out));
+        if task.height.is_some() {
+            manipulator.write_actuated_lifts(mode, [&v, &b], rise, out);
+        }
+        true
+    }
+}
+
+/// Writes the rotation vector of a spherical joint that is nearest to the values that are there. Returns whether it is
+/// within its limits.
+fn write_ball_near(
+    section: &CompiledSection,
+    displacements: &[JointDisplacement; 3],
+    joints: &mut [f64],
+) -> bool {
+    let [Some(x), Some(y), Some(z)] = &section.coordinates else { return true };
+    let own = [x, y, z];
+    let near = Vector3::from_fn(|i, _| joints[own[i].number] - own[i].home);
+    let vector = nearest_rotation(Vector3::from_fn(|i, _| displacements[i].value()), &near);
+    let mut within = true;
+    for (joint, &value) in own.into_iter().zip(&vector) {
+        within &= joint.limits.admits(JointDisplacement::Value(value));
+        joints[joint.number] = joint.home + value;
+    }
+    within
 }
 
 /// How the number of full revolutions of a reported angle is chosen.
@@ -282,11 +417,20 @@ pub(super) enum Revolutions {
 }
 
 impl Revolutions {
-    #[inline]
+    #[inline(always)]
     fn near(self, held: f64, home: f64) -> f64 {
         match self {
             Self::NearHome => home,
             Self::NearHeld => held,
+        }
+    }
+
+    /// An angle within π of home, or the same one nearest to the displacement that the buffer holds.
+    #[inline(always)]
+    fn place(self, angle: f64, held: f64) -> f64 {
+        match self {
+            Self::NearHome => angle,
+            Self::NearHeld => nearest(angle, held),
         }
     }
 }

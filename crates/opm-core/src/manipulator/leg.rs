@@ -3,7 +3,6 @@
 use super::lift::{self, Lean, Lift, Separated};
 use super::refused::RefusedLeg;
 use super::section::{ChainCoordinate, CompiledSection, Slider, chain_joints, coordinate_number};
-use crate::chain::limits::Limits;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
@@ -47,9 +46,8 @@ pub(crate) struct CompiledLeg {
 #[derive(Clone, Copy)]
 pub(crate) struct CompileContext<'a> {
     pub task: &'a Task,
-    /// For each joint coordinate, its number among the actuated ones; `None` where it is passive.
-    pub actuated: &'a [Option<usize>],
-    pub limits: &'a [Limits],
+    /// Every joint coordinate of the mechanism.
+    pub coordinates: &'a [ChainCoordinate],
     /// The characteristic length of the mechanism, metres.
     pub size: f64,
 }
@@ -151,7 +149,7 @@ impl CompiledLeg {
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        CompileContext { task, actuated, limits, size }: CompileContext<'_>,
+        CompileContext { task, coordinates: all, size }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let bridged = task.intersection.is_some();
         // Of an inclined one, the chain of a Schoenflies section has the part in the plane.
@@ -178,7 +176,7 @@ impl CompiledLeg {
             let shift = usize::from(first_is_imaginary);
             for (slot, freedom) in coordinates[shift..].iter_mut().zip(freedoms) {
                 let number = first + coordinate_number(leg, *freedom);
-                *slot = Some(ChainCoordinate { number, actuated: actuated[number] });
+                *slot = Some(all[number]);
             }
             let refused = |error| {
                 let mut joints: Vec<String> =
@@ -221,7 +219,7 @@ impl CompiledLeg {
                 screws,
                 scale,
                 coordinates,
-                limited: own().any(|c| limits[c.number].any()),
+                limited: own().any(|c| c.limits.any()),
                 driven: partial.is_some() || own().any(|c| c.actuated.is_some()),
                 partial,
                 // See `CompiledSection::slider`.
@@ -231,7 +229,7 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let (shapes, bounds) = (lower.shapes(limits), lower.bounds(limits));
+        let (shapes, bounds) = (lower.shapes(), lower.bounds());
         // An upper section that does not give τ may be out of reach; a spherical joint never is.
         let gives_tau = bridged && split_section == Section::Upper;
         let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);
@@ -310,7 +308,7 @@ impl CompiledLeg {
         }
     }
 
-    /// The lower joints' displacements and that along the intersection motion, within π where revolutions are
+    /// Writes the lower joints' displacements and that along the intersection motion, within π where revolutions are
     /// counted, at a height above home, metres. This suffices for a leg that its upper section does not constrain.
     #[inline(always)]
     pub fn solve_actuated(
@@ -319,20 +317,24 @@ impl CompiledLeg {
         [v, b]: [&Displacement; 2],
         rise: f64,
         branches: LegBranches,
-    ) -> Result<([JointDisplacement; 3], JointDisplacement), ReachDeficit> {
+        out: &mut LegSolution,
+    ) -> Result<(), ReachDeficit> {
         if self.lean.is_some() {
-            let solution = self.solve_raised(task, [v, b], rise, branches, 0.0);
-            return solution.map(|found| (found.lower, found.tau)).map_err(|(_, missed)| missed);
+            *out = self
+                .solve_raised(task, [v, b], rise, branches, 0.0)
+                .map_err(|(_, deficit)| deficit)?;
+            return Ok(());
         }
         match self.split_section {
             Section::Upper => {
-                let tau = self.unwound(self.first_step(b, branches.upper)?, 0.0);
-                let lower = self.solve_lower(task, v, tau, branches.lower)?;
-                Ok((lower, tau))
+                out.tau = self.unwound(self.first_step(b, branches.upper)?, 0.0);
+                let target = task.lower_intersection.after(v, out.tau);
+                self.lower.solve(&target, branches.lower, &mut out.lower)
             }
             Section::Lower => {
-                let lower = self.lower.inverse(v, branches.lower)?;
-                Ok((lower, self.step(&lower).inverse()))
+                self.lower.solve(v, branches.lower, &mut out.lower)?;
+                out.tau = self.step(&out.lower).inverse();
+                Ok(())
             }
         }
     }
@@ -343,31 +345,50 @@ impl CompiledLeg {
     pub fn solve(
         &self,
         task: &Task,
-        [v, b]: [&Displacement; 2],
+        pose: [&Displacement; 2],
         rise: f64,
         branches: LegBranches,
         near: f64,
     ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        let mut found = LegSolution::HOME;
+        self.solve_in(task, pose, rise, branches, near, &mut found)?;
+        Ok(found)
+    }
+
+    /// Writes what [`CompiledLeg::solve`] returns. Where the pose is out of reach, `out` has no meaning.
+    #[inline(always)]
+    pub fn solve_in(
+        &self,
+        task: &Task,
+        [v, b]: [&Displacement; 2],
+        rise: f64,
+        branches: LegBranches,
+        near: f64,
+        out: &mut LegSolution,
+    ) -> Result<(), (Section, ReachDeficit)> {
         if self.lean.is_some() {
-            return self.solve_raised(task, [v, b], rise, branches, near);
+            *out = self.solve_raised(task, [v, b], rise, branches, near)?;
+            return Ok(());
         }
         let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
         match self.split_section {
             Section::Upper => {
-                let upper = self.upper.inverse(b, branches.upper).map_err(of(Section::Upper))?;
-                let tau = self.unwound(self.step(&upper), near);
-                let lower =
-                    self.solve_lower(task, v, tau, branches.lower).map_err(of(Section::Lower))?;
-                Ok(LegSolution { lower, upper, tau })
+                let solved = self.upper.solve(b, branches.upper, &mut out.upper);
+                solved.map_err(of(Section::Upper))?;
+                out.tau = self.unwound(self.step(&out.upper), near);
+                let target = task.lower_intersection.after(v, out.tau);
+                let solved = self.lower.solve(&target, branches.lower, &mut out.lower);
+                solved.map_err(of(Section::Lower))
             }
             Section::Lower => {
-                let lower = self.lower.inverse(v, branches.lower).map_err(of(Section::Lower))?;
+                let solved = self.lower.solve(v, branches.lower, &mut out.lower);
+                solved.map_err(of(Section::Lower))?;
                 // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
-                let step = self.unwound(self.step(&lower), -near);
+                let step = self.unwound(self.step(&out.lower), -near);
+                out.tau = step.inverse();
                 let target = task.upper_intersection.before(b, step);
-                let upper =
-                    self.upper.inverse(&target, branches.upper).map_err(of(Section::Upper))?;
-                Ok(LegSolution { lower, upper, tau: step.inverse() })
+                let solved = self.upper.solve(&target, branches.upper, &mut out.upper);
+                solved.map_err(of(Section::Upper))
             }
         }
     }

@@ -130,7 +130,7 @@ pub(super) fn separate(
         Section::Upper => rest.upper = others,
     }
     let number = first + coordinate_number(leg, lift);
-    let coordinate = ChainCoordinate { number, actuated: context.actuated[number] };
+    let coordinate = context.coordinates[number];
     let joint = lift.joint;
     let lift = Lift { coordinate, rate: advance.recip(), slope: height.slope };
     Ok(Some(Separated { lift, lean, joint, rest }))
@@ -251,8 +251,8 @@ impl Manipulator {
         for (leg, of_height) in self.legs.iter().zip(&mut raised.legs) {
             if let Some(lean) = &leg.lean {
                 *of_height = leg.raised(lean, rise).ok()?;
-                of_height.shapes = of_height.lower.shapes(&self.limits);
-                of_height.bounds = of_height.lower.bounds(&self.limits);
+                of_height.shapes = of_height.lower.shapes();
+                of_height.bounds = of_height.lower.bounds();
             }
         }
         Some(raised)
@@ -281,8 +281,8 @@ impl Manipulator {
     #[inline]
     pub(super) fn admits(&self, leg: &CompiledLeg, solution: &LegSolution, rise: f64) -> bool {
         let lifted = |lift: &Lift| self.lifted(lift, self.task().rise_of_leg(rise, solution.tau)).1;
-        leg.lower.admits(&self.limits, &solution.lower)
-            && leg.upper.admits(&self.limits, &solution.upper)
+        leg.lower.admits(&solution.lower)
+            && leg.upper.admits(&solution.upper)
             && leg.lift.as_ref().is_none_or(lifted)
     }
 

@@ -119,7 +119,7 @@ impl ModeLayout {
     }
 
     /// The branches of a leg's two chains in a mode.
-    #[inline]
+    #[inline(always)]
     pub fn branches(&self, mode: Mode, leg: usize) -> LegBranches {
         let branch = |bit: Option<u32>| match bit {
             Some(bit) if mode.0 >> bit & 1 == 1 => Branch::Minus,

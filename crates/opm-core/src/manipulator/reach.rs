@@ -80,9 +80,8 @@ impl Manipulator {
                 Section::Upper => {
                     let tau = if compiled.upper.limited {
                         let admitted = compiled.upper.inverse(b, branches.upper).ok();
-                        let admitted = admitted.filter(|displacements| {
-                            compiled.upper.admits(&self.limits, displacements)
-                        });
+                        let admitted =
+                            admitted.filter(|displacements| compiled.upper.admits(displacements));
                         admitted.map(|displacements| compiled.step(&displacements))
                     } else {
                         compiled.first_step(b, branches.upper).ok()
@@ -197,15 +196,14 @@ impl Manipulator {
         match (branch.tau, &branch.with_upper) {
             (Some(tau), _) => leg
                 .solve_lower(&self.task, v, tau, branch.branches.lower)
-                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
+                .is_ok_and(|displacements| leg.lower.admits(&displacements)),
             (None, None) => leg
                 .lower
                 .inverse(v, branch.branches.lower)
-                .is_ok_and(|displacements| leg.lower.admits(&self.limits, &displacements)),
+                .is_ok_and(|displacements| leg.lower.admits(&displacements)),
             (None, Some(b)) => {
                 leg.solve(&self.task, [v, b], 0.0, branch.branches, 0.0).is_ok_and(|solution| {
-                    leg.lower.admits(&self.limits, &solution.lower)
-                        && leg.upper.admits(&self.limits, &solution.upper)
+                    leg.lower.admits(&solution.lower) && leg.upper.admits(&solution.upper)
                 })
             }
         }

@@ -18,6 +18,9 @@ pub(crate) struct ChainCoordinate {
     pub number: usize,
     /// Its number among the actuated coordinates; `None` where it is passive.
     pub actuated: Option<usize>,
+    /// Its value at home, radians or metres.
+    pub home: f64,
+    pub limits: Limits,
 }
 
 /// One section of a leg: its chain, and the chain's joint coordinates.
@@ -67,14 +70,28 @@ impl CompiledSection {
         target: &Displacement,
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        let mut found = [JointDisplacement::Value(0.0); 3];
+        self.solve(target, branch, &mut found)?;
+        Ok(found)
+    }
+
+    /// Writes what [`CompiledSection::inverse`] returns; nothing where the target is out of reach.
+    #[inline(always)]
+    pub fn solve(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+        out: &mut [JointDisplacement; 3],
+    ) -> Result<(), ReachDeficit> {
         match (&self.partial, &self.offset) {
-            (None, None) => self.chain.inverse(target, branch),
+            (None, None) => return self.chain.solve(target, branch, out),
             (None, Some(offset)) => {
                 let found = self.chain.inverse(&target.after(offset), branch)?;
-                Ok(self.with_imaginary(found))
+                *out = self.with_imaginary(found);
             }
-            (Some(partial), _) => Ok(self.with_imaginary(partial.inverse(target))),
+            (Some(partial), _) => *out = self.with_imaginary(partial.inverse(target)),
         }
+        Ok(())
     }
 
     /// The displacements of the section's joints from those of its chain's: of an inclined imaginary joint, the chain has
@@ -129,16 +146,18 @@ impl CompiledSection {
     }
 
     /// The region in which the section closes, on each branch; `None` where it is not a region of the plane.
-    pub fn shapes(&self, limits: &[Limits]) -> [Option<Shape>; 2] {
-        let of_joint = self.coordinates.map(|c| c.map_or(&Limits::Free, |c| &limits[c.number]));
+    pub fn shapes(&self) -> [Option<Shape>; 2] {
+        let limits = |c: &'_ Option<ChainCoordinate>| c.map_or(Limits::Free, |c| c.limits);
+        let of_joint = self.coordinates.each_ref().map(limits);
+        let of_joint = of_joint.each_ref();
         Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
     }
 
     /// The region in which the section closes whatever its limits on angles, on each branch, where these make the region in
     /// which it closes more than [`CompiledSection::shapes`] can tell.
-    pub fn bounds(&self, limits: &[Limits]) -> [Option<Shape>; 2] {
-        let of_joint = [0, 1, 2].map(|joint| match self.coordinates[joint] {
-            Some(c) if !self.chain.is_rotation(joint) => &limits[c.number],
+    pub fn bounds(&self) -> [Option<Shape>; 2] {
+        let of_joint = [0, 1, 2].map(|joint| match &self.coordinates[joint] {
+            Some(c) if !self.chain.is_rotation(joint) => &c.limits,
             Some(_) | None => &Limits::Free,
         });
         Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
@@ -163,13 +182,10 @@ impl CompiledSection {
 
     /// Whether the displacements of this section's chain are within the limits.
     #[inline]
-    pub fn admits(&self, limits: &[Limits], displacements: &[JointDisplacement; 3]) -> bool {
+    pub fn admits(&self, displacements: &[JointDisplacement; 3]) -> bool {
         !self.limited
             || self.coordinates.iter().zip(displacements).all(|(coordinate, &displacement)| {
-                match coordinate {
-                    Some(coordinate) => limits[coordinate.number].admits(displacement),
-                    None => true,
-                }
+                coordinate.as_ref().is_none_or(|joint| joint.limits.admits(displacement))
             })
     }
 }

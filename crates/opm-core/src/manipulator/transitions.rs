@@ -60,16 +60,17 @@ impl Transitions {
 
 impl CompiledSection {
     /// The surfaces at which the branches of the section's chain meet within its limits.
-    fn folds(&self, limits: &[Limits]) -> Vec<Surface> {
-        self.chain.folds(self.coordinates[1].map_or(&Limits::Free, |middle| &limits[middle.number]))
+    fn folds(&self) -> Vec<Surface> {
+        let middle = self.coordinates[1].as_ref();
+        self.chain.folds(middle.map_or(&Limits::Free, |middle| &middle.limits))
     }
 
     /// The surfaces at which the section's chain enters and leaves its limits; `None` where they have no closed form.
-    fn ends(&self, limits: &[Limits]) -> Option<Vec<Surface>> {
+    fn ends(&self) -> Option<Vec<Surface>> {
         let mut surfaces = Vec::new();
         for (joint, coordinate) in self.coordinates.iter().enumerate() {
             let Some(coordinate) = coordinate else { continue };
-            for end in self.chain.ends(joint, &limits[coordinate.number]).into_iter().flatten() {
+            for end in self.chain.ends(joint, &coordinate.limits).into_iter().flatten() {
                 surfaces.push(self.chain.held(joint, end)?);
             }
         }
@@ -97,8 +98,8 @@ impl Manipulator {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
         let mut transitions = Transitions {
-            folds: leg.lower.folds(&self.limits),
-            ends: leg.lower.ends(&self.limits)?,
+            folds: leg.lower.folds(),
+            ends: leg.lower.ends()?,
             tau_limits: Vec::new(),
             size,
             largest_tau: None,
@@ -135,7 +136,7 @@ impl Manipulator {
         };
         let size = transitions.size;
         let tau_limits = &mut transitions.tau_limits;
-        let (folds, ends) = (leg.upper.folds(&self.limits), leg.upper.ends(&self.limits)?);
+        let (folds, ends) = (leg.upper.folds(), leg.upper.ends()?);
         for surface in folds.iter().chain(&ends) {
             surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);

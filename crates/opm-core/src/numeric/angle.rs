@@ -24,6 +24,9 @@ const QUARTER: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.02226624
 /// last bits of the sum hold the integer.
 const ROUND: f64 = 6755399441055744.0;
 
+/// The smallest positive number.
+const SMALLEST: f64 = f64::from_bits(1);
+
 /// `(atan t / t - 1) / t²` in powers of `t²`, lowest first: minimax for `t <= 1/2`, `atan t` to 1e-18.
 const ATAN: [f64; 13] = [
     -0.3333333333333333,
@@ -71,7 +74,7 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     let wide = short > 0.5 * long;
     let above = if wide { short - long } else { short };
     let below = if wide { short + long } else { long };
-    let t = above / if below == 0.0 { 1.0 } else { below };
+    let t = above / if below < SMALLEST { SMALLEST } else { below };
     let z = t * t;
     let atan = t + t * (z * polynomial(&ATAN, z));
     // Add the nearest multiple of 45 degrees, from 0 to 180.
@@ -81,6 +84,38 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     let eighths = if wide { wide_eighths } else { eighths };
     let atan = if steep != backwards { -atan } else { atan };
     (eighths * FRAC_PI_4 + (eighths * EIGHTH_TAIL + atan)).copysign(y)
+}
+
+/// The angles of several vectors `(x, y)`: [`atan2`] of each.
+#[inline(always)]
+pub(crate) fn atan2_of_each<const N: usize>(y: &[f64; N], x: &[f64; N]) -> [f64; N] {
+    let mut angles = [0.0; N];
+    for i in 0..N {
+        angles[i] = atan2(y[i], x[i]);
+    }
+    angles
+}
+
+/// The sines and the cosines of three angles, computed together.
+#[inline(always)]
+pub(crate) fn sin_cos_of_each(angles: [f64; 3]) -> [(f64, f64); 3] {
+    let [a, b, c] = angles;
+    if a.abs().max(b.abs()).max(c.abs()) > MOST_REDUCED {
+        return large_sin_cos_of_each(angles);
+    }
+    // As many as fit into a vector.
+    let angles = [a, b, c, 0.0];
+    let (mut sines, mut cosines) = ([0.0; 4], [0.0; 4]);
+    for i in 0..4 {
+        (sines[i], cosines[i]) = sin_cos_reduced(angles[i]);
+    }
+    [(sines[0], cosines[0]), (sines[1], cosines[1]), (sines[2], cosines[2])]
+}
+
+#[cold]
+#[inline(never)]
+fn large_sin_cos_of_each(angles: [f64; 3]) -> [(f64, f64); 3] {
+    angles.map(sin_cos)
 }
 
 /// The sine and the cosine of an angle.

@@ -15,15 +15,62 @@ pub(crate) struct Form {
     pub shared: Option<MotionType>,
 }
 
-/// The displacement `v` from its coordinates and their values at home; of Euler angles, which are absolute, the
+/// The values of a section's coordinates, and those at home; zeros beyond the last.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SectionValues {
+    pub at: [f64; 3],
+    pub home: [f64; 3],
+}
+
+/// The angles whose sines and cosines [`lower_displacement`] needs; `None` where it needs none. Euler angles are
+/// absolute, others are measured from home.
+#[inline(always)]
+pub(crate) fn lower_angles(form: Form, values: SectionValues) -> Option<[f64; 3]> {
+    let SectionValues { at, home } = values;
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.shared) {
+        (SubspaceKind::Planar, Some(MotionType::Translation) | None) => Some([q(2), 0.0, 0.0]),
+        (SubspaceKind::Spherical, Some(_)) => Some([q(0), q(1), 0.0]),
+        (SubspaceKind::Spherical, None) => Some(at),
+        (SubspaceKind::Planar, Some(MotionType::Rotation))
+        | (
+            SubspaceKind::Identity
+            | SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalPlane
+            | SubspaceKind::TranslationalSpace,
+            _,
+        ) => None,
+    }
+}
+
+/// The angles whose sines and cosines [`upper_displacement`] needs, in the same way.
+#[inline(always)]
+pub(crate) fn upper_angles(form: Form, values: SectionValues) -> Option<[f64; 3]> {
+    let SectionValues { at, home } = values;
+    let q = |i: usize| at[i] - home[i];
+    match (form.kind, form.shared) {
+        (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => Some([q(2), 0.0, 0.0]),
+        (SubspaceKind::Planar, Some(MotionType::Translation)) => Some([q(1), 0.0, 0.0]),
+        (SubspaceKind::Spherical, _) => Some(at),
+        (
+            SubspaceKind::Identity
+            | SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalPlane
+            | SubspaceKind::TranslationalSpace,
+            _,
+        ) => None,
+    }
+}
+
+/// The displacement `v` from its coordinates, and from the sines and cosines of [`lower_angles`]; of Euler angles, the
 /// orientation. Where `form` is a constant, this is straight-line arithmetic.
 #[inline(always)]
 pub(crate) fn lower_displacement(
     form: Form,
-    at: [f64; 3],
-    home: [f64; 3],
-    sin_cos: impl Fn(f64) -> (f64, f64),
+    values: SectionValues,
+    sines: [(f64, f64); 3],
 ) -> Displacement {
+    let SectionValues { at, home } = values;
     let q = |i: usize| at[i] - home[i];
     match (form.kind, form.shared) {
         (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
@@ -31,12 +78,10 @@ pub(crate) fn lower_displacement(
             planar(Complex::new(1.0, 0.0), q(0), q(1))
         }
         (SubspaceKind::Planar, Some(MotionType::Translation) | None) => {
-            planar(unit_of(sin_cos(q(2))), q(0), q(1))
+            planar(unit_of(sines[0]), q(0), q(1))
         }
-        (SubspaceKind::Spherical, Some(_)) => {
-            Displacement::Spherical(tilt([sin_cos(q(0)), sin_cos(q(1))]))
-        }
-        (SubspaceKind::Spherical, None) => orientation(at, sin_cos),
+        (SubspaceKind::Spherical, Some(_)) => Displacement::Spherical(tilt([sines[0], sines[1]])),
+        (SubspaceKind::Spherical, None) => Displacement::Spherical(euler_of(sines)),
         (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => cylindrical(0.0, q(0)),
         (SubspaceKind::Cylindrical, Some(MotionType::Translation) | None) => {
             cylindrical(q(0), q(1))
@@ -50,24 +95,24 @@ pub(crate) fn lower_displacement(
     }
 }
 
-/// The displacement `b` from its coordinates and their values at home; of Euler angles, which are absolute, the
+/// The displacement `b` from its coordinates, and from the sines and cosines of [`upper_angles`]; of Euler angles, the
 /// orientation.
 #[inline(always)]
 pub(crate) fn upper_displacement(
     form: Form,
-    at: [f64; 3],
-    home: [f64; 3],
-    sin_cos: impl Fn(f64) -> (f64, f64),
+    values: SectionValues,
+    sines: [(f64, f64); 3],
 ) -> Displacement {
+    let SectionValues { at, home } = values;
     let q = |i: usize| at[i] - home[i];
     match (form.kind, form.shared) {
         (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
-        (SubspaceKind::Spherical, _) => orientation(at, sin_cos),
+        (SubspaceKind::Spherical, _) => Displacement::Spherical(euler_of(sines)),
         (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => {
-            planar(unit_of(sin_cos(q(2))), q(0), q(1))
+            planar(unit_of(sines[0]), q(0), q(1))
         }
         (SubspaceKind::Planar, Some(MotionType::Translation)) => {
-            planar(unit_of(sin_cos(q(1))), 0.0, q(0))
+            planar(unit_of(sines[0]), 0.0, q(0))
         }
         (SubspaceKind::Cylindrical, Some(MotionType::Rotation) | None) => cylindrical(q(0), q(1)),
         (SubspaceKind::Cylindrical, Some(MotionType::Translation)) => cylindrical(q(0), 0.0),
@@ -84,13 +129,6 @@ pub(crate) fn upper_displacement(
             Displacement::Spatial(Vector3::new(q(0), q(1), q(2)))
         }
     }
-}
-
-/// The orientation with Euler angles.
-#[inline(always)]
-fn orientation([zeta, xi, psi]: [f64; 3], sin_cos: impl Fn(f64) -> (f64, f64)) -> Displacement {
-    // Three calls, where a map would not be inlined.
-    Displacement::Spherical(euler_of([sin_cos(zeta), sin_cos(xi), sin_cos(psi)]))
 }
 
 #[inline(always)]

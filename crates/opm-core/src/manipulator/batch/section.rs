@@ -14,7 +14,9 @@ use crate::group::{
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::sin_cos_reduced;
-use crate::task::{Form, Task, lower_displacement, upper_displacement};
+use crate::task::{
+    Form, SectionValues, Task, lower_angles, lower_displacement, upper_angles, upper_displacement,
+};
 use nalgebra::Matrix3;
 
 /// The result of a section's chain for every pose of a block.
@@ -50,9 +52,19 @@ pub fn displace(
             let form = Form { kind: SubspaceKind::$kind, shared: $shared };
             for lane in 0..LANES {
                 let at = [at[0][lane], at[1][lane], at[2][lane]];
+                let values = SectionValues { at, home };
+                let angles = match section {
+                    Section::Lower => lower_angles(form, values),
+                    Section::Upper => upper_angles(form, values),
+                };
+                let mut sines = [(0.0, 1.0); 3];
+                if let Some([a, b, c]) = angles {
+                    // Three calls, where a map would not be inlined.
+                    sines = [sin_cos_reduced(a), sin_cos_reduced(b), sin_cos_reduced(c)];
+                }
                 match section {
-                    Section::Lower => lower_displacement(form, at, home, sin_cos_reduced),
-                    Section::Upper => upper_displacement(form, at, home, sin_cos_reduced),
+                    Section::Lower => lower_displacement(form, values, sines),
+                    Section::Upper => upper_displacement(form, values, sines),
                 }
                 .store(to, lane);
             }
