@@ -43,16 +43,16 @@ pub(crate) fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
     let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
     let (ww, xx, yy, zz) =
         (1.0 + (xx + yy + zz), 1.0 + (xx - yy - zz), 1.0 + (yy - xx - zz), 1.0 + (zz - xx - yy));
-    let (mut square, mut w, mut vector) = (ww, ww, [wx, wy, wz]);
-    for (other, scalar, axis) in
-        [(xx, wx, [xx, xy, xz]), (yy, wy, [xy, yy, yz]), (zz, wz, [xz, yz, zz])]
-    {
-        let longer = other > square;
-        square = if longer { other } else { square };
-        w = if longer { scalar } else { w };
-        vector = [0, 1, 2].map(|i| if longer { axis[i] } else { vector[i] });
-    }
-    let [x, y, z] = vector;
+    // Each is a square and its multiple of the quaternion.
+    let longer = |a: [f64; 5], b: [f64; 5]| {
+        let longer = b[0] > a[0];
+        // Without a loop over the numbers, the loop over many rotations is vectorised.
+        let pick = |i: usize| if longer { b[i] } else { a[i] };
+        [pick(0), pick(1), pick(2), pick(3), pick(4)]
+    };
+    let found = longer([ww, ww, wx, wy, wz], [xx, wx, xx, xy, xz]);
+    let found = longer(found, [yy, wy, xy, yy, yz]);
+    let [_, w, x, y, z] = longer(found, [zz, wz, xz, yz, zz]);
     let length = (x * x + y * y + z * z).sqrt();
     let angle = 2.0 * atan2(length, w.abs());
     let scale = angle / if length > 0.0 { length } else { 1.0 };

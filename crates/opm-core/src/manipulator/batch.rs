@@ -210,14 +210,14 @@ impl Manipulator {
             let refused =
                 |(row, error): (usize, PoseError)| BatchError::Pose { row: first + row, error };
             self.check(poses, &batch.block).map_err(refused)?;
-            batch.arch.dispatch(Solve { manipulator: self, mode, block: &mut batch.block });
             let mut block_output = BatchOutput {
                 joints: &mut out.joints[first * widths[0]..][..rows * widths[0]],
                 imaginary: &mut out.imaginary[first * widths[1]..][..rows * widths[1]],
                 reachable: &mut out.reachable[first..][..rows],
                 within_limits: &mut out.within_limits[first..][..rows],
             };
-            batch.block.give(widths, &mut block_output);
+            let (block, out) = (&mut *batch.block, &mut block_output);
+            batch.arch.dispatch(Solve { manipulator: self, mode, block, out });
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
                 self.inverse_one(pose, mode, &mut batch.solution, row, &mut block_output)
@@ -269,24 +269,26 @@ impl Manipulator {
 }
 
 /// Solves a block with the instructions of the processor at hand.
-struct Solve<'a> {
+struct Solve<'a, 'b> {
     manipulator: &'a Manipulator,
     mode: Mode,
     block: &'a mut Block,
+    out: &'a mut BatchOutput<'b>,
 }
 
-impl WithSimd for Solve<'_> {
+impl WithSimd for Solve<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, mode, block } = self;
+        let Self { manipulator, mode, block, out } = self;
         block.displace(manipulator);
         for (number, leg) in manipulator.legs.iter().enumerate() {
             block.solve_leg(manipulator, manipulator.modes.branches(mode, number), number);
             block.report(manipulator, leg);
         }
         block.lift(manipulator);
+        block.give(out);
     }
 }
 
@@ -304,22 +306,18 @@ impl Block {
     }
 
     /// Writes the block's results to rows, including the rows that are still open.
-    fn give(&self, widths: [usize; 2], out: &mut BatchOutput<'_>) {
-        let mut tables = [
-            (&mut *out.joints, &self.joints, widths[0]),
-            (&mut *out.imaginary, &self.imaginary, widths[1]),
-        ];
-        for (rows, columns, width) in &mut tables {
-            transpose(columns, rows, *width);
-        }
+    #[inline(always)]
+    fn give(&self, out: &mut BatchOutput<'_>) {
+        transpose(&self.joints, out.joints);
+        transpose(&self.imaginary, out.imaginary);
+        let (joints, imaginary) = (self.joints.len(), self.imaginary.len());
         for row in 0..out.reachable.len() {
             let reached = self.status.beyond[row] == 0;
             out.reachable[row] = reached;
             out.within_limits[row] = reached && self.status.within_limits[row] != 0;
             if !reached {
-                for (rows, _, width) in &mut tables {
-                    rows[row * *width..][..*width].fill(f64::NAN);
-                }
+                out.joints[row * joints..][..joints].fill(f64::NAN);
+                out.imaginary[row * imaginary..][..imaginary].fill(f64::NAN);
             }
         }
     }
@@ -438,28 +436,38 @@ impl Block {
     }
 }
 
-/// Writes columns to rows of as many numbers, four rows at a time.
-fn transpose(columns: &[Column], rows: &mut [f64], width: usize) {
+/// Writes columns to rows of as many numbers. Squares of four rows and four columns are transposed in the processor's
+/// vectors.
+#[inline(always)]
+fn transpose(columns: &[Column], rows: &mut [f64]) {
+    let width = columns.len();
     if width == 0 {
         return;
     }
+    let (fours, others) = columns.as_chunks::<4>();
+    let mut four_rows = rows.chunks_exact_mut(4 * width);
     let mut lane = 0;
-    let mut four = rows.chunks_exact_mut(4 * width);
-    for rows in &mut four {
-        let (a, rest) = rows.split_at_mut(width);
-        let (b, rest) = rest.split_at_mut(width);
-        let (c, d) = rest.split_at_mut(width);
-        for ((((column, a), b), c), d) in columns.iter().zip(a).zip(b).zip(c).zip(d) {
-            let values = &column[lane..lane + 4];
-            (*a, *b, *c, *d) = (values[0], values[1], values[2], values[3]);
+    for rows in &mut four_rows {
+        for (number, [a, b, c, d]) in fours.iter().enumerate() {
+            let (a, b, c, d) =
+                (&a[lane..lane + 4], &b[lane..lane + 4], &c[lane..lane + 4], &d[lane..lane + 4]);
+            for i in 0..4 {
+                let to = &mut rows[i * width + 4 * number..][..4];
+                to.copy_from_slice(&[a[i], b[i], c[i], d[i]]);
+            }
+        }
+        for (number, column) in others.iter().enumerate() {
+            let first = 4 * fours.len() + number;
+            for (i, value) in column[lane..lane + 4].iter().enumerate() {
+                rows[i * width + first] = *value;
+            }
         }
         lane += 4;
     }
-    for row in four.into_remainder().chunks_exact_mut(width) {
-        for (column, to) in columns.iter().zip(row) {
+    for (row, lane) in four_rows.into_remainder().chunks_exact_mut(width).zip(lane..) {
+        for (to, column) in row.iter_mut().zip(columns) {
             *to = column[lane];
         }
-        lane += 1;
     }
 }
 

@@ -244,10 +244,14 @@ pub fn report(
     macro_rules! each {
         ($limits:expr, $read:ident) => {{
             let limits = $limits;
-            for lane in 0..LANES {
+            // Two halves at once load the constants of an angle once.
+            const HALF: usize = LANES / 2;
+            for lane in 0..HALF {
                 let (value, admitted) = limits.place(displacements.$read(lane), None);
-                values[lane] = home + value;
+                let (other, also) = limits.place(displacements.$read(lane + HALF), None);
+                (values[lane], values[lane + HALF]) = (home + value, home + other);
                 within[lane] &= u64::from(admitted);
+                within[lane + HALF] &= u64::from(also);
             }
         }};
     }
