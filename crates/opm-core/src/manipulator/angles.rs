@@ -66,3 +66,31 @@ impl<T: Copy> Angles<T> {
         self.count = 0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Legs with no to seven directions, many more than there is room for.
+    #[test]
+    fn every_angle_is_told_once_and_in_order() {
+        let angle = |i: usize| (i as f64 * 0.37) % 6.0 - 3.0;
+        let (mut angles, mut asked, mut told) = (Angles::new(0), 0, Vec::new());
+        for leg in 0..80 {
+            angles.make_room(|of, angle| told.push((of, angle)));
+            for _ in 0..leg % (OF_LEG + 1) {
+                angles.ask(asked, Complex::from_polar(1.0 + asked as f64, angle(asked)));
+                asked += 1;
+            }
+        }
+        angles.answer(|of, angle| told.push((of, angle)));
+        // Nothing is left to tell.
+        angles.answer(|of, angle| told.push((of, angle)));
+        assert_eq!(told.len(), asked);
+        for (number, (of, found)) in told.into_iter().enumerate() {
+            assert_eq!(of, number);
+            // The rounding of the direction.
+            assert!((found - angle(of)).abs() < 1e-14, "{of}: {found}");
+        }
+    }
+}

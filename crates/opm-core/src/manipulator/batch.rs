@@ -483,3 +483,25 @@ impl Status {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every number of rows of a block, and rows with and without a square of four numbers.
+    #[test]
+    fn columns_become_rows() {
+        for width in 0..10 {
+            let value = |row: usize, number: usize| (100 * number + row) as f64;
+            let columns: Vec<Column> =
+                (0..width).map(|number| std::array::from_fn(|row| value(row, number))).collect();
+            for count in 0..=LANES {
+                let mut rows = vec![f64::NAN; count * width];
+                transpose(&columns, &mut rows);
+                for (place, found) in rows.into_iter().enumerate() {
+                    assert_eq!(found, value(place / width, place % width), "{count} x {width}");
+                }
+            }
+        }
+    }
+}

@@ -46,7 +46,7 @@ pub struct Solution {
     pub(crate) solved: SolvedPose,
     /// The values of its independent and of its dependent coordinates; empty where all are independent.
     pub(super) parts: [Vec<f64>; 2],
-    /// Every leg's displacements from home, as its chains give them.
+    /// Every leg's displacements from home, as its chains give them; without meaning for a leg that is out of reach.
     pub(crate) legs: Vec<LegSolution>,
     pub(crate) within_limits: bool,
     pub(crate) unreachable: Vec<Unreachable>,

@@ -240,6 +240,16 @@ mod tests {
     }
 
     #[test]
+    fn several_at_once_are_the_same_as_one() {
+        for angles in [[0.3, -2.0, 7.0], [0.0, -0.0, 1e6], [1.0, 2e6, -3.0], [1e300, 0.1, -1e9]] {
+            assert_eq!(sin_cos_of_each(angles), angles.map(sin_cos), "{angles:?}");
+        }
+        let [y, x] = [[1.0, -2.0, 0.0, -0.0, 3.0], [2.0, -1.0, -1.0, 0.0, 0.0]];
+        let each = atan2_of_each(&y, &x);
+        assert_eq!(each.map(f64::to_bits), std::array::from_fn(|i| atan2(y[i], x[i]).to_bits()));
+    }
+
+    #[test]
     fn axes_and_diagonals_are_exact() {
         for y in [0.0, -0.0, 1.0, -1.0, 3e-308, -7e75] {
             for x in [0.0, -0.0, 1.0, -1.0, 3e-308, -7e75] {

@@ -4,7 +4,7 @@ use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacemen
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// The number of poses in a block.
-pub const LANES: usize = 32;
+pub const LANES: usize = 64;
 
 /// One number for each pose.
 pub type Column = [f64; LANES];

@@ -19,6 +19,9 @@ use crate::task::{
 };
 use nalgebra::Matrix3;
 
+/// Half a block. Where angles are computed, two halves at a time load the constants once.
+const HALF: usize = LANES / 2;
+
 /// The result of a section's chain for every pose of a block.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -244,8 +247,6 @@ pub fn report(
     macro_rules! each {
         ($limits:expr, $read:ident) => {{
             let limits = $limits;
-            // Two halves at once load the constants of an angle once.
-            const HALF: usize = LANES / 2;
             for lane in 0..HALF {
                 let (value, admitted) = limits.place(displacements.$read(lane), None);
                 let (other, also) = limits.place(displacements.$read(lane + HALF), None);
@@ -298,8 +299,9 @@ pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut
     let (home, sign) = (joint.home, joint.sign);
     let value = |displacement: JointDisplacement| home + sign * displacement.value();
     if tau.are_directions {
-        for (lane, to) in values.iter_mut().enumerate() {
-            *to = value(tau.direction(lane));
+        for lane in 0..HALF {
+            let two = [tau.direction(lane), tau.direction(lane + HALF)];
+            (values[lane], values[lane + HALF]) = (value(two[0]), value(two[1]));
         }
     } else {
         for (lane, to) in values.iter_mut().enumerate() {
