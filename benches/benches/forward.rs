@@ -20,8 +20,19 @@ fn main() {
             assemblies += manipulator.forward(joints.last().unwrap()).unwrap().list.len();
         }
     }
+    // A millimetre and a degree away in every coordinate, as a pose that was measured before.
+    let near: Vec<[f64; 5]> = (poses.iter())
+        .map(|pose| {
+            let aside = [1e-3, 1e-3].into_iter().chain([1_f64.to_radians(); 3]);
+            let mut start = *pose;
+            for (q, aside) in start.iter_mut().zip(aside) {
+                *q += if rng.bool() { aside } else { -aside };
+            }
+            start
+        })
+        .collect();
     let n = poses.len() as u64;
-    let home = manipulator.home_pose();
+    let (home, mut buffer) = (manipulator.home_pose(), manipulator.near_buffer());
     let timings = compare(vec![
         Contender::new("inverse kinematics, all joints", n, || {
             for pose in &poses {
@@ -33,9 +44,17 @@ fn main() {
                 let _ = black_box(manipulator.forward(black_box(actuated)));
             }
         }),
+        Contender::new("forward kinematics, Newton from 1 mm and 1 degree away", n, || {
+            for (actuated, start) in joints.iter().zip(&near) {
+                let found =
+                    manipulator.forward_near_into(black_box(actuated), start, mode, &mut buffer);
+                let _ = black_box(found);
+            }
+        }),
         Contender::new("forward kinematics, Newton from home", n, || {
             for actuated in &joints {
-                let _ = black_box(manipulator.forward_near(black_box(actuated), &home, mode));
+                let found = manipulator.forward_near(black_box(actuated), &home, mode);
+                let _ = black_box(found);
             }
         }),
     ]);

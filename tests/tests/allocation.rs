@@ -1,5 +1,5 @@
-//! Inverse kinematics, velocities and the positions of a linkage do not allocate: all of them may
-//! run in a control loop.
+//! Inverse kinematics, velocities, forward kinematics near a pose and the positions of a linkage do
+//! not allocate: all of them may run in a control loop.
 
 use allocation_counter::measure;
 use fastrand::Rng;
@@ -86,6 +86,50 @@ fn velocities_do_not_allocate() {
         }
     }
     assert!(moved > 500, "{moved} poses in reach");
+}
+
+/// The platform moves in small steps, and is found again near where it was from the actuated joints.
+#[test]
+fn forward_kinematics_near_a_pose_do_not_allocate() {
+    let mut rng = Rng::with_seed(32);
+    let mut found = 0;
+    for pair in PAIRS {
+        for balls in [false, true] {
+            let options = Options { limited: 0.0, balls };
+            for manipulator in manipulators(&mut rng, pair, options) {
+                let mode = manipulator.home_mode();
+                let (mut solution, mut buffer) =
+                    (manipulator.solution(), manipulator.near_buffer());
+                let mut actuated = vec![0.0; manipulator.actuated().len()];
+                let mut pose = manipulator.home_pose();
+                let mut last = pose.clone();
+                for _ in 0..20 {
+                    pose.iter_mut().for_each(|q| *q += 0.01 * (rng.f64() - 0.5));
+                    let Some(at) = manipulator.inverse(&pose, mode, &mut solution).unwrap() else {
+                        break;
+                    };
+                    let joints = manipulator.actuated().iter().map(|&i| at.joints()[i]);
+                    actuated.iter_mut().zip(joints).for_each(|(value, joint)| *value = joint);
+                    let mut closes = false;
+                    let info = measure(|| {
+                        let near =
+                            manipulator.forward_near_into(&actuated, &last, mode, &mut buffer);
+                        if let Ok(assembly) = near {
+                            closes = true;
+                            last.copy_from_slice(&assembly.pose);
+                        }
+                    });
+                    if !closes {
+                        // A singular pose: the error holds the last one.
+                        break;
+                    }
+                    assert_eq!(info.count_total, 0, "{pair:?}");
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found > 1_000, "{found} assemblies");
 }
 
 #[test]

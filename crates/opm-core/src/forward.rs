@@ -45,13 +45,16 @@
 
 mod accept;
 mod along;
+mod matches;
 mod near;
+mod newton;
 mod search;
 mod three;
 mod trigonometric;
 
 pub use crate::manipulator::NoClosedForm;
 pub use near::{NearError, NotFound, Stop};
+pub use newton::NearBuffer;
 
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
 use search::Search;
@@ -185,20 +188,29 @@ impl Manipulator {
 
     /// The displacements of the actuated joints from home, radians and metres.
     fn actuated_displacements(&self, actuated: &[f64]) -> Result<Vec<f64>, ForwardError> {
+        let mut displacements = Vec::with_capacity(actuated.len());
+        self.write_displacements(actuated, &mut displacements)?;
+        Ok(displacements)
+    }
+
+    /// Writes them to a buffer.
+    fn write_displacements(
+        &self,
+        actuated: &[f64],
+        displacements: &mut Vec<f64>,
+    ) -> Result<(), ForwardError> {
         let expected = self.actuated().len();
         if actuated.len() != expected {
             return Err(ForwardError::Length { given: actuated.len(), expected });
         }
-        let coordinates = self.actuated().iter().map(|&c| &self.coordinates()[c]);
-        actuated
-            .iter()
-            .zip(coordinates)
-            .map(|(&value, c)| {
-                if value.is_nan() || value.abs() > LARGEST {
-                    return Err(ForwardError::NotFinite { name: c.name.clone(), value });
-                }
-                Ok(value - c.home)
-            })
-            .collect()
+        displacements.clear();
+        for (&value, &coordinate) in actuated.iter().zip(self.actuated()) {
+            let c = &self.coordinates()[coordinate];
+            if value.is_nan() || value.abs() > LARGEST {
+                return Err(ForwardError::NotFinite { name: c.name.clone(), value });
+            }
+            displacements.push(value - c.home);
+        }
+        Ok(())
     }
 }

@@ -63,6 +63,7 @@ use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
+pub(crate) use closure::Products;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 use mode::ModeLayout;
@@ -332,6 +333,11 @@ impl Manipulator {
     /// The modes with every combination of one leg's choices, and plus for all other legs.
     pub(crate) fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
         self.modes.leg_modes(leg)
+    }
+
+    /// The mode with these branches of one leg's chains, and plus for all other legs.
+    pub(crate) fn leg_mode(&self, leg: usize, branches: LegBranches) -> Mode {
+        self.modes.leg_mode(leg, branches)
     }
 
     /// The branches of a leg's chains in a mode.

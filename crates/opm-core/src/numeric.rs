@@ -1,7 +1,9 @@
-//! Numbers: trigonometry, rotation matrices, singular values of small matrices, quantities with their
+//! Numbers: trigonometry, rotation matrices, singular values of small matrices, small
+//! linear systems, quantities with their
 //! units, and the format of numbers in messages. This module knows nothing of mechanisms.
 
 pub(crate) mod angle;
+pub(crate) mod least_squares;
 pub mod number;
 mod quantity;
 pub mod rotation;

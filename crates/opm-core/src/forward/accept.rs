@@ -1,17 +1,13 @@
 //! Candidates of the search are checked: inverse kinematics give the actuated joints back, and all legs
 //! close.
 
+use super::matches::{Match, Matches};
 use super::search::Search;
 use super::{Assemblies, Assembly, Unmet};
-use crate::chain::Branch;
-use crate::chain::condition::length;
-use crate::group::{Displacement, JointDisplacement};
-use crate::manipulator::{
-    ChainCoordinate, CompiledSection, Dependent, LegSolution, Manipulator, Mode, Section, Solution,
-    Unreachable,
-};
+use crate::group::Displacement;
+use crate::manipulator::{Dependent, Manipulator, Mode, Products, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
-use nalgebra::{Complex, Isometry3};
+use nalgebra::Isometry3;
 use std::f64::consts::TAU;
 
 /// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
@@ -21,7 +17,7 @@ pub(super) const MATCH: f64 = 1e-6;
 
 /// Two solutions of a leg that both match are distinct if a joint differs by more than this, in radians or
 /// shares of the size. Otherwise they are one solution near a singularity.
-const APART: f64 = 1e-4;
+pub(super) const APART: f64 = 1e-4;
 
 /// Below this residual, the passive joints that inverse kinematics give are not improved any further.
 const SETTLED: f64 = 1e-13;
@@ -29,40 +25,65 @@ const SETTLED: f64 = 1e-13;
 /// Two assemblies in one mode are the same if no joint differs by more than this, in radians or metres.
 const SAME: f64 = 1e-9;
 
+/// Where an assembly is looked for.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    /// The independent task coordinates, metres and radians.
+    pub pose: &'a [f64],
+    /// The platform's displacement from home at this pose.
+    pub target: &'a Isometry3<f64>,
+    pub mode: Mode,
+}
+
+impl Assembly {
+    /// A buffer for the assemblies of a manipulator.
+    pub(super) fn buffer(manipulator: &Manipulator) -> Self {
+        Self {
+            pose: Vec::with_capacity(manipulator.task_coordinates().len()),
+            dependent: Vec::with_capacity(manipulator.dependent_coordinates().len()),
+            mode: Mode::default(),
+            joints: Vec::with_capacity(manipulator.coordinates().len()),
+            imaginary: Vec::with_capacity(manipulator.imaginary().len()),
+            within_limits: false,
+            residual: f64::NAN,
+        }
+    }
+}
+
 impl Manipulator {
-    /// The assembly at a pose, where the actuated joints have these displacements from home. The other joints
+    /// Writes the assembly at a pose, where the actuated joints have these displacements from home. The other joints
     /// are those of a solution there, improved where that does not close to rounding.
-    pub(super) fn assembly(
+    pub(super) fn write_assembly(
         &self,
-        pose: &[f64],
-        mode: Mode,
+        Place { pose, target, mode }: Place<'_>,
         displacements: &[f64],
-        solution: &mut Solution,
-        target: &Isometry3<f64>,
-    ) -> Assembly {
+        solution: &Solution,
+        products: &mut Products,
+        out: &mut Assembly,
+    ) {
+        let write = |to: &mut Vec<f64>, from: &[f64]| {
+            to.clear();
+            to.extend_from_slice(from);
+        };
+        write(&mut out.pose, pose);
+        write(&mut out.dependent, solution.dependent());
+        write(&mut out.joints, &solution.joints);
+        write(&mut out.imaginary, &solution.imaginary);
+        (out.mode, out.within_limits) = (mode, solution.within_limits);
         // The given values, with the full revolutions that inverse kinematics give.
         for (&displacement, &coordinate) in displacements.iter().zip(self.actuated()) {
             let c = &self.coordinates()[coordinate];
             let given = c.home + displacement;
-            let joint = &mut solution.joints[coordinate];
+            let joint = &mut out.joints[coordinate];
             let revolutions = match c.quantity {
                 Quantity::Angle => ((*joint - given) / TAU).round(),
                 Quantity::Length => 0.0,
             };
             *joint = given + TAU * revolutions;
         }
-        let mut residual = self.closure.residual(&solution.joints, target);
-        if residual > SETTLED {
-            residual = self.closure.settle(&mut solution.joints, target, residual);
-        }
-        Assembly {
-            pose: pose.to_vec(),
-            dependent: solution.dependent().to_vec(),
-            mode,
-            joints: solution.joints.clone(),
-            imaginary: solution.imaginary.clone(),
-            within_limits: solution.within_limits,
-            residual,
+        out.residual = self.closure.residual(&out.joints, target, products);
+        if out.residual > SETTLED {
+            out.residual = self.closure.settle(&mut out.joints, target, out.residual, products);
         }
     }
 }
@@ -108,42 +129,61 @@ impl Search<'_> {
     /// The same at the height [`Search::rise`].
     fn assemble_at_height(&mut self, v: &Displacement, b: &Displacement) {
         let m = self.manipulator;
-        let all = m.task().pose(v, b, self.rise);
-        let independent = m.dependent.as_ref().map(|d| d.independent_of(m, &all));
-        let pose = independent.as_deref().unwrap_or(&all);
-        if m.check_pose(pose).is_err() {
-            return;
+        let [mut all, mut pose] = std::mem::take(&mut self.poses);
+        m.task().write_pose(v, b, self.rise, &mut all);
+        m.write_independent(&mut all, &mut pose);
+        if m.check_pose(&pose).is_ok() {
+            self.assemble_at(&all, &pose);
         }
-        let (v, b) = m.task().sections(&all);
-        let rise = m.task().rise(&all);
+        self.poses = [all, pose];
+    }
+
+    /// The same at a pose: all of its coordinates, and the independent ones.
+    fn assemble_at(&mut self, all: &[f64], pose: &[f64]) {
+        let m = self.manipulator;
+        let (v, b) = m.task().sections(all);
+        let rise = m.task().rise(all);
         let target = m.task().raised(rise, m.task().isometry(&v, &b));
-        let mut solutions: Vec<Vec<(Mode, LegSolution)>> = Vec::with_capacity(m.legs.len());
-        for leg in 0..m.legs.len() {
-            let (matching, error) = self.matching_solutions(leg, [&v, &b], rise);
-            if matching.is_empty() {
-                self.reject(error);
-                return;
-            }
-            solutions.push(matching);
+        let mut matches = std::mem::take(&mut self.matches);
+        let open = matches.iter_mut().enumerate().find_map(|(leg, found)| {
+            self.match_leg(leg, [&v, &b], rise, found);
+            found.list.is_empty().then_some(found.least)
+        });
+        match open {
+            Some(error) => self.reject(error),
+            None => self.accept_matches(&matches, all, pose, &target),
         }
-        let count: usize = solutions.iter().map(Vec::len).product();
+        self.matches = matches;
+    }
+
+    /// Accepts every combination of solutions of the legs at a pose. `all` has all of its coordinates, and `pose` the
+    /// independent ones.
+    fn accept_matches(
+        &mut self,
+        matches: &[Matches],
+        all: &[f64],
+        pose: &[f64],
+        target: &Isometry3<f64>,
+    ) {
+        let m = self.manipulator;
+        let count: usize = matches.iter().map(|of_leg| of_leg.list.len()).product();
         for number in 0..count {
             let mut rest = number;
             let mut mode = Mode::default();
             self.solution.within_limits = true;
-            for (leg, solutions) in solutions.iter().enumerate() {
-                let (own, solution) = &solutions[rest % solutions.len()];
-                rest /= solutions.len();
+            for (leg, Matches { list, .. }) in matches.iter().enumerate() {
+                let Match { mode: own, solution, .. } = &list[rest % list.len()];
+                rest /= list.len();
                 mode = mode.with(*own);
                 m.write_leg(leg, solution, &mut self.solution);
             }
             if m.task().height.is_some() {
-                self.solution.solved.pose.copy_from_slice(&all);
+                self.solution.solved.pose.copy_from_slice(all);
                 m.write_lifts(&mut self.solution);
             }
             match &m.dependent {
-                None => self.accept(pose, mode, &target),
-                Some(dependent) => self.accept_completed(dependent, pose, mode, &target),
+                None => self.accept(pose, mode, target),
+                Some(dependent) => self.accept_completed(dependent, pose, mode, target),
             }
         }
     }
@@ -176,134 +216,13 @@ impl Search<'_> {
         self.least = Some(self.least.map_or(error, |least| least.min(error)));
     }
 
-    /// The solutions of a leg at a pose that have the given values of its actuated joints, and the smallest
-    /// error of any of its solutions, in radians or shares of the size.
-    fn matching_solutions(
-        &self,
-        leg: usize,
-        pose: [&Displacement; 2],
-        rise: f64,
-    ) -> (Vec<(Mode, LegSolution)>, f64) {
-        let m = self.manipulator;
-        let mut least = f64::INFINITY;
-        let compiled = &self.legs[leg];
-        let mut found: Vec<(Mode, LegSolution, f64)> = Vec::with_capacity(4);
-        // Most solutions already have other lower joints. They are rejected before the rest is solved.
-        let lower_first =
-            compiled.split_section == Section::Upper && !self.plan.legs[leg].lower.is_empty();
-        let [v, b] = pose;
-        let cuts = Branch::BOTH.map(|branch| match lower_first {
-            true => compiled.first_step(b, branch).ok().map(|tau| compiled.unwound(tau, 0.0)),
-            false => None,
-        });
-        for mode in m.leg_modes(leg) {
-            let branches = m.branches(mode, leg);
-            if lower_first {
-                let Some(tau) = cuts[usize::from(branches.upper == Branch::Minus)] else {
-                    continue;
-                };
-                let lower = compiled.solve_lower(m.task(), v, tau, branches.lower);
-                let error =
-                    lower.map_or(f64::INFINITY, |l| self.section_error(&compiled.lower, &l));
-                if error.is_nan() || error > MATCH {
-                    least = least.min(error);
-                    continue;
-                }
-            }
-            let Ok(solution) = compiled.solve(m.task(), pose, rise, branches, 0.0) else {
-                continue;
-            };
-            let error = self.leg_error(leg, &solution, rise);
-            least = least.min(error);
-            if error <= MATCH {
-                found.push((mode, solution, error));
-            }
-        }
-        found.sort_by(|a, b| a.2.total_cmp(&b.2));
-        let mut kept: Vec<(Mode, LegSolution)> = Vec::with_capacity(found.len());
-        for (mode, solution, _) in found {
-            let same = |(_, other): &(Mode, LegSolution)| self.same(leg, other, &solution);
-            if !kept.iter().any(same) {
-                kept.push((mode, solution));
-            }
-        }
-        (kept, least)
-    }
-
-    /// The largest error of an actuated joint in a leg's solution, in radians or shares of the size.
-    fn leg_error(&self, leg: usize, solution: &LegSolution, rise: f64) -> f64 {
-        let m = self.manipulator;
-        let leg = &m.legs[leg];
-        let lower = self.section_error(&leg.lower, &solution.lower);
-        let error = lower.max(self.section_error(&leg.upper, &solution.upper));
-        // All lifts have one height, unless each leg has its own.
-        let lift = leg.lift.filter(|lift| lift.slope != 0.0);
-        let actuated = lift.and_then(|lift| Some((lift, lift.coordinate.actuated?)));
-        actuated.map_or(error, |(lift, actuated)| {
-            let own = lift.rise(self.displacements[actuated]);
-            error.max((own - m.task().rise_of_leg(rise, solution.tau)).abs() / m.closure.size)
-        })
-    }
-
-    /// The largest error of an actuated joint in one section, in radians or shares of the size.
-    fn section_error(
-        &self,
-        section: &CompiledSection,
-        displacements: &[JointDisplacement; 3],
-    ) -> f64 {
-        let mut error = 0.0_f64;
-        for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
-            if let Some(ChainCoordinate { number, actuated: Some(actuated), .. }) = *coordinate {
-                let (value, direction) = (self.displacements[actuated], self.directions[actuated]);
-                error = error.max(self.distance(number, displacement, value, direction));
-            }
-        }
-        error
-    }
-
-    /// Whether two solutions of a leg are the same, up to rounding near a singularity.
-    fn same(&self, leg: usize, one: &LegSolution, other: &LegSolution) -> bool {
-        let m = self.manipulator;
-        let compiled = &m.legs[leg];
-        let sections = [
-            (&compiled.lower, &one.lower, &other.lower),
-            (&compiled.upper, &one.upper, &other.upper),
-        ];
-        sections.iter().all(|(section, one, other)| {
-            section.coordinates.iter().zip(one.iter().zip(*other)).all(
-                |(coordinate, (one, other))| {
-                    let Some(coordinate) = coordinate else { return true };
-                    self.distance(coordinate.number, *one, other.value(), other.unit_direction())
-                        < APART
-                },
-            )
-        })
-    }
-
-    /// The distance of a joint's displacement from a value, or from the direction of that angle: in radians
-    /// or shares of the size.
-    fn distance(
-        &self,
-        coordinate: usize,
-        displacement: JointDisplacement,
-        value: f64,
-        direction: Complex<f64>,
-    ) -> f64 {
-        match displacement {
-            JointDisplacement::Direction(_) => length(displacement.unit_direction() - direction),
-            JointDisplacement::Value(given) => {
-                match self.manipulator.coordinates()[coordinate].quantity {
-                    Quantity::Angle => (given - value).abs(),
-                    Quantity::Length => (given - value).abs() / self.manipulator.closure.size,
-                }
-            }
-        }
-    }
-
     /// Adds the assembly in the buffer to the list, unless it does not close or is listed already.
     fn accept(&mut self, pose: &[f64], mode: Mode, target: &Isometry3<f64>) {
         let m = self.manipulator;
-        let mut assembly = m.assembly(pose, mode, self.displacements, &mut self.solution, target);
+        let place = Place { pose, target, mode };
+        let mut assembly = Assembly::buffer(m);
+        let (solution, products) = (&self.solution, &mut self.products);
+        m.write_assembly(place, self.displacements, solution, products, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.

@@ -2,33 +2,10 @@
 //! with the Jacobian of the actuated joints. Steps are twists, not changes of the task coordinates, so that
 //! a singularity of the Euler angles does not stop them. Home is such a pose in many mechanisms.
 
+use super::newton::{NearBuffer, Newton};
 use super::{Assembly, ForwardError};
-use crate::group::LocalTwist;
-use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
-use crate::mechanism::joint::JointKind;
-use crate::numeric::Quantity;
-use crate::numeric::svd::Svd;
-use crate::velocity::Jacobians;
-use nalgebra::{DMatrix, DVector};
-use std::f64::consts::TAU;
+use crate::manipulator::{Manipulator, Mode, PoseError, Unreachable};
 use std::fmt;
-
-/// The largest number of steps. Newton's method takes about six from a good start.
-const STEPS: u32 = 60;
-
-/// The longest step, in radians or shares of the size. The linear terms are not useful further away.
-const LONGEST: f64 = 0.5;
-
-/// How often a step is halved that leads out of reach or away from the solution.
-const HALVINGS: u32 = 20;
-
-/// The joints have their values to within this, in radians and shares of the size. From there on, steps are
-/// taken only as long as they reduce the error.
-const ARRIVED: f64 = 1e-11;
-
-/// A singular value of the Jacobian below this share of the largest counts as zero. Lengths are over the
-/// size.
-const SINGULAR: f64 = 1e-9;
 
 /// Why no assembly was found near a pose.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -111,222 +88,44 @@ impl Manipulator {
         start: &[f64],
         mode: Mode,
     ) -> Result<Assembly, NearError> {
-        let displacements = self.actuated_displacements(actuated)?;
-        let mut newton = Newton {
-            manipulator: self,
-            wanted: actuated,
-            modulo: self.modulo_revolutions(),
-            mode,
-            pose: start.to_vec(),
-            solution: self.solution(),
-        };
-        let mut jacobians = self.jacobians();
-        if self.inverse(start, mode, &mut newton.solution)?.is_none() {
-            let why = Stop::OutOfReach(newton.solution.unreachable[0]);
-            return Err(newton.ended(why, 0, f64::INFINITY).into());
-        }
-        let mut error = newton.error();
-        for steps in 0..STEPS {
-            match newton.step(&mut jacobians, &mut error) {
-                Ok(()) => {}
-                Err(_) if error.amax() <= ARRIVED => break,
-                Err(why) => return Err(newton.ended(why, steps, error.amax()).into()),
-            }
-        }
-        if error.amax() > ARRIVED {
-            return Err(newton.ended(Stop::Steps, STEPS, error.amax()).into());
-        }
-        let (v, b) = (newton.solution.solved.v, newton.solution.solved.b);
-        let pose = self.independent_of(&self.task().pose(&v, &b, newton.rise()));
-        self.inverse(&pose, mode, &mut newton.solution)?;
-        let target = newton.solution.displacement(self);
-        let mut solution = newton.solution.clone();
-        let assembly = self.assembly(&pose, mode, &displacements, &mut solution, &target);
-        if assembly.residual > self.largest_residual() {
-            return Err(newton.ended(Stop::Stalled, STEPS, assembly.residual).into());
-        }
-        Ok(assembly)
+        let mut buffer = self.near_buffer();
+        self.forward_near_into(actuated, start, mode, &mut buffer)?;
+        Ok(buffer.assembly)
     }
 
-    /// For every actuated coordinate, whether it is an angle modulo 2π.
-    fn modulo_revolutions(&self) -> Vec<bool> {
-        let rotates = |kind: JointKind| match kind {
-            JointKind::Revolute | JointKind::Universal { .. } | JointKind::Cylindrical => true,
-            JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Spherical => false,
-        };
-        let joints = self.mechanism().joints().filter(|joint| joint.actuated);
-        joints
-            .flat_map(|joint| {
-                let rotates = rotates(joint.kind);
-                joint.coordinates.iter().map(move |c| rotates && c.quantity == Quantity::Angle)
-            })
-            .collect()
-    }
-}
-
-/// The state of Newton's method.
-struct Newton<'a> {
-    manipulator: &'a Manipulator,
-    /// The values that the actuated joints should have, radians and metres.
-    wanted: &'a [f64],
-    /// For every actuated coordinate, whether it is an angle modulo 2π.
-    modulo: Vec<bool>,
-    mode: Mode,
-    /// The present pose, task coordinates.
-    pose: Vec<f64>,
-    /// The solution at the present pose.
-    solution: Solution,
-}
-
-impl Newton<'_> {
-    /// The report of a run without an assembly.
-    fn ended(self, why: Stop, steps: u32, off: f64) -> NotFound {
-        NotFound { why, steps, off, pose: self.pose }
-    }
-
-    /// The actuated joints' wanted values minus their present ones, in radians and shares of the size.
-    fn error(&self) -> DVector<f64> {
-        let m = self.manipulator;
-        let joints = m.actuated().iter().zip(self.wanted).zip(&self.modulo);
-        DVector::from_iterator(
-            self.wanted.len(),
-            joints.map(|((&coordinate, wanted), modulo)| {
-                let error = wanted - self.solution.joints[coordinate];
-                match m.coordinates()[coordinate].quantity {
-                    Quantity::Angle if *modulo => error - TAU * (error / TAU).round(),
-                    Quantity::Angle => error,
-                    Quantity::Length => error / m.closure.size,
-                }
-            }),
-        )
-    }
-
-    /// The height above home, metres.
-    fn rise(&self) -> f64 {
-        self.manipulator.task().rise(&self.solution.solved.pose)
-    }
-
-    /// Takes one step, shortened until it reduces the error.
-    fn step(&mut self, jacobians: &mut Jacobians, error: &mut DVector<f64>) -> Result<(), Stop> {
-        let m = self.manipulator;
-        let size = m.closure.size;
-        if !m.differentiate(&self.solution, jacobians).unwrap_or(false) {
-            return Err(Stop::Singular);
-        }
-        let directions = jacobians.directions();
-        let raised = m.task().height.is_some();
-        // In rows and columns, lengths are divided by the size.
-        let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
-        let columns: Vec<f64> = (directions.iter())
-            .map(
-                |[u, l]| {
-                    if upper.is_translation(u) || lower.is_translation(l) { size } else { 1.0 }
-                },
-            )
-            .chain(raised.then_some(size))
-            .collect();
-        let row = |i: usize| match m.coordinates()[m.actuated()[i]].quantity {
-            Quantity::Angle => 1.0,
-            Quantity::Length => 1.0 / size,
-        };
-        // Locked joints stay where they are.
-        let (actuated, locked) = (self.wanted.len(), jacobians.locked.nrows());
-        let matrix = DMatrix::from_fn(actuated + locked, columns.len(), |i, j| {
-            let rate = match i.checked_sub(actuated) {
-                None => jacobians.joints[(m.actuated()[i], j)] * row(i),
-                Some(locked) => jacobians.locked[(locked, j)],
-            };
-            rate * columns[j]
-        });
-        let svd = Svd::new(matrix);
-        if svd.rank(SINGULAR) < columns.len() {
-            return Err(Stop::Singular);
-        }
-        let mut step = DVector::zeros(columns.len());
-        for (k, value) in svd.values.iter().enumerate() {
-            let image = svd.image.column(k);
-            let along = image.rows(0, actuated).dot(error);
-            step += svd.right.column(k) * (along / (value * value));
-        }
-        let share = (LONGEST / step.amax()).min(1.0);
-        let (v, b) = (self.solution.solved.v, self.solution.solved.b);
-        let mut tried = self.solution.clone();
-        let mut stop = Stop::Stalled;
-        for halving in 0..HALVINGS {
-            let scale = share * 0.5_f64.powi(halving as i32);
-            let [mut upper_twist, mut lower_twist] = [LocalTwist::zeros(); 2];
-            for ((component, column), [u, l]) in step.iter().zip(&columns).zip(&directions) {
-                upper_twist += u * (component * column * scale);
-                lower_twist += l * (component * column * scale);
-            }
-            // The twists are ḃ b⁻¹ and v⁻¹ v̇.
-            let moved_b = upper.first_order(&upper_twist).after(&b);
-            let moved_v = v.after(&lower.first_order(&lower_twist));
-            let along = if raised { step[directions.len()] * size * scale } else { 0.0 };
-            let all = m.task().pose(&moved_v, &moved_b, self.rise() + along);
-            let pose = m.independent_of(&all);
-            match m.inverse(&pose, self.mode, &mut tried) {
-                Ok(Some(_)) => {
-                    std::mem::swap(&mut self.solution, &mut tried);
-                    let after = self.error();
-                    if after.norm() < error.norm() {
-                        *error = after;
-                        self.pose = pose;
-                        return Ok(());
-                    }
-                    std::mem::swap(&mut self.solution, &mut tried);
-                    stop = Stop::Stalled;
-                }
-                Ok(None) => stop = Stop::OutOfReach(tried.unreachable[0]),
-                Err(_) => stop = Stop::Stalled,
-            }
-            if error.amax() <= ARRIVED {
-                break;
-            }
-        }
-        Err(stop)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Each step leaves the square of the error before it, times a constant of the mechanism.
-    #[test]
-    fn convergence_is_quadratic() {
-        let mut squared = 0;
-        for name in ["plano-spherical-5dof", "translational-planar-4dof", "planar-planar-5dof"] {
-            let m = Manipulator::example(name).unwrap();
-            let home = m.task().home();
-            for sign in [-1.0, 1.0] {
-                let aim: Vec<f64> = home.iter().map(|q| q + 0.02 * sign).collect();
-                let mut solution = m.solution();
-                assert!(m.inverse(&aim, m.home_mode(), &mut solution).unwrap().is_some());
-                let wanted: Vec<f64> = m.actuated().iter().map(|&i| solution.joints[i]).collect();
-                assert!(m.inverse(&home, m.home_mode(), &mut solution).unwrap().is_some());
-                let mut newton = Newton {
-                    manipulator: &m,
-                    wanted: &wanted,
-                    modulo: m.modulo_revolutions(),
-                    mode: m.home_mode(),
-                    pose: home.clone(),
-                    solution,
-                };
-                let (mut jacobians, mut error) = (m.jacobians(), newton.error());
-                let mut before = error.amax();
-                while before > 1e-12 {
-                    newton.step(&mut jacobians, &mut error).unwrap();
-                    let after = error.amax();
-                    assert!(
-                        after < 20.0 * before * before + 1e-14,
-                        "{name}: {before:e}, {after:e}"
-                    );
-                    squared += usize::from(after > 1e-13);
-                    before = after;
-                }
-            }
-        }
-        assert!(squared > 6, "{squared} steps above rounding");
+    /// Does the same as [`Manipulator::forward_near`] with a buffer, which gets the assembly: for a control loop, where
+    /// the last pose is the next start. Nothing is allocated where an assembly is found.
+    ///
+    /// # Errors
+    /// As [`Manipulator::forward_near`].
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let (mode, mut solution) = (manipulator.home_mode(), manipulator.solution());
+    /// let (mut buffer, mut last) = (manipulator.near_buffer(), manipulator.home_pose());
+    /// for step in 0..10 {
+    ///     // The platform moves along x, and the actuated joints are measured.
+    ///     let pose = manipulator.pose([("x", 0.001 * f64::from(step)), ("xi", 0.2)])?;
+    ///     let joints = manipulator.inverse(&pose, mode, &mut solution)?.expect("in reach").joints();
+    ///     let measured: Vec<f64> = manipulator.actuated().iter().map(|&i| joints[i]).collect();
+    ///     // Where is the platform? Near where it was.
+    ///     let assembly = manipulator.forward_near_into(&measured, &last, mode, &mut buffer)?;
+    ///     assert!(assembly.pose.iter().zip(&pose).all(|(found, q)| (found - q).abs() < 1e-9));
+    ///     last.copy_from_slice(&assembly.pose);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn forward_near_into<'a>(
+        &self,
+        actuated: &[f64],
+        start: &[f64],
+        mode: Mode,
+        buffer: &'a mut NearBuffer,
+    ) -> Result<&'a Assembly, NearError> {
+        self.write_displacements(actuated, &mut buffer.displacements)?;
+        Newton { manipulator: self, wanted: actuated, mode }.run(start, buffer)?;
+        Ok(&buffer.assembly)
     }
 }

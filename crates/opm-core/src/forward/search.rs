@@ -2,6 +2,7 @@
 
 use super::accept::MATCH;
 use super::along::{self, along};
+use super::matches::{LowerSection, Matches};
 use super::three::{self, Solutions};
 use super::{Assemblies, Unmet};
 use crate::chain::condition::{Condition, VERGE, flat_joints};
@@ -10,7 +11,7 @@ use crate::chain::track::Track;
 use crate::chain::{Branch, Chain, ReachDeficit, planar};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, SubspaceKind};
 use crate::manipulator::plan::{Anchor, Plan};
-use crate::manipulator::{CompiledLeg, Manipulator, Section, Solution};
+use crate::manipulator::{CompiledLeg, Manipulator, Products, Section, Solution};
 use crate::numeric::angle::unit;
 use crate::numeric::angle::whole_turns;
 use nalgebra::Complex;
@@ -40,8 +41,19 @@ pub(super) struct Search<'a> {
     pub rise: f64,
     /// The legs at that height, or at their own. A leg whose own height is not known is as it is at home, with its lift.
     pub legs: Cow<'a, [CompiledLeg]>,
+    /// For each leg, the τ for which candidates are being tried, in terms of `v` as the pose gives it; `None` where it
+    /// was not solved for.
+    pub taus: Vec<Option<JointDisplacement>>,
+    /// For each leg, its lower section as it was solved last.
+    pub lowers: Vec<LowerSection>,
+    /// A buffer for the solutions of each leg at a candidate.
+    pub matches: Vec<Matches>,
+    /// Buffers for the pose of a candidate: all of its coordinates, and the independent ones.
+    pub poses: [Vec<f64>; 2],
     /// A buffer for inverse kinematics.
     pub solution: Solution,
+    /// The legs' products of exponentials for the last candidate.
+    pub products: Products,
     /// The assemblies found so far.
     pub out: Assemblies,
     /// The smallest error of a joint or a leg among the rejected candidates, in radians or shares of the
@@ -75,7 +87,12 @@ impl<'a> Search<'a> {
             directions: displacements.iter().map(|&value| unit(value)).collect(),
             rise,
             legs: manipulator.legs_at(of_leg),
+            taus: vec![None; manipulator.legs()],
+            lowers: (0..manipulator.legs()).map(|_| LowerSection::new()).collect(),
+            matches: (0..manipulator.legs()).map(|_| Matches::new()).collect(),
+            poses: Default::default(),
             solution: manipulator.solution(),
+            products: manipulator.closure.products(),
             out: Assemblies::default(),
             least: None,
             upper_failed: false,
@@ -362,6 +379,7 @@ impl<'a> Search<'a> {
             None => self.loose(Section::Upper),
             Some(bs) => {
                 self.upper_failed |= bs.is_empty();
+                self.taus.copy_from_slice(taus);
                 for b in bs {
                     self.assemble(v, &b);
                 }

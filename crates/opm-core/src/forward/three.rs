@@ -39,6 +39,9 @@ const LONGEST_STEP: f64 = 0.1;
 /// The largest number of polishing steps. Each squares an error that is already small.
 const POLISH: usize = 3;
 
+/// The conditions are met to rounding, in radians and shares of the size: there is nothing to polish.
+const POLISHED: f64 = 1e-15;
+
 /// An equation in θ (rows: 1, cos, sin) and φ (columns: 1, cos, sin).
 #[derive(Clone, Copy, Debug)]
 struct Bilinear {
@@ -150,15 +153,23 @@ fn on_cone(
         coefficients[(0, 0)] -= cosine;
         Bilinear { coefficients, size: 1.0 }
     });
+    let back = to.transpose();
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
-        from * rotation_about_z(theta) * tilt * rotation_about_z(phi) * to.transpose()
+        let first = turned(&from, [0, 1], theta);
+        let tilted = turned(&first, [2, 0], Complex::new(cosine, sine));
+        turned(&tilted, [0, 1], phi) * back
     };
     eliminate_angle(&rest, conditions, place, found)
 }
 
-/// The rotation about z by the angle of a unit complex number.
-fn rotation_about_z(e: Complex<f64>) -> Matrix3<f64> {
-    Matrix3::new(e.re, -e.im, 0.0, e.im, e.re, 0.0, 0.0, 0.0, 1.0)
+/// A frame after a rotation about one of its own directions, the one that is not named, by the angle of a unit complex
+/// number.
+fn turned(frame: &Matrix3<f64>, [from, to]: [usize; 2], e: Complex<f64>) -> Matrix3<f64> {
+    let (a, b) = (frame.column(from), frame.column(to));
+    let mut turned = *frame;
+    turned.set_column(from, &(a * e.re + b * e.im));
+    turned.set_column(to, &(b * e.re - a * e.im));
+    turned
 }
 
 /// A right-handed frame whose third direction is `axis`.
@@ -411,6 +422,9 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     let mut here = start;
     let (mut miss, mut derivative) = evaluate(&here);
     for _ in 0..POLISH {
+        if miss.amax() <= POLISHED {
+            break;
+        }
         let Some(inverse) = derivative.try_inverse() else { break };
         let step = -(inverse * miss);
         let length = step.amax();

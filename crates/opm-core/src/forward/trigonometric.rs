@@ -45,7 +45,7 @@ pub enum Roots {
 
 impl Trigonometric {
     /// The polynomial `a + b cos θ + c sin θ`.
-    #[inline]
+    #[inline(always)]
     pub fn linear([a, b, c]: [f64; 3]) -> Self {
         let mut coefficients = [Complex::new(0.0, 0.0); DEGREE + 1];
         coefficients[0].re = a;
@@ -65,22 +65,37 @@ impl Trigonometric {
         value
     }
 
-    /// The product. The degrees must add up to at most four.
-    #[inline]
+    /// The product. The degrees must add up to at most four. Where they are known to the compiler, so are all
+    /// ranges: hence it is always inlined.
+    #[inline(always)]
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
-        let (n, m) = (self.degree as isize, other.degree as isize);
+        let (n, m) = (self.degree, other.degree);
+        let (a, b) = (&self.coefficients, &other.coefficients);
         let mut coefficients = [Complex::new(0.0, 0.0); DEGREE + 1];
-        for (k, sum) in (0..=n + m).zip(&mut coefficients) {
-            for j in (k - m).max(-n)..=n.min(k + m) {
-                *sum += self.coefficient(j) * other.coefficient(k - j);
-            }
+        coefficients[0].re = a[0].re * b[0].re;
+        for k in 1..=n.min(m) {
+            coefficients[0].re += 2.0 * (a[k].re * b[k].re + a[k].im * b[k].im);
         }
-        Self { coefficients, degree: (n + m) as usize }
+        // Σ a_j b_(k−j), where one index or none is negative.
+        for k in 1..=n + m {
+            let mut sum = Complex::new(0.0, 0.0);
+            for j in k.saturating_sub(m)..=n.min(k) {
+                sum += a[j] * b[k - j];
+            }
+            for j in 1..=m.min(n.saturating_sub(k)) {
+                sum += a[k + j] * b[j].conj();
+            }
+            for j in 1..=n.min(m.saturating_sub(k)) {
+                sum += a[j].conj() * b[k + j];
+            }
+            coefficients[k] = sum;
+        }
+        Self { coefficients, degree: n + m }
     }
 
     /// The difference `self − other`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         let mut difference = *self;
@@ -92,7 +107,7 @@ impl Trigonometric {
     }
 
     /// The sum.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let mut sum = *self;
@@ -110,20 +125,14 @@ impl Trigonometric {
         self.coefficients[0].re.abs() + 2.0 * higher.map(|c| c.re.abs() + c.im.abs()).sum::<f64>()
     }
 
-    #[inline]
-    fn coefficient(&self, k: isize) -> Complex<f64> {
-        let c = self.coefficients[k.unsigned_abs()];
-        if k < 0 { c.conj() } else { c }
-    }
-
     /// Every real root of a polynomial that was computed from terms of size `scale`: where it changes
     /// sign, and where it touches zero to within [`NOISE`]. Roots nearer to each other than some 1e-7 may
     /// be given as one, and a double root as two or three.
     ///
     /// With `t = tan(θ/2)`, `(1 + t²)⁴ f` is a polynomial of degree eight in `t`. One half of the circle is
     /// `|t| ≤ 1`, and so is the other half after a rotation by π. In Bernstein's basis the coefficients
-    /// bound the polynomial, and their differences show where it is monotonic. An interval that they do not
-    /// decide is halved (de Casteljau's algorithm).
+    /// bound the polynomial, and their signs count its roots. An interval that they do not decide is halved
+    /// (de Casteljau's algorithm).
     pub fn roots(&self, scale: f64) -> Roots {
         if self.size() <= NOISE * scale || !self.size().is_finite() {
             return Roots::Everywhere;
@@ -132,16 +141,14 @@ impl Trigonometric {
         let noise = 16.0 * NOISE * scale;
         let mut roots: Vec<Complex<f64>> = Vec::with_capacity(HALF);
         let mut doubtful = false;
-        // Each halving leaves one interval for later, down to the shortest.
-        let mut open = Vec::with_capacity(32);
+        let (powers, bernstein) = (self.expanded(&POWERS), self.expanded(&BERNSTEIN));
         for half in [1.0, -1.0] {
-            let mut rotated = *self;
-            for c in rotated.coefficients[1..].iter_mut().step_by(2) {
-                *c *= half;
-            }
-            let polynomial = rotated.in_half_tangent();
-            open.push(Interval { bernstein: rotated.bernstein(), low: -1.0, width: 2.0 });
-            isolate(&mut open, &polynomial, noise, &mut |t, simple| {
+            let on_half = |[even, odd]: &[[f64; COEFFICIENTS]; 2]| {
+                std::array::from_fn(|i| even[i] + half * odd[i])
+            };
+            let polynomial = Polynomial { powers: on_half(&powers), noise };
+            let whole = Interval { bernstein: on_half(&bernstein), low: -1.0, width: 2.0 };
+            polynomial.isolate(&whole, &mut |t, simple| {
                 let square = t * t;
                 let e = Complex::new(1.0 - square, 2.0 * t) * half / (1.0 + square);
                 doubtful |=
@@ -152,32 +159,23 @@ impl Trigonometric {
         Roots::At { roots, doubtful }
     }
 
-    /// Coefficients of `(1 + t²)⁴ f` by rising powers of `t`.
-    fn in_half_tangent(&self) -> [f64; COEFFICIENTS] {
-        self.expanded(&POWERS)
-    }
-
-    /// Coefficients of `(1 + t²)⁴ f` on `-1 ≤ t ≤ 1` in Bernstein's basis.
-    fn bernstein(&self) -> [f64; COEFFICIENTS] {
-        self.expanded(&BERNSTEIN)
-    }
-
-    /// The coefficients of `(1 + t²)⁴ f` in the basis of a table.
-    fn expanded(&self, table: &Table) -> [f64; COEFFICIENTS] {
-        let mut sum = [0.0; COEFFICIENTS];
-        for (k, c) in self.coefficients[..=self.degree].iter().enumerate() {
-            let twice = if k == 0 { 1.0 } else { 2.0 };
-            for (sum, [re, im]) in sum.iter_mut().zip(&table[k]) {
-                *sum += twice * (c.re * re - c.im * im);
+    /// The coefficients of `(1 + t²)⁴ f` in the basis of a table, those of the terms of even and of odd degree.
+    /// A rotation by π changes the sign of the odd ones.
+    fn expanded(&self, table: &Table) -> [[f64; COEFFICIENTS]; 2] {
+        let mut sums = [[0.0; COEFFICIENTS]; 2];
+        for (k, (c, row)) in self.coefficients[..=self.degree].iter().zip(table).enumerate() {
+            let [re, im] = row;
+            for (i, sum) in sums[k % 2].iter_mut().enumerate() {
+                *sum += c.re * re[i] - c.im * im[i];
             }
         }
-        sum
+        sums
     }
 }
 
-/// Real and imaginary parts of `(1 + i t)^(4+k) (1 − i t)^(4−k)`, which is `(1 + t²)⁴ exp(i k θ)`: its
-/// coefficients in some basis, for each `k`.
-type Table = [[[f64; 2]; COEFFICIENTS]; DEGREE + 1];
+/// Real and imaginary parts of `(1 + i t)^(4+k) (1 − i t)^(4−k)`, which is `(1 + t²)⁴ exp(i k θ)`: their
+/// coefficients in some basis, for each `k`. Those for `k > 0` are doubled, because `−k` adds as much.
+type Table = [[[f64; COEFFICIENTS]; 2]; DEGREE + 1];
 
 /// The table for the powers of `t`.
 const POWERS: Table = table([[1, 0], [0, 1]], false);
@@ -188,7 +186,7 @@ const BERNSTEIN: Table = table([[1, -1], [1, 1]], true);
 /// coefficients of `1 + i t` in the basis. For Bernstein's basis the products are divided by binomial
 /// coefficients.
 const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
-    let mut table = [[[0.0; 2]; COEFFICIENTS]; DEGREE + 1];
+    let mut table = [[[0.0; COEFFICIENTS]; 2]; DEGREE + 1];
     let mut k = 0;
     while k <= DEGREE {
         let mut product = [[0_i64; 2]; COEFFICIENTS];
@@ -216,7 +214,9 @@ const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
         let mut binomial = 1;
         while j <= HALF {
             let over = if over_binomials { binomial } else { 1 };
-            table[k][j] = [product[j][0] as f64 / over as f64, product[j][1] as f64 / over as f64];
+            let twice = if k > 0 { 2.0 } else { 1.0 };
+            table[k][0][j] = twice * product[j][0] as f64 / over as f64;
+            table[k][1][j] = twice * product[j][1] as f64 / over as f64;
             binomial = binomial * (HALF - j) as i64 / (j + 1) as i64;
             j += 1;
         }
@@ -235,19 +235,27 @@ struct Interval {
     width: f64,
 }
 
-/// Finds the roots of a polynomial on the `open` intervals, in ascending order. `found` is called with each
-/// root, and with whether it is certainly simple.
-fn isolate(
-    open: &mut Vec<Interval>,
-    powers: &[f64; COEFFICIENTS],
+/// A polynomial in the half angle's tangent.
+struct Polynomial {
+    /// Its coefficients by rising powers.
+    powers: [f64; COEFFICIENTS],
+    /// Where it is below this, it is zero.
     noise: f64,
-    found: &mut impl FnMut(f64, bool),
-) {
-    while let Some(Interval { bernstein: b, low, width }) = open.pop() {
+}
+
+impl Polynomial {
+    /// Finds the roots on an interval, in ascending order. `found` is called with each root, and with whether it is
+    /// certainly simple.
+    fn isolate(&self, interval: &Interval, found: &mut impl FnMut(f64, bool)) {
+        let Interval { bernstein: ref b, low, width } = *interval;
+        let noise = self.noise;
         let (least, most) =
             b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
         if least > noise || most < -noise {
-            continue;
+            return;
+        }
+        if changes_sign_once(b, noise) {
+            return found(self.root(interval), true);
         }
         let rising = b.windows(2).all(|pair| pair[1] > pair[0]);
         if rising || b.windows(2).all(|pair| pair[1] < pair[0]) {
@@ -256,22 +264,68 @@ fn isolate(
             let crosses =
                 if rising { first <= 0.0 && last > 0.0 } else { first >= 0.0 && last < 0.0 };
             if crosses {
-                found(bracketed(powers, [low, low + width], rising), true);
+                found(self.root(interval), true);
             }
-            continue;
+            return;
         }
         // The polynomial is below the rounding here. Unless it is convex or concave, in which case halving
         // leads to its turning point, nothing more can be found.
-        let flat = least.abs().max(most.abs()) <= noise && !is_convex_or_concave(&b);
+        let flat = least.abs().max(most.abs()) <= noise && !is_convex_or_concave(b);
         if width <= SHORTEST || flat {
-            found(low + 0.5 * width, false);
-            continue;
+            return found(low + 0.5 * width, false);
         }
-        let (left, right) = halves(&b);
-        let width = 0.5 * width;
-        open.push(Interval { bernstein: right, low: low + width, width });
-        open.push(Interval { bernstein: left, low, width });
+        for half in interval.halves() {
+            self.isolate(&half, found);
+        }
     }
+
+    /// The root on an interval at whose ends the polynomial has opposite signs, by Newton's method from where the
+    /// polygon of the coefficients changes its sign. Steps that leave the interval, or that do not become shorter,
+    /// are replaced by halving it.
+    fn root(&self, interval: &Interval) -> f64 {
+        /// Every second step halves the interval or the step at least: this number reaches the last bit.
+        const STEPS: usize = 128;
+        /// After a step that is shorter, the next one is below rounding: Newton's method squares the error.
+        const CLOSE: f64 = 1e-9;
+        let (mut low, mut high) = (interval.low, interval.low + interval.width);
+        let rising = interval.bernstein[HALF] > 0.0;
+        let (mut t, mut last) = (interval.polygon_root(rising), interval.width);
+        for _ in 0..STEPS {
+            let (mut value, mut slope) = (0.0, 0.0);
+            for c in self.powers.iter().rev() {
+                slope = slope * t + value;
+                value = value * t + c;
+            }
+            if (value > 0.0) == rising {
+                high = t;
+            } else {
+                low = t;
+            }
+            let newton = t - value / slope;
+            let step = (newton - t).abs();
+            if step <= CLOSE && newton >= low - CLOSE && newton <= high + CLOSE {
+                return newton.clamp(interval.low, interval.low + interval.width);
+            }
+            let inside = newton > low && newton < high;
+            let next = if inside && step <= 0.5 * last { newton } else { 0.5 * (low + high) };
+            last = (next - t).abs();
+            if last <= 4.0 * f64::EPSILON {
+                return next;
+            }
+            t = next;
+        }
+        t
+    }
+}
+
+/// Whether the coefficients change their sign exactly once, whatever the rounding. Then there is exactly one
+/// root, by Descartes' rule of signs in Bernstein's basis.
+fn changes_sign_once(b: &[f64; COEFFICIENTS], noise: f64) -> bool {
+    let sign = if b[HALF] > 0.0 { 1.0 } else { -1.0 };
+    let before = b.iter().take_while(|&&x| sign * x < -noise).count();
+    let after = b.iter().rev().take_while(|&&x| sign * x > noise).count();
+    // Of two neighbours without a certain sign, each could have that of the other's side.
+    before > 0 && after > 0 && before + after >= HALF
 }
 
 /// Whether the second derivative keeps its sign on the interval.
@@ -280,43 +334,31 @@ fn is_convex_or_concave(b: &[f64; COEFFICIENTS]) -> bool {
     b.windows(3).all(|w| second(w) > 0.0) || b.windows(3).all(|w| second(w) < 0.0)
 }
 
-/// The Bernstein coefficients on the two halves of an interval, by de Casteljau's algorithm.
-fn halves(b: &[f64; COEFFICIENTS]) -> ([f64; COEFFICIENTS], [f64; COEFFICIENTS]) {
-    let (mut left, mut right) = ([0.0; COEFFICIENTS], *b);
-    for (i, left) in left.iter_mut().enumerate() {
-        *left = right[0];
-        for j in 0..HALF - i {
-            right[j] = 0.5 * (right[j] + right[j + 1]);
+impl Interval {
+    /// The two halves, by de Casteljau's algorithm.
+    fn halves(&self) -> [Self; 2] {
+        let (mut left, mut right) = ([0.0; COEFFICIENTS], self.bernstein);
+        for (i, left) in left.iter_mut().enumerate() {
+            *left = right[0];
+            for j in 0..HALF - i {
+                right[j] = 0.5 * (right[j] + right[j + 1]);
+            }
         }
+        let width = 0.5 * self.width;
+        [
+            Self { bernstein: left, low: self.low, width },
+            Self { bernstein: right, low: self.low + width, width },
+        ]
     }
-    (left, right)
-}
 
-/// The root of a polynomial on an interval where it is monotonic and changes sign, by Newton's method.
-/// Steps that leave the interval are replaced by halving it.
-fn bracketed(powers: &[f64; COEFFICIENTS], [mut low, mut high]: [f64; 2], rising: bool) -> f64 {
-    /// With this number of steps, halving alone reaches the last bit.
-    const STEPS: usize = 64;
-    let mut t = 0.5 * (low + high);
-    for _ in 0..STEPS {
-        let (mut value, mut slope) = (0.0, 0.0);
-        for c in powers.iter().rev() {
-            slope = slope * t + value;
-            value = value * t + c;
-        }
-        if (value > 0.0) == rising {
-            high = t;
-        } else {
-            low = t;
-        }
-        let newton = t - value / slope;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 4.0 * f64::EPSILON {
-            return next;
-        }
-        t = next;
+    /// Where the polygon of the coefficients changes its sign for the first time.
+    fn polygon_root(&self, rising: bool) -> f64 {
+        let b = &self.bernstein;
+        let side = b.iter().take_while(|&&x| (x > 0.0) != rising).count().clamp(1, HALF);
+        let (before, after) = (b[side - 1], b[side]);
+        let share = (side as f64 - 1.0 + before / (before - after)) / HALF as f64;
+        self.low + self.width * share.clamp(0.0, 1.0)
     }
-    t
 }
 
 #[cfg(test)]

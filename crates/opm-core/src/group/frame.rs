@@ -2,7 +2,7 @@
 
 use super::subgroup::LocalTwist;
 use super::{Displacement, SubspaceKind};
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
 /// A subspace with the frame that its chains and its task coordinates use.
 ///
@@ -67,14 +67,13 @@ impl Subspace {
     /// Converts a displacement of this subspace to base coordinates.
     pub fn isometry(&self, displacement: &Displacement) -> Isometry3<f64> {
         let (rotation, translation) = displacement.rotation_and_translation();
-        let axes =
-            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(self.axes));
-        let frame = Isometry3::from_parts(Translation3::from(self.origin), axes);
-        let local = Isometry3::from_parts(
-            Translation3::from(translation),
-            UnitQuaternion::from_rotation_matrix(&rotation),
-        );
-        frame * local * frame.inverse()
+        // In other directions, a rotation is about the same axis by the same angle.
+        let local = UnitQuaternion::from_rotation_matrix(&rotation).into_inner();
+        let turned = Quaternion::from_parts(local.scalar(), self.axes * local.vector());
+        let rotation = UnitQuaternion::new_unchecked(turned);
+        let origin = self.origin.coords;
+        let translation = origin + self.axes * translation - rotation * origin;
+        Isometry3::from_parts(translation.into(), rotation)
     }
 
     /// Converts a twist of this subspace to base directions: the angular velocity, and the velocity of the

@@ -186,7 +186,8 @@ impl Manipulator {
         }
     }
 
-    /// Writes a leg's solution to `out`, with angles within π of home.
+    /// Writes a leg's solution to `out`, with angles within π of home. Values that `out` holds already, for the same
+    /// lower section and τ, are not computed again.
     pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
         let mut angles = Angles::new(AngleOf::Leg(number));
         out.legs[number] = *solution;

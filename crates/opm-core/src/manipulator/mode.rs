@@ -155,6 +155,17 @@ impl ModeLayout {
         })
     }
 
+    /// The mode with these branches of one leg, and plus for everything else.
+    #[inline]
+    pub fn leg_mode(&self, leg: usize, branches: LegBranches) -> Mode {
+        let sign = |bit: Option<u32>, branch: Branch| match (bit, branch) {
+            (Some(bit), Branch::Minus) => 1 << bit,
+            _ => 0,
+        };
+        let choices = &self.legs[leg];
+        Mode(sign(choices.lower, branches.lower) | sign(choices.upper, branches.upper))
+    }
+
     /// The number of a leg's combination of choices in a mode, in the order of [`ModeLayout::leg_modes`].
     #[inline]
     pub fn of_leg(&self, mode: Mode, leg: usize) -> usize {

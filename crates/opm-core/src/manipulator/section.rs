@@ -168,6 +168,11 @@ impl CompiledSection {
         self.partial.is_none() && self.chain.has_choice()
     }
 
+    /// The branches on which a target may have a solution.
+    pub fn branches(&self) -> &'static [Branch] {
+        if self.has_choice() { &Branch::BOTH } else { &Branch::BOTH[..1] }
+    }
+
     /// Whether a joint of the chain is held when the inputs are locked: it is actuated, or locked always.
     #[inline]
     pub fn is_held(&self, joint: usize) -> bool {

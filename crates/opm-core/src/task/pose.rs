@@ -6,7 +6,7 @@ use crate::group::{
     PlanarMotion, SpatialMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::numeric::Quantity;
-use crate::numeric::angle::{near, sin_cos};
+use crate::numeric::angle::{atan2, near, sin_cos};
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
@@ -23,7 +23,20 @@ impl Task {
     /// If `v` or `b` is a displacement of another kind of subspace.
     #[doc(hidden)]
     pub fn pose(&self, v: &Displacement, b: &Displacement, rise: f64) -> Vec<f64> {
-        let mut pose: Vec<f64> = Vec::with_capacity(self.coordinates.len());
+        let mut pose = Vec::with_capacity(self.coordinates.len());
+        self.write_pose(v, b, rise, &mut pose);
+        pose
+    }
+
+    /// Writes the coordinates to a buffer: see [`Task::pose`].
+    pub(crate) fn write_pose(
+        &self,
+        v: &Displacement,
+        b: &Displacement,
+        rise: f64,
+        pose: &mut Vec<f64>,
+    ) {
+        pose.clear();
         // The height is put in its place at last: until then, the coordinates after it are one place before theirs.
         let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
         let number = |i: usize| i + usize::from(i >= height);
@@ -111,7 +124,6 @@ impl Task {
         if height < self.coordinates.len() {
             pose.insert(height, self.coordinates[height].home + rise);
         }
-        pose
     }
 
     /// The Euler angles of a displacement of a sphere from home, the triple nearest to the values at home.
@@ -182,20 +194,20 @@ pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
 
 /// The angles `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`: of all triples, the one nearest to `home`.
 fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
-    let sine = r[(0, 2)].hypot(r[(1, 2)]);
+    let sine = (r[(0, 2)] * r[(0, 2)] + r[(1, 2)] * r[(1, 2)]).sqrt();
     if sine < POLE {
         // Only zeta ± psi is known.
         let (up, xi) = if r[(2, 2)] > 0.0 { (1.0, 0.0) } else { (-1.0, std::f64::consts::PI) };
-        let sum = near((up * r[(1, 0)]).atan2(up * r[(0, 0)]), home[0] + up * home[2]);
+        let sum = near(atan2(up * r[(1, 0)], up * r[(0, 0)]), home[0] + up * home[2]);
         let extra = 0.5 * (sum - home[0] - up * home[2]);
         return [home[0] + extra, xi, home[2] + up * extra];
     }
-    let zeta = r[(1, 2)].atan2(r[(0, 2)]);
+    let zeta = atan2(r[(1, 2)], r[(0, 2)]);
     // Near the singularity the error of zeta is the rounding over the sine, but zeta ± psi is accurate: psi
     // is computed from what this zeta leaves of the rotation.
     let (sin, cos) = sin_cos(zeta);
-    let psi = (cos * r[(1, 0)] - sin * r[(0, 0)]).atan2(cos * r[(1, 1)] - sin * r[(0, 1)]);
-    let plain = [zeta, sine.atan2(r[(2, 2)]), psi];
+    let psi = atan2(cos * r[(1, 0)] - sin * r[(0, 0)], cos * r[(1, 1)] - sin * r[(0, 1)]);
+    let plain = [zeta, atan2(sine, r[(2, 2)]), psi];
     let half = std::f64::consts::PI;
     let other = [plain[0] + half, -plain[1], plain[2] + half];
     let placed =

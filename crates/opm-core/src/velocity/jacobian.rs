@@ -182,11 +182,11 @@ impl Jacobians {
 
     /// The components of the section twist, in the order of the columns: for each, the twists of the upper
     /// and of the lower section, in the sections' frames. A height, which has the last column, is not among them.
-    pub(crate) fn directions(&self) -> Vec<[LocalTwist; 2]> {
+    pub(crate) fn directions(&self) -> impl Iterator<Item = [LocalTwist; 2]> + '_ {
         let zero = LocalTwist::zeros();
         let [n_upper, n_lower] = self.basis.counts;
-        let upper = self.basis.upper[..n_upper].iter().map(|twist| [*twist, zero]);
-        upper.chain(self.basis.lower[..n_lower].iter().map(|twist| [zero, *twist])).collect()
+        let upper = self.basis.upper[..n_upper].iter().map(move |twist| [*twist, zero]);
+        upper.chain(self.basis.lower[..n_lower].iter().map(move |twist| [zero, *twist]))
     }
 }
 
@@ -248,6 +248,16 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
+        let regular = self.differentiate_joints(at, out);
+        self.pose_columns(at, out);
+        self.platform_columns(at, out);
+        self.independent_columns(out);
+        Ok(regular)
+    }
+
+    /// Computes the rates of the joints alone, at a pose that is in reach: all but [`Jacobians::pose`] and
+    /// [`Jacobians::platform`]. Returns `false` if some joints have no rates.
+    pub(crate) fn differentiate_joints(&self, at: &Solution, out: &mut Jacobians) -> bool {
         out.singular.clear();
         out.v = at.solved.v;
         let task = self.task();
@@ -282,10 +292,7 @@ impl Manipulator {
                 self.lean_column(number, lean, &moved, out);
             }
         }
-        self.pose_columns(at, out);
-        self.platform_columns(at, out);
-        self.independent_columns(out);
-        Ok(out.singular.is_empty())
+        out.singular.is_empty()
     }
 
     /// Computes the rates of a leg's joints for a unit rate of the height, where its lift leans: the other joints of the

@@ -86,14 +86,18 @@ impl Dependent {
 
     /// The independent coordinates among all of a pose. Of the two triples of Euler angles of an orientation it takes
     /// the one in the branch at home.
-    pub fn independent_of(&self, manipulator: &Manipulator, all: &[f64]) -> Vec<f64> {
-        let mut pose = all.to_vec();
+    pub fn write_independent(
+        &self,
+        manipulator: &Manipulator,
+        all: &mut [f64],
+        pose: &mut Vec<f64>,
+    ) {
         for step in &self.steps {
             if let Closed::Joint(joint) = &step.solution {
-                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), &mut pose);
+                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), all);
             }
         }
-        self.independent.iter().map(|&i| pose[i]).collect()
+        pose.extend(self.independent.iter().map(|&i| all[i]));
     }
 }
 
@@ -140,9 +144,17 @@ impl Manipulator {
 
     /// The independent coordinates among all of a pose.
     pub(crate) fn independent_of(&self, all: &[f64]) -> Vec<f64> {
+        let (mut all, mut pose) = (all.to_vec(), Vec::with_capacity(self.independent.len()));
+        self.write_independent(&mut all, &mut pose);
+        pose
+    }
+
+    /// Writes them to a buffer. In `all`, they replace others of the same displacement.
+    pub(crate) fn write_independent(&self, all: &mut [f64], pose: &mut Vec<f64>) {
+        pose.clear();
         match &self.dependent {
-            None => all.to_vec(),
-            Some(dependent) => dependent.independent_of(self, all),
+            None => pose.extend_from_slice(all),
+            Some(dependent) => dependent.write_independent(self, all, pose),
         }
     }
 

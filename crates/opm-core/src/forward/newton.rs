@@ -1,0 +1,338 @@
+//! The steps of Newton's method near a pose, and its buffers.
+
+use super::accept::Place;
+use super::near::{NotFound, Stop};
+use super::{Assembly, NearError};
+use crate::group::LocalTwist;
+use crate::manipulator::{Manipulator, Mode, PoseError, Products, Solution};
+use crate::mechanism::joint::JointKind;
+use crate::numeric::Quantity;
+use crate::numeric::least_squares::{LeastSquares, MOST};
+use crate::velocity::Jacobians;
+use std::f64::consts::TAU;
+
+/// The largest number of steps. Newton's method takes three from a near start, and about six from a good one.
+const STEPS: u32 = 60;
+
+/// The longest step, in radians or shares of the size. The linear terms are not useful further away.
+const LONGEST: f64 = 0.5;
+
+/// How often a step is halved that leads out of reach or away from the solution.
+const HALVINGS: u32 = 20;
+
+/// The joints have their values to within this, in radians and shares of the size. From there on, steps are
+/// taken only as long as they reduce the error, and with the last Jacobian: another one would not be better.
+const ARRIVED: f64 = 1e-11;
+
+/// The joints have their values to within this, in radians and shares of the size, which is their rounding: no step
+/// is taken.
+const EXACT: f64 = 1e-15;
+
+/// What is left of a column of the Jacobian counts as zero below this share of the longest. Lengths are over the
+/// size.
+const SINGULAR: f64 = 1e-9;
+
+/// The buffer of [`Manipulator::forward_near_into`], with which nothing is allocated where an assembly is found. It
+/// is made by [`Manipulator::near_buffer`].
+#[derive(Clone, Debug)]
+pub struct NearBuffer {
+    /// The displacements of the actuated joints from home, radians and metres.
+    pub(super) displacements: Vec<f64>,
+    /// For every actuated coordinate, whether it is an angle modulo 2π.
+    modulo: Vec<bool>,
+    /// The present pose, independent task coordinates.
+    pose: Vec<f64>,
+    /// The solution at the present pose.
+    solution: Solution,
+    /// The pose that a step leads to, its coordinates with dependent ones, and the solution there.
+    next: Vec<f64>,
+    all: Vec<f64>,
+    tried: Solution,
+    /// The actuated joints' wanted values minus their present ones, in radians and shares of the size.
+    error: Vec<f64>,
+    /// The same after a step.
+    error_after: Vec<f64>,
+    /// The right side of the linear equations: the error, and zeros for the joints that are locked.
+    right: Vec<f64>,
+    jacobians: Jacobians,
+    /// The unit of each component of a step: the size where it is a length, otherwise one.
+    units: [f64; MOST],
+    system: LeastSquares,
+    products: Products,
+    /// The assembly that was found last.
+    pub(super) assembly: Assembly,
+}
+
+impl NearBuffer {
+    /// The report of a run without an assembly.
+    fn ended(&self, why: Stop, steps: u32, off: f64) -> NotFound {
+        NotFound { why, steps, off, pose: self.pose.clone() }
+    }
+}
+
+impl Manipulator {
+    /// A buffer for [`Manipulator::forward_near_into`].
+    pub fn near_buffer(&self) -> NearBuffer {
+        let jacobians = self.jacobians();
+        let (actuated, locked) = (self.actuated().len(), jacobians.locked.nrows());
+        let [independent, all] =
+            [self.task_coordinates().len(), jacobians.joints.ncols()].map(Vec::with_capacity);
+        NearBuffer {
+            displacements: Vec::with_capacity(actuated),
+            modulo: self.modulo_revolutions(),
+            pose: self.home_pose(),
+            solution: self.solution(),
+            next: independent,
+            all,
+            tried: self.solution(),
+            error: vec![0.0; actuated],
+            error_after: vec![0.0; actuated],
+            right: vec![0.0; actuated + locked],
+            units: self.units(&jacobians),
+            system: LeastSquares::new(actuated + locked, jacobians.joints.ncols()),
+            jacobians,
+            products: self.closure.products(),
+            assembly: Assembly::buffer(self),
+        }
+    }
+
+    /// The unit of each component of the section twist: the size where it is a length, otherwise one.
+    fn units(&self, jacobians: &Jacobians) -> [f64; MOST] {
+        let (lower, upper) = (self.task().lower.kind, self.task().upper.kind);
+        let is_length =
+            |[u, l]: [LocalTwist; 2]| upper.is_translation(&u) || lower.is_translation(&l);
+        let lengths = jacobians.directions().map(is_length);
+        let height = self.task().height.is_some().then_some(true);
+        let mut units = [1.0; MOST];
+        for (unit, length) in units.iter_mut().zip(lengths.chain(height)) {
+            if length {
+                *unit = self.closure.size;
+            }
+        }
+        units
+    }
+
+    /// For every actuated coordinate, whether it is an angle modulo 2π.
+    fn modulo_revolutions(&self) -> Vec<bool> {
+        let rotates = |kind: JointKind| match kind {
+            JointKind::Revolute | JointKind::Universal { .. } | JointKind::Cylindrical => true,
+            JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Spherical => false,
+        };
+        let joints = self.mechanism().joints().filter(|joint| joint.actuated);
+        joints
+            .flat_map(|joint| {
+                let rotates = rotates(joint.kind);
+                joint.coordinates.iter().map(move |c| rotates && c.quantity == Quantity::Angle)
+            })
+            .collect()
+    }
+}
+
+/// Newton's method for one set of actuated joints.
+pub(super) struct Newton<'a> {
+    pub manipulator: &'a Manipulator,
+    /// The values that the actuated joints should have, radians and metres.
+    pub wanted: &'a [f64],
+    pub mode: Mode,
+}
+
+impl Newton<'_> {
+    /// Starts at a pose, takes steps until the joints have the wanted values, and writes the assembly to the buffer.
+    pub fn run(&self, start: &[f64], at: &mut NearBuffer) -> Result<(), NearError> {
+        let reached = self.manipulator.inverse(start, self.mode, &mut at.solution)?.is_some();
+        at.pose.clear();
+        at.pose.extend_from_slice(start);
+        if !reached {
+            let why = Stop::OutOfReach(at.solution.unreachable[0]);
+            return Err(at.ended(why, 0, f64::INFINITY).into());
+        }
+        self.write_error(&at.solution, &at.modulo, &mut at.error);
+        let mut steps = 0;
+        while steps < STEPS && most(&at.error) > EXACT {
+            let arrived = most(&at.error) <= ARRIVED;
+            let regular = (arrived && steps > 0) || self.linearise(at);
+            match if regular { self.step(at) } else { Err(Stop::Singular) } {
+                Ok(()) => steps += 1,
+                Err(_) if arrived => break,
+                Err(why) => return Err(at.ended(why, steps, most(&at.error)).into()),
+            }
+        }
+        let off = most(&at.error);
+        // Not a number has not arrived, either.
+        if !(off <= ARRIVED) {
+            return Err(at.ended(Stop::Steps, steps, off).into());
+        }
+        if steps == 0 {
+            self.restate(at)?;
+        }
+        self.assemble(at);
+        let residual = at.assembly.residual;
+        match residual > self.manipulator.largest_residual() {
+            true => Err(at.ended(Stop::Stalled, steps, residual).into()),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes the actuated joints' wanted values minus those of a solution, in radians and shares of the size.
+    fn write_error(&self, solution: &Solution, modulo: &[bool], error: &mut [f64]) {
+        let m = self.manipulator;
+        let joints = m.actuated().iter().zip(self.wanted).zip(modulo);
+        for (error, ((&coordinate, wanted), modulo)) in error.iter_mut().zip(joints) {
+            let off = wanted - solution.joints[coordinate];
+            *error = match m.coordinates()[coordinate].quantity {
+                Quantity::Angle if *modulo => off - TAU * (off / TAU).round(),
+                Quantity::Angle => off,
+                Quantity::Length => off / m.closure.size,
+            };
+        }
+    }
+
+    /// Decomposes the Jacobian of the actuated joints at the present pose; `false` if it is singular. In rows and
+    /// columns, lengths are divided by the size. Locked joints stay where they are.
+    fn linearise(&self, at: &mut NearBuffer) -> bool {
+        let m = self.manipulator;
+        let NearBuffer { solution, jacobians, system, units, .. } = at;
+        if !m.differentiate_joints(solution, jacobians) {
+            return false;
+        }
+        let actuated = m.actuated().len();
+        for (row, &coordinate) in m.actuated().iter().enumerate() {
+            let unit = match m.coordinates()[coordinate].quantity {
+                Quantity::Angle => 1.0,
+                Quantity::Length => m.closure.size,
+            };
+            let rates = jacobians.joints.row(coordinate);
+            system.write_row(row, rates.iter().zip(&*units).map(|(rate, by)| rate * by / unit));
+        }
+        for (row, rates) in jacobians.locked.row_iter().enumerate() {
+            let rates = rates.iter().zip(&*units).map(|(rate, by)| rate * by);
+            system.write_row(actuated + row, rates);
+        }
+        system.decompose(SINGULAR)
+    }
+
+    /// Takes one step with the last Jacobian, shortened until it reduces the error.
+    fn step(&self, at: &mut NearBuffer) -> Result<(), Stop> {
+        at.right.fill(0.0);
+        at.right[..at.error.len()].copy_from_slice(&at.error);
+        let step = at.system.solve(&mut at.right);
+        let longest = most(&step);
+        let share = (LONGEST / longest).min(1.0);
+        let mut stop = Stop::Stalled;
+        for halving in 0..HALVINGS {
+            let scale = share * 0.5_f64.powi(halving as i32);
+            match self.try_step(&step, scale, at) {
+                Ok(()) => {
+                    self.write_error(&at.tried, &at.modulo, &mut at.error_after);
+                    if norm(&at.error_after) < norm(&at.error) {
+                        std::mem::swap(&mut at.solution, &mut at.tried);
+                        std::mem::swap(&mut at.error, &mut at.error_after);
+                        std::mem::swap(&mut at.pose, &mut at.next);
+                        return Ok(());
+                    }
+                    stop = Stop::Stalled;
+                }
+                Err(why) => stop = why,
+            }
+            if most(&at.error) <= ARRIVED {
+                break;
+            }
+        }
+        Err(stop)
+    }
+
+    /// Solves the pose that a share of a step leads to.
+    fn try_step(&self, step: &[f64; MOST], scale: f64, at: &mut NearBuffer) -> Result<(), Stop> {
+        let m = self.manipulator;
+        let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
+        let [mut upper_twist, mut lower_twist] = [LocalTwist::zeros(); 2];
+        let mut count = 0;
+        for [u, l] in at.jacobians.directions() {
+            let component = step[count] * at.units[count] * scale;
+            upper_twist += u * component;
+            lower_twist += l * component;
+            count += 1;
+        }
+        let along =
+            if m.task().height.is_some() { step[count] * at.units[count] * scale } else { 0.0 };
+        // The twists are ḃ b⁻¹ and v⁻¹ v̇.
+        let (v, b) = (at.solution.solved.v, at.solution.solved.b);
+        let moved_b = upper.first_order(&upper_twist).after(&b);
+        let moved_v = v.after(&lower.first_order(&lower_twist));
+        let rise = m.task().rise(&at.solution.solved.pose) + along;
+        m.task().write_pose(&moved_v, &moved_b, rise, &mut at.all);
+        m.write_independent(&mut at.all, &mut at.next);
+        match m.inverse(&at.next, self.mode, &mut at.tried).map(|found| found.is_some()) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(Stop::OutOfReach(at.tried.unreachable[0])),
+            Err(_) => Err(Stop::Stalled),
+        }
+    }
+
+    /// Solves the present pose again with its coordinates as a step would give them: angles within π of home.
+    fn restate(&self, at: &mut NearBuffer) -> Result<(), PoseError> {
+        let m = self.manipulator;
+        let (v, b) = (at.solution.solved.v, at.solution.solved.b);
+        let rise = m.task().rise(&at.solution.solved.pose);
+        m.task().write_pose(&v, &b, rise, &mut at.all);
+        m.write_independent(&mut at.all, &mut at.pose);
+        m.inverse(&at.pose, self.mode, &mut at.solution)?;
+        Ok(())
+    }
+
+    /// Writes the assembly at the present pose.
+    fn assemble(&self, at: &mut NearBuffer) {
+        let m = self.manipulator;
+        let NearBuffer { displacements, pose, solution, products, assembly, .. } = at;
+        let target = solution.displacement(m);
+        let place = Place { pose, target: &target, mode: self.mode };
+        m.write_assembly(place, displacements, solution, products, assembly);
+    }
+}
+
+/// The largest absolute value; not a number if one is not.
+fn most(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, x| if x.abs() <= most { most } else { x.abs() })
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each step leaves the square of the error before it, times a constant of the mechanism.
+    #[test]
+    fn convergence_is_quadratic() {
+        let mut squared = 0;
+        for name in ["plano-spherical-5dof", "translational-planar-4dof", "planar-planar-5dof"] {
+            let m = Manipulator::example(name).unwrap();
+            let home = m.task().home();
+            for sign in [-1.0, 1.0] {
+                let aim: Vec<f64> = home.iter().map(|q| q + 0.02 * sign).collect();
+                let mut solution = m.solution();
+                assert!(m.inverse(&aim, m.home_mode(), &mut solution).unwrap().is_some());
+                let wanted: Vec<f64> = m.actuated().iter().map(|&i| solution.joints[i]).collect();
+                let mut at = m.near_buffer();
+                assert!(m.inverse(&home, m.home_mode(), &mut at.solution).unwrap().is_some());
+                let newton = Newton { manipulator: &m, wanted: &wanted, mode: m.home_mode() };
+                newton.write_error(&at.solution, &at.modulo, &mut at.error);
+                let mut before = most(&at.error);
+                while before > 1e-12 {
+                    assert!(newton.linearise(&mut at));
+                    newton.step(&mut at).unwrap();
+                    let after = most(&at.error);
+                    assert!(
+                        after < 20.0 * before * before + 1e-14,
+                        "{name}: {before:e}, {after:e}"
+                    );
+                    squared += usize::from(after > 1e-13);
+                    before = after;
+                }
+            }
+        }
+        assert!(squared > 6, "{squared} steps above rounding");
+    }
+}
