@@ -158,8 +158,7 @@ impl Newton<'_> {
             }
         }
         let off = most(&at.error);
-        // Not a number has not arrived, either.
-        if !(off <= ARRIVED) {
+        if off.is_nan() || off > ARRIVED {
             return Err(at.ended(Stop::Steps, steps, off).into());
         }
         if steps == 0 {

@@ -27,7 +27,7 @@ impl LeastSquares {
     /// Writes a row of the matrix.
     #[inline]
     pub fn write_row(&mut self, row: usize, values: impl Iterator<Item = f64>) {
-        let entries = self.entries[row..].iter_mut().step_by(self.rows);
+        let entries = self.entries.iter_mut().skip(row).step_by(self.rows);
         entries.zip(values).for_each(|(entry, value)| *entry = value);
     }
 
@@ -47,7 +47,6 @@ impl LeastSquares {
             if k == 0 {
                 longest = length;
             }
-            // Not a number is not longer, either.
             if length.is_nan() || length <= tolerance * longest {
                 return false;
             }
@@ -67,9 +66,9 @@ impl LeastSquares {
     pub fn solve(&self, right: &mut [f64]) -> [f64; MOST] {
         let n = self.columns;
         let mut found = [0.0; MOST];
-        for k in 0..n {
-            found[k] = dot(self.column(k), right);
-            subtract(right, found[k], self.column(k));
+        for (k, found) in found[..n].iter_mut().enumerate() {
+            *found = dot(self.column(k), right);
+            subtract(right, *found, self.column(k));
         }
         for k in (0..n).rev() {
             let known: f64 = (k + 1..n).map(|j| self.upper[k][j] * found[j]).sum();
