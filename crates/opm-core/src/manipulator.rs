@@ -352,7 +352,7 @@ impl Manipulator {
         let (v, b) = self.task.sections(&home);
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
-            match self.legs[number].solve(&self.task, [&v, &b], 0.0, branches, 0.0) {
+            match self.legs[number].solve_seldom(&self.task, [&v, &b], 0.0, branches, 0.0) {
                 Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
                 Err(_) => f64::INFINITY,
             }

@@ -114,8 +114,9 @@ impl Search<'_> {
         let own = lift.rise(self.displacements[actuated]);
         let branches = m.leg_modes(leg).map(|mode| m.branches(mode, leg));
         // The chains do not depend on the height: it is zero here.
-        let solved = branches
-            .filter_map(|branches| self.legs[leg].solve(m.task(), [v, b], 0.0, branches, 0.0).ok());
+        let solved = branches.filter_map(|branches| {
+            self.legs[leg].solve_seldom(m.task(), [v, b], 0.0, branches, 0.0).ok()
+        });
         let mut found: Vec<f64> =
             solved.map(|solution| own - m.task().rise_of_leg(0.0, solution.tau)).collect();
         if found.is_empty() {

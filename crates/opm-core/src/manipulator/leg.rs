@@ -393,6 +393,19 @@ impl CompiledLeg {
         }
     }
 
+    /// The same for work that is done seldom. It is not inlined, so that there is one copy of all chains for it.
+    #[inline(never)]
+    pub fn solve_seldom(
+        &self,
+        task: &Task,
+        pose: [&Displacement; 2],
+        rise: f64,
+        branches: LegBranches,
+        near: f64,
+    ) -> Result<LegSolution, (Section, ReachDeficit)> {
+        self.solve(task, pose, rise, branches, near)
+    }
+
     /// The same for a leg whose lift leans.
     #[cold]
     #[inline(never)]
@@ -408,7 +421,7 @@ impl CompiledLeg {
             true => task.rise_of_leg(rise, self.first_tau([v, b], branches)?),
             false => rise,
         };
-        self.at(rise)?.solve(task, [v, b], rise, branches, near)
+        self.at(rise)?.solve_seldom(task, [v, b], rise, branches, near)
     }
 
     /// The displacement along the intersection motion, a translation, from the section that is solved first. It does not

@@ -85,13 +85,24 @@ impl CompiledSection {
     ) -> Result<(), ReachDeficit> {
         match (&self.partial, &self.offset) {
             (None, None) => return self.chain.solve(target, branch, out),
-            (None, Some(offset)) => {
-                let found = self.chain.inverse(&target.after(offset), branch)?;
-                *out = self.with_imaginary(found);
-            }
-            (Some(partial), _) => *out = self.with_imaginary(partial.inverse(target)),
+            _ => *out = self.inverse_otherwise(target, branch)?,
         }
         Ok(())
+    }
+
+    /// The same for a section that constrains the platform or has an offset. It is not inlined: every caller of
+    /// [`Self::solve`] would have a second copy of all chains.
+    #[inline(never)]
+    fn inverse_otherwise(
+        &self,
+        target: &Displacement,
+        branch: Branch,
+    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+        let found = match &self.partial {
+            Some(partial) => partial.inverse(target),
+            None => self.chain.inverse(&self.of_chain(target), branch)?,
+        };
+        Ok(self.with_imaginary(found))
     }
 
     /// The displacements of the section's joints from those of its chain's: of an inclined imaginary joint, the chain has
@@ -126,7 +137,7 @@ impl CompiledSection {
     ) -> Result<JointDisplacement, ReachDeficit> {
         match (&self.partial, &self.offset) {
             (None, None) => self.chain.first(target, branch),
-            _ => Ok(self.inverse(target, branch)?[0]),
+            _ => Ok(self.inverse_otherwise(target, branch)?[0]),
         }
     }
 
