@@ -1,8 +1,11 @@
-//! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes.
+//! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes: a large grid,
+//! then the grid that is fitted to each shipped mechanism.
 
 use opm_benches::{Contender, compare};
+use opm_core::mechanism::examples::EXAMPLES;
 use opm_mcap::workspace::{CHUNK_BYTES, OVERVIEW_TOPIC, SLICES_TOPIC};
 use opm_mcap::{COMPRESSION_LEVEL, ReadError, read};
+use serde_json::Value;
 use std::fs;
 use std::hint::black_box;
 use std::path::Path;
@@ -13,47 +16,97 @@ const MECHANISM: &str = "plano-spherical-5dof";
 /// Twenty million poses of it are in reach; many more than an overview has.
 const GRID: [&str; 5] =
     ["x=-0.15:0.15:201", "y=-0.15:0.15:201", "zeta=-0.4:0.4:9", "xi=-0.4:0.4:9", "psi=-0.4:0.4:9"];
+
 fn main() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
     let [mcap, ply] = ["points.mcap", "points.ply"].map(path);
-    let run = |threads: &str, output: Option<&str>| {
+    large(&mcap, &ply);
+    println!();
+    shipped(&mcap);
+}
+
+/// A run of the program.
+struct Run<'a> {
+    mechanism: &'a str,
+    grid: &'a [String],
+}
+
+impl Run<'_> {
+    fn command(&self, threads: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_opm"));
-        command.args(["workspace", MECHANISM, "--threads", threads, "--quiet"]);
-        command.args(GRID.iter().flat_map(|axis| ["--grid", axis]));
+        command.args(["workspace", self.mechanism, "--threads", threads, "--quiet"]);
+        command.args(self.grid.iter().flat_map(|axis| ["--grid", axis]));
+        command
+    }
+
+    fn perform(&self, threads: &str, output: Option<&str>) {
+        let mut command = self.command(threads);
         command.args(output.iter().flat_map(|output| ["-o", output]));
         let status = command.stdout(Stdio::null()).status();
         assert!(status.expect("the program starts").success());
-    };
-    run("2", Some(&mcap));
-    // What is in the recording: an overview, then all points.
-    let mut bytes = Vec::new();
-    let recording = read(Path::new(&mcap), |message| {
-        bytes.extend_from_slice(message.data);
-        Ok::<(), ReadError>(())
-    });
-    let recording = recording.expect("what was written");
-    let [points, overview] = [SLICES_TOPIC, OVERVIEW_TOPIC]
-        .map(|topic| recording.topic(topic).and_then(|topic| topic.points).expect("points"));
-    let stride = bytes.len() as u64 / (points + overview);
-    let recorded = fs::metadata(&mcap).expect("what was written").len();
+    }
 
-    let mut compressor = Compressor::new(COMPRESSION_LEVEL as i32).expect("a level of zstd");
-    let mut copy = vec![0; bytes.len()];
-    let timings = compare(vec![
-        Contender::new("recorded, one thread", points, || run("1", Some(&mcap))),
-        Contender::new("recorded, two threads", points, || run("2", Some(&mcap))),
-        Contender::new("as PLY, not compressed, every coordinate, one thread", points, || {
-            run("1", Some(&ply));
-        }),
-        Contender::new("only counted, one thread", points, || run("1", None)),
-        Contender::new("its bytes compressed, by zstd alone", points, || {
-            for chunk in bytes.chunks(CHUNK_BYTES as usize) {
+    /// The grid that the program fits.
+    fn fitted(&self) -> Option<Vec<String>> {
+        let output = self.command("1").args(["--format", "json"]).output().expect("it starts");
+        let answer: Value = serde_json::from_slice(&output.stdout).ok()?;
+        let axis = |(name, axis): (&String, &Value)| {
+            format!("{name}={}:{}:{}", axis["min"], axis["max"], axis["count"])
+        };
+        Some(answer["grid"].as_object()?.iter().map(axis).collect())
+    }
+}
+
+/// What is in a recording: an overview, then all points.
+struct Content {
+    points: u64,
+    overview: u64,
+    bytes: Vec<u8>,
+}
+
+impl Content {
+    fn of(mcap: &str) -> Self {
+        let mut bytes = Vec::new();
+        let recording = read(Path::new(mcap), |message| {
+            bytes.extend_from_slice(message.data);
+            Ok::<(), ReadError>(())
+        });
+        let recording = recording.expect("what was written");
+        let [points, overview] = [SLICES_TOPIC, OVERVIEW_TOPIC]
+            .map(|topic| recording.topic(topic).and_then(|topic| topic.points).expect("points"));
+        Self { points, overview, bytes }
+    }
+
+    fn compressed(&self) -> impl FnMut() + '_ {
+        let mut compressor = Compressor::new(COMPRESSION_LEVEL as i32).expect("a level of zstd");
+        move || {
+            for chunk in self.bytes.chunks(CHUNK_BYTES as usize) {
                 black_box(compressor.compress(chunk)).expect("room for a chunk");
             }
+        }
+    }
+}
+
+fn large(mcap: &str, ply: &str) {
+    let grid = GRID.map(str::to_owned);
+    let run = Run { mechanism: MECHANISM, grid: &grid };
+    run.perform("2", Some(mcap));
+    let content = Content::of(mcap);
+    let Content { points, overview, ref bytes } = content;
+    let stride = bytes.len() as u64 / (points + overview);
+    let recorded = fs::metadata(mcap).expect("what was written").len();
+    let mut copy = vec![0; bytes.len()];
+    let timings = compare(vec![
+        Contender::new("recorded, one thread", points, || run.perform("1", Some(mcap))),
+        Contender::new("recorded, two threads", points, || run.perform("2", Some(mcap))),
+        Contender::new("as PLY, not compressed, every coordinate, one thread", points, || {
+            run.perform("1", Some(ply));
         }),
+        Contender::new("only counted, one thread", points, || run.perform("1", None)),
+        Contender::new("its bytes compressed, by zstd alone", points, content.compressed()),
         Contender::new("its bytes copied", points, || {
-            copy.copy_from_slice(&bytes);
+            copy.copy_from_slice(bytes);
             black_box(&copy);
         }),
     ]);
@@ -68,4 +121,32 @@ fn main() {
         recorded as f64 / points as f64,
         100.0 * timings[4].ratio,
     );
+}
+
+/// Every shipped mechanism that has a workspace, on the grid that is fitted to it.
+fn shipped(mcap: &str) {
+    println!(
+        "| points of the fitted grid, one thread | points | million points a second | only counted, of \
+         its time | compressed by zstd alone, of its time |"
+    );
+    println!("|---|---:|---:|---:|---:|");
+    for mechanism in EXAMPLES.iter().map(|example| example.name) {
+        let Some(grid) = (Run { mechanism, grid: &[] }).fitted() else { continue };
+        let run = Run { mechanism, grid: &grid };
+        run.perform("2", Some(mcap));
+        let content = Content::of(mcap);
+        let points = content.points;
+        let timings = compare(vec![
+            Contender::new("recorded", points, || run.perform("1", Some(mcap))),
+            Contender::new("counted", points, || run.perform("1", None)),
+            Contender::new("compressed", points, content.compressed()),
+        ]);
+        let [recorded, counted, compressed] = &timings[..] else { unreachable!("three timings") };
+        println!(
+            "| {mechanism} | {points} | {:.1} | {:.2} | {:.2} |",
+            1e-6 / recorded.seconds,
+            counted.ratio,
+            compressed.ratio
+        );
+    }
 }

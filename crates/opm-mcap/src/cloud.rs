@@ -198,9 +198,7 @@ impl Packer {
             }
             let value = row[self.color_column];
             finite &= value.is_finite();
-            // A cast from float to integer saturates, which clamps at both ends.
-            let level = ((value - self.color_low) * self.color_scale) as usize;
-            rgba.copy_from_slice(&self.shades[level.min(SHADES - 1)]);
+            rgba.copy_from_slice(self.shade(value));
         }
         if finite { Ok(()) } else { Err(self.non_finite(rows, first / self.stride)) }
     }
@@ -221,13 +219,6 @@ impl Packer {
         if row.len() != columns || column.is_some_and(|column| column >= columns) {
             return Err(RecordError::Row { values: row.len(), columns });
         }
-        if column == Some(self.color_column) {
-            let mut row = row.to_vec();
-            return values.iter().try_for_each(|&value| {
-                row[self.color_column] = value;
-                self.pack(&row, points)
-            });
-        }
         let Some(count) = values.len().checked_sub(1) else { return Ok(()) };
         let (start, end) = (points.len(), points.len() + values.len() * self.stride);
         points.reserve(end - start);
@@ -239,12 +230,19 @@ impl Packer {
             points.extend_from_within(start..start + more * self.stride);
             there += more;
         }
-        let Some(column) = column.filter(|&column| column < self.floats) else { return Ok(()) };
+        let Some(column) = column else { return Ok(()) };
         let mut finite = true;
-        for (value, point) in values.iter().zip(points[start..].chunks_exact_mut(self.stride)) {
-            let single = *value as f32;
+        let packed = points[start..].chunks_exact_mut(self.stride);
+        for (&value, point) in values.iter().zip(packed) {
+            let single = value as f32;
             finite &= single.is_finite();
-            point[4 * column..4 * column + 4].copy_from_slice(&single.to_le_bytes());
+            let (floats, rgba) = point.split_at_mut(4 * self.floats);
+            if let Some(bytes) = floats.as_chunks_mut().0.get_mut(column) {
+                *bytes = single.to_le_bytes();
+            }
+            if column == self.color_column {
+                rgba.copy_from_slice(self.shade(value));
+            }
         }
         if finite {
             return Ok(());
@@ -253,6 +251,14 @@ impl Packer {
         let mut row = row.to_vec();
         row[column] = bad.copied().unwrap_or_default();
         Err(self.non_finite(&row, start / self.stride))
+    }
+
+    /// The colour of a value.
+    #[inline]
+    fn shade(&self, value: f64) -> &[u8; 4] {
+        // A cast from float to integer saturates, which clamps at both ends.
+        let level = ((value - self.color_low) * self.color_scale) as usize;
+        &self.shades[level.min(SHADES - 1)]
     }
 
     /// The error for the first value that is not a finite float32, in rows behind `before` points.

@@ -39,7 +39,12 @@ impl Progress {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn advance(&self, poses: u64) -> Result<(), Cancelled> {
+    /// Counts poses as decided.
+    ///
+    /// # Errors
+    /// The work was asked to stop.
+    #[doc(hidden)]
+    pub fn advance(&self, poses: u64) -> Result<(), Cancelled> {
         self.done.fetch_add(poses, Ordering::Relaxed);
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }

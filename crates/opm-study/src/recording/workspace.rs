@@ -5,7 +5,7 @@ use super::points::{Cloud, Packing, Points, Portion};
 use super::set::{SetCloud, pose_boundary};
 use super::{Attachment, check_mcap, create, partial, refuse_standard_output};
 use crate::analysis::Analysis;
-use crate::columns::{PointChoice, PointColumns};
+use crate::columns::{Column, PointChoice, PointColumns};
 use crate::error::{RequestError, SetPart, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::poses::PoseSource;
@@ -15,7 +15,7 @@ use opm_mcap::{
     CloudLayout, MAX_SLICES, PartialFile, RecordError, TableFormat, TableRecorder,
     WorkspaceRecorder, table_columns,
 };
-use opm_workspace::{Grid, Poses, Progress};
+use opm_workspace::{Grid, Hits, Poses, Progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -116,7 +116,8 @@ impl WorkspaceRecording {
         Ok(Self { path: path.to_owned(), file: create(path)?, format, points })
     }
 
-    /// The number of poses that are tested again to write it. Every pass visits the whole grid.
+    /// The number of poses that are tested again to write it. Every pass visits the whole grid. Where an overview has
+    /// every point, its pass counts twice, because it is that of the slices, too.
     pub fn work(&self, workspace: &Workspace) -> u64 {
         if !workspace.kind.is_of_poses() {
             return 0;
@@ -294,16 +295,54 @@ impl PoseRecording<'_> {
         if let Some(lines) = pose_boundary(grid, analysis, together, |pose| cloud.place(pose)) {
             recorder.boundary(lines).map_err(failed)?;
         }
-        let interrupted = |error| self.interrupted(error);
+        let each_point = |write: &mut (dyn FnMut(Portion) -> Result<(), StudyError> + Send)| {
+            let made = || Points::new(cloud, &columns, Some(&packing));
+            let add = |hits: &Hits<'_>, points: &mut Points<'_>| points.add(hits);
+            let visit =
+                |mut points: Points<'_>| points.take()?.into_iter().try_for_each(&mut *write);
+            poses.points(progress, add, made, visit).map_err(|error| self.interrupted(error))
+        };
+        let push = |recorder: &mut WorkspaceRecorder, portion: Portion| {
+            let slice = portion.slice / together;
+            recorder.push_packed(slice, &portion.packed).map_err(failed)?;
+            packing.reuse(portion);
+            Ok(())
+        };
+        if recorder.overview_every() == 1 {
+            // The overview has every point. There are few enough to keep them for the slices.
+            let mut kept = Vec::new();
+            each_point(&mut |portion| {
+                recorder.overview_packed(&portion.packed).map_err(failed)?;
+                kept.push(portion);
+                Ok(())
+            })?;
+            progress.advance(grid.poses()).map_err(|error| self.interrupted(error.into()))?;
+            kept.into_iter().try_for_each(|portion| push(&mut recorder, portion))?;
+        } else {
+            self.overview(&mut recorder, &packing, &columns)?;
+            each_point(&mut |portion| push(&mut recorder, portion))?;
+        }
+        recorder.finish(&result(workspace, count)).map_err(failed)
+    }
+
+    /// The overview of a recording in which it does not have every point.
+    fn overview(
+        &self,
+        recorder: &mut WorkspaceRecorder,
+        packing: &Packing,
+        columns: &[Column],
+    ) -> Result<(), StudyError> {
+        let grid = &self.findings.workspace.grid;
         let every = recorder.overview_every();
         // The number of points so far, and the number of the next point of the overview.
         let (mut seen, mut next) = (0, 0);
-        let mut overview = Points::new(cloud, &columns, Some(&packing));
+        let mut overview = Points::new(self.cloud, columns, Some(packing));
         let first = &grid.axes()[0];
         let (mut pose, mut chosen) = (vec![0.0; grid.axes().len()], Vec::new());
-        poses
+        self.findings
+            .poses
             .points(
-                progress,
+                self.progress,
                 |hits, runs: &mut Vec<_>| runs.extend(hits.numbers(grid)),
                 Vec::new,
                 |runs| {
@@ -323,29 +362,15 @@ impl PoseRecording<'_> {
                         seen = end;
                     }
                     overview.take()?.into_iter().try_for_each(|portion| {
-                        recorder.overview_packed(&portion.packed).map_err(failed)?;
+                        recorder
+                            .overview_packed(&portion.packed)
+                            .map_err(|error| self.failed(error))?;
                         packing.reuse(portion);
                         Ok(())
                     })
                 },
             )
-            .map_err(interrupted)?;
-        poses
-            .points(
-                progress,
-                |hits, points: &mut Points<'_>| points.add(hits),
-                || Points::new(cloud, &columns, Some(&packing)),
-                |mut points| {
-                    points.take()?.into_iter().try_for_each(|portion| {
-                        let slice = portion.slice / together;
-                        recorder.push_packed(slice, &portion.packed).map_err(failed)?;
-                        packing.reuse(portion);
-                        Ok(())
-                    })
-                },
-            )
-            .map_err(interrupted)?;
-        recorder.finish(&result(workspace, count)).map_err(failed)
+            .map_err(|error| self.interrupted(error))
     }
 }
 
