@@ -284,7 +284,8 @@ impl<'a> Worker<'a> {
         let (sweep, sheet) = (self.sweep, &self.sheet);
         let same_rows = sweep.sheets == 1 && sweep.segments == 1 && sweep.side <= ROWS as u64;
         let same_legs = sweep.manipulator.lifts_straight();
-        if !(same_rows && same_legs) || !sheet.legs.iter().any(|branches| is_fixed(branches)) {
+        let any = sheet.legs.iter().any(|branches| is_fixed(branches));
+        if !(same_rows && same_legs && any) {
             return false;
         }
         let (of, asked) =

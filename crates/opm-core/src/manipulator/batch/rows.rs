@@ -405,14 +405,17 @@ impl Repeats {
 }
 
 impl Shift {
-    /// The interval shifted by whole periods. One that is longer than the slack becomes everything.
+    /// The interval shifted by whole periods. One that is longer than the slack becomes everything, and an empty one stays
+    /// so.
     #[inline(always)]
     fn of(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let Some(period) = self.repeats.period else { return [from, to] };
         let by = period * (self.copy - ((from - self.repeats.from) / period).floor());
         let fits = to - from <= SLACK * period;
         let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
-        [if fits { from + by } else { least }, if fits { to + by } else { most }]
+        let shifted = [if fits { from + by } else { least }, if fits { to + by } else { most }];
+        let empty = to < from;
+        [if empty { most } else { shifted[0] }, if empty { least } else { shifted[1] }]
     }
 }
 
@@ -459,5 +462,127 @@ fn load(kind: SubspaceKind, from: &Displacements, lane: usize) -> Displacement {
         SubspaceKind::Cylindrical => Displacement::Cylindrical(Lane::load(from, lane)),
         SubspaceKind::TranslationalPlane => Displacement::Translational(Lane::load(from, lane)),
         SubspaceKind::TranslationalSpace => Displacement::Spatial(Lane::load(from, lane)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::equation::Equation;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    const TOLERANCE: f64 = 1e-10;
+
+    fn value(equation: &Equation, t: f64) -> f64 {
+        match *equation {
+            Equation::Polynomial([c0, c1, c2]) => c0 + t * (c1 + t * c2),
+            Equation::Harmonic([c0, c1, c2]) => c0 + c1 * t.cos() + c2 * t.sin(),
+            Equation::Periodic([c0, c1], period) => {
+                let value = c0 + c1 * t;
+                value - period * (value / period).round()
+            }
+        }
+    }
+
+    /// The poses of a row near the zeros of a function.
+    fn ends(equation: &Equation, scale: &RowScale) -> Vec<[f64; 2]> {
+        let Some(repeats) = scale.repeats(equation.period()) else {
+            return vec![[0.0, scale.count]];
+        };
+        let zeros = equation.near_zeros(TOLERANCE);
+        let copies = (0..repeats.copies).map(|copy| repeats.shift(copy));
+        copies.flat_map(|shift| zeros.map(|zero| scale.poses(shift.of(zero)))).collect()
+    }
+
+    fn row(first: f64, length: f64, count: u32) -> RowScale {
+        let step = length / f64::from(count - 1);
+        let count = f64::from(count);
+        RowScale { first, per_step: step.recip(), length, count, tie: TIE }
+    }
+
+    /// Between two ends a function keeps its sign, and only poses at its zeros are near an end.
+    fn check(equation: &Equation, scale: &RowScale) {
+        let ends = ends(equation, scale);
+        let near = |pose: f64| ends.iter().any(|&[first, after]| first <= pose && pose < after);
+        let cut = |pose: f64| ends.iter().any(|&[first, after]| first == pose || after == pose);
+        let at = |pose: f64| value(equation, scale.first + pose / scale.per_step);
+        let mut alone = 0;
+        for number in 0..scale.count as u32 {
+            let pose = f64::from(number);
+            if near(pose) {
+                alone += 1;
+            } else if number > 0 && !near(pose - 1.0) && !cut(pose) {
+                // A periodic line jumps where it is farthest from its zeros.
+                let jumps = matches!(equation, Equation::Periodic(_, period)
+                    if (at(pose) - at(pose - 1.0)).abs() > 0.5 * period);
+                assert!(jumps || at(pose) * at(pose - 1.0) > 0.0, "{equation:?} at {pose}");
+            }
+        }
+        assert!(alone <= 4, "{alone} poses of {equation:?} are asked for one by one: {ends:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn ends_are_where_signs_change(
+            c in [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0], first in -7.0..7.0_f64,
+            length in 0.1..7.0_f64, count in 2..70_u32,
+        ) {
+            let scale = row(first, length, count);
+            for equation in [
+                Equation::Polynomial([c[0], c[1], c[2].abs() + 0.1]),
+                Equation::Polynomial([c[0], c[1], 0.0]),
+                Equation::Harmonic(c),
+                Equation::Periodic([c[0], c[1]], 20.0),
+            ] {
+                check(&equation, &scale);
+            }
+        }
+    }
+
+    /// What has no zeros cuts nothing, not even a row of a full revolution; what is zero everywhere is asked for.
+    #[test]
+    fn constants_cut_nothing_or_everything() {
+        let scale = row(-TAU / 2.0, TAU, 33);
+        for c0 in [-1.1, -0.1, 0.1, 1.1] {
+            for equation in [
+                Equation::Polynomial([c0, 0.0, 0.0]),
+                Equation::Polynomial([1.0, c0, 1.0]),
+                Equation::Harmonic([c0, 0.0, 0.0]),
+                Equation::Harmonic([c0 * 11.0, 0.6, -0.8]),
+                Equation::Periodic([c0, 0.0], 3.0),
+            ] {
+                assert!(ends(&equation, &scale).iter().all(|end| end[0] == end[1]), "{equation:?}");
+            }
+        }
+        for equation in [
+            Equation::Polynomial([0.0; 3]),
+            Equation::Harmonic([0.0; 3]),
+            Equation::Periodic([3.0, 0.0], 3.0),
+        ] {
+            assert!(ends(&equation, &scale).contains(&[0.0, 33.0]), "{equation:?}");
+        }
+    }
+
+    /// Zeros on poses, and two zeros that meet on one.
+    #[test]
+    fn a_pose_at_a_zero_is_asked_for() {
+        let scale = row(-1.0, 2.0, 9);
+        for (equation, pose) in [
+            (Equation::Polynomial([0.0, 1.0, 0.0]), 4.0),
+            (Equation::Polynomial([0.25, 1.0, 1.0]), 2.0),
+            (Equation::Polynomial([-0.25, 0.0, 1.0]), 6.0),
+            (Equation::Harmonic([-1.0, 1.0, 0.0]), 4.0),
+            (Equation::Harmonic([0.0, 0.0, 1.0]), 4.0),
+            (Equation::Periodic([5.5, 1.0], 5.0), 2.0),
+        ] {
+            let ends = ends(&equation, &scale);
+            assert!(
+                ends.iter().any(|end| end[0] <= pose && pose < end[1]),
+                "{equation:?}: {ends:?}"
+            );
+        }
     }
 }
