@@ -11,7 +11,8 @@ use opm_benches::{
 };
 use opm_core::chain::region::{Convex, Region};
 use opm_core::manipulator::{ActuatedJoints, LegBranch, Manipulator};
-use opm_workspace::{Grid, Modes, Progress, Sweep};
+use opm_core::mechanism::examples::EXAMPLES;
+use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 use rayon::ThreadPool;
 
 /// The names in the tables, and what the script does.
@@ -49,6 +50,44 @@ fn main() {
     for size in sizes {
         table_of_limits("passive angles", &limited, size, &pools, None);
     }
+    table_of_mechanisms(&pools);
+}
+
+/// Every shipped mechanism with a workspace, but those of which a coordinate of the pose follows from others, on the grid
+/// that is fitted to it; and orientations at one place of the first one, each a slice of its own.
+fn table_of_mechanisms(pools: &[ThreadPool; 2]) {
+    println!(
+        "| fitted grid | poses | poses a row | million a second, one thread | two threads for one |"
+    );
+    println!("|---|---:|---:|---:|---:|");
+    for name in EXAMPLES.iter().map(|example| example.name) {
+        let Ok(manipulator) = Manipulator::example(name) else { continue };
+        if !manipulator.dependent_coordinates().is_empty() {
+            continue;
+        }
+        let modes = Modes::One(manipulator.home_mode());
+        let fitted = default_grid(&manipulator, modes, &Progress::default());
+        row_of_mechanism(name, &manipulator, &fitted.expect("not cancelled").0, pools);
+    }
+    let manipulator = example("plano-spherical-5dof");
+    let angle = |name: &str| Axis::new(name, -0.8, 0.8, 101);
+    let grid = Grid::new(&manipulator, ["zeta", "xi", "psi"].map(angle).into()).expect("a grid");
+    row_of_mechanism("plano-spherical-5dof, at one place", &manipulator, &grid, pools);
+}
+
+fn row_of_mechanism(name: &str, manipulator: &Manipulator, grid: &Grid, pools: &[ThreadPool; 2]) {
+    let expected = by_rows(manipulator, grid, &pools[0]);
+    let each = pools
+        .each_ref()
+        .map(|pool| contender("rows", grid, expected, move || by_rows(manipulator, grid, pool)));
+    let timings = compare(each.into());
+    println!(
+        "| {name} | {} | {} | {:.1} | {:.2} |",
+        grid.poses(),
+        grid.row(),
+        1e-6 / timings[0].seconds,
+        timings[1].ratio.recip(),
+    );
 }
 
 fn by_rows(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> u64 {

@@ -31,6 +31,7 @@ pub(crate) mod screws;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod shape;
+pub mod shell;
 pub mod spatial;
 pub mod spherical;
 // Public for the sibling crates of the workspace only.

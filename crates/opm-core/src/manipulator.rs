@@ -32,7 +32,7 @@ mod solution;
 mod transitions;
 
 pub use all_modes::AllModes;
-pub use batch::{Batch, BatchError, BatchOutput, RowEnds, SheetRows};
+pub use batch::{Batch, BatchError, BatchOutput, RowArcs, RowEnds, SheetRows};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::Section;

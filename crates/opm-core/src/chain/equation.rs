@@ -124,6 +124,15 @@ impl Equation {
         }
     }
 
+    /// The three coefficients; the last one is zero for a line modulo a period.
+    #[inline(always)]
+    pub(crate) fn coefficients(&self) -> [f64; 3] {
+        match *self {
+            Self::Polynomial(c) | Self::Harmonic(c) => c,
+            Self::Periodic([c0, c1], _) => [c0, c1, 0.0],
+        }
+    }
+
     /// The slope at `t = 0`.
     pub(crate) fn slope_at_zero(&self) -> f64 {
         match *self {

@@ -9,6 +9,9 @@ use std::f64::consts::{PI, TAU};
 /// computed from, counts as inside: the rounding of a solution on a limit must not decide.
 const SLACK: f64 = 1e-12;
 
+/// A range without ends.
+const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
 /// How far past a limit a displacement is that is clearly not allowed: radians, or a fraction of the lengths. It is far
 /// more than rounding makes of a joint's displacement where branches meet.
 const NEARLY: f64 = 1e-3;
@@ -177,6 +180,35 @@ impl Arc {
         let cross = |a: Complex<f64>, b: Complex<f64>| a.re * b.im - a.im * b.re;
         let (after, before) = (cross(self.from, e) >= 0.0, cross(e, self.to) >= 0.0);
         if self.wide { after | before } else { after & before }
+    }
+}
+
+/// The components across a half circle's axis, from -1 to 1, of an arc's directions on it: those in a range that are not
+/// inside a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Components {
+    pub whole: [f64; 2],
+    pub hole: Option<[f64; 2]>,
+}
+
+impl Components {
+    /// The imaginary parts of those directions of an arc whose real part is not negative.
+    pub fn of(arc: &Arc) -> Self {
+        let ahead = |e: Complex<f64>| (e.re >= 0.0).then_some(e.im);
+        let all = |whole| Self { whole, hole: None };
+        let [least, most] = EVERYTHING;
+        match [ahead(arc.from), ahead(arc.to)] {
+            // Around the half circle, or within it.
+            [Some(from), Some(to)] if arc.wide => {
+                Self { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
+            }
+            // An arc of no more than its slack may be rounded to the other order.
+            [Some(from), Some(to)] => all([from.min(to), from.max(to)]),
+            [Some(from), None] => all([from, most]),
+            [None, Some(to)] => all([least, to]),
+            [None, None] if arc.wide => all(EVERYTHING),
+            [None, None] => all([most, least]),
+        }
     }
 }
 

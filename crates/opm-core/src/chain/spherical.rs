@@ -1,5 +1,7 @@
 //! Spherical chains: three revolute joints whose axes pass through one point, and the spherical joint.
 
+use super::limits::{Components, Limits};
+use super::shell::Shell;
 use super::surface::Surface;
 use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, REACH_TOLERANCE, ReachDeficit};
 use crate::group::{JointDisplacement, rotation_vector};
@@ -134,6 +136,39 @@ impl SphericalChain {
             _ => (a1, turned(&a2, rotation.conj()), a1.dot(&a2)),
         };
         Surface::Cone { fixed, carried, cosine }
+    }
+
+    /// The targets at which the chain closes on a branch with its second joint within limits; `None` where these leave
+    /// two ranges of it.
+    pub(crate) fn shell(&self, branch: Branch, limits: &Limits) -> Option<Shell> {
+        let [a1, a2, a3] = self.axes;
+        // The second joint rotates a₃ from where it is nearest to a₁, by an angle from 0 to π on either branch. The
+        // triple product of the axes is negative where that is counter-clockwise.
+        let nearest = angle(&self.third_on_second, &a1);
+        let cosines = match limits.arc() {
+            None => [-1.0, 1.0],
+            Some(arc) => {
+                let from_nearest = arc.turned(nearest.conj() / nearest.norm());
+                let of_branch = match branch {
+                    Branch::Plus => from_nearest.reflected(|e| e.conj()),
+                    Branch::Minus => from_nearest,
+                };
+                // The cosine of the angle is the component of its direction against that of a right angle less.
+                let Components { whole, hole: None } =
+                    Components::of(&of_branch.turned(-Complex::I))
+                else {
+                    return None;
+                };
+                [(-whole[1]).max(-1.0), (-whole[0]).min(1.0)]
+            }
+        };
+        let [level, swing] =
+            [self.cosines[0] * self.cosines[1], a1.cross(&a2).norm() * a2.cross(&a3).norm()];
+        Some(Shell {
+            fixed: a1,
+            carried: a3,
+            cosines: cosines.map(|cosine| level + swing * cosine),
+        })
     }
 
     /// The second joint's two rotations at which the branches meet: the three axes are then in one plane.

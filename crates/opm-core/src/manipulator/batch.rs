@@ -22,7 +22,7 @@ use crate::numeric::angle::MOST_REDUCED;
 use decide::Decided;
 use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
-pub use rows::{RowEnds, SheetRows};
+pub use rows::{RowArcs, RowEnds, SheetRows};
 use section::{Found, Side, Step};
 
 /// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose. See the
@@ -342,13 +342,13 @@ impl Block {
                 }
             }
         }
-        self.displace_section(manipulator, Section::Lower);
-        self.displace_section(manipulator, Section::Upper);
+        self.displace_section(manipulator, Section::Lower, LANES);
+        self.displace_section(manipulator, Section::Upper, LANES);
     }
 
-    /// Computes the displacements of a section.
+    /// Computes the displacements of a section, of so many poses.
     #[inline(always)]
-    fn displace_section(&mut self, manipulator: &Manipulator, section: Section) {
+    fn displace_section(&mut self, manipulator: &Manipulator, section: Section, lanes: usize) {
         let task = &manipulator.task;
         let Self { pose, v, b, .. } = self;
         let mut at = [&[0.0; LANES]; 3];
@@ -360,7 +360,7 @@ impl Block {
             Section::Lower => v,
             Section::Upper => b,
         };
-        section::displace(task, section, at, home, to);
+        section::displace(task, section, at, home, to, lanes);
     }
 
     /// Solves both chains of a leg.
@@ -375,7 +375,7 @@ impl Block {
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
             };
             let target = if is_first { target } else { &*shifted };
-            section::solve(&of_section.chain, branch, target, found);
+            section::solve(&of_section.chain, branch, target, found, LANES);
             status.note(found);
             if is_first {
                 match leg.imaginary_joint() {
@@ -385,12 +385,12 @@ impl Block {
                 match section {
                     Section::Lower => {
                         let step = Step { motion: task.upper_intersection, side: Side::Before };
-                        section::shift(step, b, tau, shifted);
+                        section::shift(step, b, tau, shifted, LANES);
                         section::invert(tau);
                     }
                     Section::Upper => {
                         let step = Step { motion: task.lower_intersection, side: Side::After };
-                        section::shift(step, v, tau, shifted);
+                        section::shift(step, v, tau, shifted, LANES);
                     }
                 }
             }

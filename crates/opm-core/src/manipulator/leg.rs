@@ -6,6 +6,7 @@ use super::section::{ChainCoordinate, CompiledSection, Slider, chain_joints, coo
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
+use crate::chain::shell::Shell;
 use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::{Freedom, HeightMiss, HeightReason, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
@@ -31,6 +32,8 @@ pub(crate) struct CompiledLeg {
     pub shapes: [Option<Shape>; 2],
     /// Where it has none of these: see [`CompiledSection::bounds`].
     pub bounds: [Option<Shape>; 2],
+    /// In a sphere: see [`CompiledSection::shells`].
+    pub shells: [Option<Shell>; 2],
     /// Whether the upper section constrains the leg: it is limited or actuated, or may be out of reach though
     /// the lower section closes.
     pub upper_constrains: bool,
@@ -229,7 +232,7 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let (shapes, bounds) = (lower.shapes(), lower.bounds());
+        let (shapes, bounds, shells) = (lower.shapes(), lower.bounds(), lower.shells());
         // An upper section that does not give τ may be out of reach; a spherical joint never is.
         let gives_tau = bridged && split_section == Section::Upper;
         let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);
@@ -241,6 +244,7 @@ impl CompiledLeg {
             bridged,
             shapes,
             bounds,
+            shells,
             imaginary: None,
             lift: None,
             lean: None,
@@ -445,6 +449,12 @@ impl CompiledLeg {
         of_branch(&self.shapes, branch)
     }
 
+    /// The targets at which the lower section closes, whatever its limits of the first and the last joint, if it moves in a
+    /// sphere and these are a shell.
+    pub fn shell(&self, branch: Branch) -> Option<&Shell> {
+        of_branch(&self.shells, branch)
+    }
+
     /// The region outside of which the lower section does not close, if there is one in the plane.
     pub fn shape_or_bounds(&self, branch: Branch) -> Option<&Shape> {
         self.shape(branch).or(of_branch(&self.bounds, branch))
@@ -475,7 +485,7 @@ impl CompiledLeg {
     }
 }
 
-fn of_branch([plus, minus]: &[Option<Shape>; 2], branch: Branch) -> Option<&Shape> {
+fn of_branch<T>([plus, minus]: &[Option<T>; 2], branch: Branch) -> Option<&T> {
     match branch {
         Branch::Plus => plus.as_ref(),
         Branch::Minus => minus.as_ref(),

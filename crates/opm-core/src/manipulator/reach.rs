@@ -220,10 +220,23 @@ impl Manipulator {
         shape.at(rotation, shift, scale)
     }
 
-    /// Whether the regions of a branch leave nothing aside: they agree with [`Manipulator::reaches`] up to rounding.
+    /// Whether the regions of a branch, or its arcs ([`Manipulator::row_arcs`]), leave nothing aside: they agree with
+    /// [`Manipulator::reaches`] up to rounding.
     #[doc(hidden)]
     pub fn regions_decide(&self, branch: &LegBranch) -> bool {
-        branch.with_upper.is_none() && self.legs[branch.leg].shape(branch.branches.lower).is_some()
+        let leg = &self.legs[branch.leg];
+        let shell = leg.shell(branch.branches.lower).is_some();
+        let free = |joint: usize| {
+            leg.lower.coordinates[joint].as_ref().is_none_or(|joint| joint.limits.arc().is_none())
+        };
+        branch.with_upper.is_none()
+            && (leg.shape(branch.branches.lower).is_some() || shell && free(0) && free(2))
+    }
+
+    /// Whether [`Manipulator::row_arcs`] can be used for a branch.
+    #[doc(hidden)]
+    pub fn has_arcs(&self, branch: &LegBranch) -> bool {
+        self.legs[branch.leg].shell(branch.branches.lower).is_some()
     }
 
     /// Calls `found` with regions as [`Manipulator::region`], which limits on a link that slides leave: a leg closes for

@@ -4,6 +4,7 @@ use crate::chain::condition::Condition;
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::shape::Shape;
+use crate::chain::shell::Shell;
 use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::Freedom;
 use crate::group::{Displacement, JointDisplacement};
@@ -172,6 +173,14 @@ impl CompiledSection {
             Some(_) | None => &Limits::Free,
         });
         Branch::BOTH.map(|branch| self.chain.shape(branch, of_joint))
+    }
+
+    /// The targets of a sphere at which the section closes, whatever its limits of the first and the last joint, on each
+    /// branch.
+    pub fn shells(&self) -> [Option<Shell>; 2] {
+        let Chain::Spherical(chain) = &self.chain else { return [None; 2] };
+        let middle = self.coordinates[1].as_ref().map_or(&Limits::Free, |middle| &middle.limits);
+        Branch::BOTH.map(|branch| chain.shell(branch, middle))
     }
 
     /// Whether a target has two solutions.

@@ -24,7 +24,8 @@ const FAR: f64 = 1e4;
 /// The targets at which a leg's feasibility can change within a slice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transitions {
-    /// Those at which the lower chain's branches meet.
+    /// Those at which the lower chain's branches meet, and in a sphere those at which its middle joint is at an end of its
+    /// limits.
     folds: Vec<Surface>,
     /// Those at which a joint of the lower chain is at an end of its limits.
     ends: Vec<Surface>,
@@ -65,13 +66,14 @@ impl CompiledSection {
         self.chain.folds(middle.map_or(&Limits::Free, |middle| &middle.limits))
     }
 
-    /// The surfaces at which the section's chain enters and leaves its limits; `None` where they have no closed form.
-    fn ends(&self) -> Option<Vec<Surface>> {
+    /// The surfaces at which the section's chain enters and leaves its limits, each with the number of the joint; `None`
+    /// where they have no closed form.
+    fn ends(&self) -> Option<Vec<(usize, Surface)>> {
         let mut surfaces = Vec::new();
         for (joint, coordinate) in self.coordinates.iter().enumerate() {
             let Some(coordinate) = coordinate else { continue };
             for end in self.chain.ends(joint, &coordinate.limits).into_iter().flatten() {
-                surfaces.push(self.chain.held(joint, end)?);
+                surfaces.push((joint, self.chain.held(joint, end)?));
             }
         }
         Some(surfaces)
@@ -97,13 +99,14 @@ impl Manipulator {
     pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
-        let mut transitions = Transitions {
-            folds: leg.lower.folds(),
-            ends: leg.lower.ends()?,
-            tau_limits: Vec::new(),
-            size,
-            largest_tau: None,
-        };
+        let (mut folds, mut ends) = (leg.lower.folds(), leg.lower.ends()?);
+        if leg.shell(branch.branches.lower).is_some() {
+            let of_shell = ends.extract_if(.., |(joint, _)| *joint == 1);
+            folds.extend(of_shell.map(|(_, surface)| surface));
+        }
+        let ends = ends.into_iter().map(|(_, surface)| surface).collect();
+        let mut transitions =
+            Transitions { folds, ends, tau_limits: Vec::new(), size, largest_tau: None };
         if let Some(b) = &branch.with_upper {
             self.add_tau_limits(branch, b, &mut transitions)?;
         }
@@ -137,7 +140,7 @@ impl Manipulator {
         let size = transitions.size;
         let tau_limits = &mut transitions.tau_limits;
         let (folds, ends) = (leg.upper.folds(), leg.upper.ends()?);
-        for surface in folds.iter().chain(&ends) {
+        for surface in folds.iter().chain(ends.iter().map(|(_, surface)| surface)) {
             surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
                 let share = if rotation { blur } else { blur / size };

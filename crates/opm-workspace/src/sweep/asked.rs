@@ -1,5 +1,7 @@
 //! Rows of legs that regions do not decide: the ends of every boundary, sorted, and one answer between two of them.
 //!
+//! In a sphere, what the middle joint of a leg leaves of a row is known without asking ([`Manipulator::row_arcs`]).
+//!
 //! A leg's feasibility along a row changes only where the row meets one of few surfaces. For one leg after the other, the
 //! ends are found for many rows at once ([`Manipulator::row_ends`]). Where an end falls on what is left of a row, that is cut,
 //! and each piece is asked for, and every pose too close to an end, again for many rows at once
@@ -9,7 +11,7 @@ use super::Sweep;
 use super::clip::ROWS;
 use super::runs::Run;
 use super::sheet::{Sheet, SliceBranch};
-use opm_core::manipulator::{Batch, Manipulator, RowEnds, SheetRows};
+use opm_core::manipulator::{Batch, Manipulator, RowArcs, RowEnds, SheetRows};
 
 /// Poses of a row of a window, from one number up to, not including, another one. The numbers begin with the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +50,7 @@ pub struct AskedRows {
     /// Pieces of rows of which one pose answers for all.
     questions: Vec<Piece>,
     cuts: Cuts,
+    arcs: RowArcs,
     poses: [Vec<f64>; 2],
     answers: Vec<bool>,
     batch: Batch,
@@ -77,6 +80,7 @@ impl AskedRows {
             of_branch: Vec::new(),
             questions: Vec::new(),
             cuts: Cuts::default(),
+            arcs: RowArcs::new(),
             poses: [Vec::new(), Vec::new()],
             answers: Vec::new(),
             batch: manipulator.batch(),
@@ -147,6 +151,47 @@ impl AskedRows {
         })
     }
 
+    /// Leaves what those legs reach at most that are `wanted`, have one branch, and whose lower sections move in a sphere.
+    pub fn cut_arcs(
+        &mut self,
+        sweep: &Sweep<'_>,
+        sheet: &Sheet<'_>,
+        wanted: impl Fn(&[SliceBranch]) -> bool,
+    ) {
+        for branches in sheet.legs.iter().filter(|branches| wanted(branches)) {
+            let [branch] = &branches[..] else { continue };
+            if !branch.has_arcs() || self.left.is_empty() {
+                continue;
+            }
+            if self.first.len() < 2 {
+                // A pose alone is asked for.
+                self.clipped.fill(Clipped::Not);
+                return;
+            }
+            self.cuts.second.clear();
+            let mut lanes = Lanes::new();
+            for piece in &self.left {
+                if lanes.of(piece.row).1 {
+                    self.cuts.second.push(self.second[piece.row]);
+                }
+            }
+            let rows = rows_of(sweep, sheet, &self.first, &self.cuts.second);
+            sheet.manipulator().row_arcs(&branch.follow, &rows, &mut self.batch, &mut self.arcs);
+            self.questions.clear();
+            lanes = Lanes::new();
+            for &piece in &self.left {
+                let (lane, _) = lanes.of(piece.row);
+                if self.arcs.is_doubtful(lane) {
+                    self.clipped[piece.row] = Clipped::Not;
+                    self.questions.push(piece);
+                } else {
+                    subtract(piece, self.arcs.holes(lane), &mut self.questions);
+                }
+            }
+            std::mem::swap(&mut self.left, &mut self.questions);
+        }
+    }
+
     /// Leaves the poses that those legs reach that are `wanted`, where regions do not tell it already.
     pub fn ask(
         &mut self,
@@ -160,14 +205,17 @@ impl AskedRows {
         for branches in &sheet.legs {
             let number = next;
             next += branches.len();
-            let decided = branches.iter().all(SliceBranch::is_decided);
+            let decided = match &branches[..] {
+                [branch] => branch.is_decided() || branch.is_decided_by_arcs(),
+                several => several.iter().all(SliceBranch::is_decided),
+            };
             if !wanted(branches) || decided && !unclipped {
                 continue;
             }
             match &branches[..] {
                 [branch] => {
-                    // What was clipped to the region of a leg's only branch is where that closes.
-                    let closes = branch.is_clippable() && !unclipped;
+                    // What was clipped to the region of a leg's only branch, or to arcs, is where that closes.
+                    let closes = (branch.is_clippable() || branch.has_arcs()) && !unclipped;
                     self.ask_branch(sweep, sheet, branch, [decided, closes]);
                     let (mut left, answers) = (std::mem::take(&mut self.left), &self.answers);
                     take_reached(&self.questions, answers, &mut left);
@@ -256,14 +304,7 @@ impl AskedRows {
         let surfaces = branch.transitions.get_or_init(|| manipulator.transitions(&branch.follow));
         match surfaces.as_ref().filter(|_| count > 1) {
             Some(surfaces) => {
-                let rows = SheetRows {
-                    first: self.first[0],
-                    step: sheet.scale.step,
-                    count,
-                    extent: sheet.scale.extent,
-                    second,
-                    others: others_of_sheet(sweep, sheet),
-                };
+                let rows = rows_of(sweep, sheet, &self.first, second);
                 let batch = &mut self.batch;
                 manipulator.row_ends(&branch.follow, surfaces, &rows, !closes, batch, ends);
             }
@@ -276,7 +317,7 @@ impl AskedRows {
         let Cuts { ends, of_row, .. } = &mut self.cuts;
         // In most rows, no end is where poses are left.
         let (mut from, mut to, mut is_cut) = ([0; ROWS], [0; ROWS], [0; ROWS]);
-        let mut lanes = Lanes { next: 0, row: usize::MAX };
+        let mut lanes = Lanes::new();
         for piece in &self.left {
             if decided && self.clipped[piece.row] == Clipped::Surely {
                 continue;
@@ -291,7 +332,7 @@ impl AskedRows {
             end.meet(&from, &to, &mut is_cut);
         }
         self.questions.clear();
-        lanes = Lanes { next: 0, row: usize::MAX };
+        lanes = Lanes::new();
         for &piece in &self.left {
             if decided && self.clipped[piece.row] == Clipped::Surely {
                 self.questions.push(piece);
@@ -320,12 +361,49 @@ struct Lanes {
 }
 
 impl Lanes {
+    fn new() -> Self {
+        Self { next: 0, row: usize::MAX }
+    }
+
     /// The lane of a row, and whether it is a new one.
     fn of(&mut self, row: usize) -> (usize, bool) {
         let is_first = row != self.row;
         self.next += usize::from(is_first);
         self.row = row;
         (self.next - 1, is_first)
+    }
+}
+
+/// The rows with these second coordinates, of poses with these first ones.
+fn rows_of<'s>(
+    sweep: &Sweep<'_>,
+    sheet: &'s Sheet<'_>,
+    first: &[f64],
+    second: &'s [f64],
+) -> SheetRows<'s> {
+    SheetRows {
+        first: first[0],
+        step: sheet.scale.step,
+        count: first.len() as u64,
+        extent: sheet.scale.extent,
+        second,
+        others: others_of_sheet(sweep, sheet),
+    }
+}
+
+/// Adds what some holes leave of a piece, which come in any order and may overlap.
+fn subtract(piece: Piece, holes: impl Iterator<Item = [i32; 2]> + Clone, parts: &mut Vec<Piece>) {
+    let mut next = piece.from;
+    while next < piece.to {
+        let inside = holes.clone().find(|&[from, to]| from <= next && next < to);
+        if let Some([_, to]) = inside {
+            next = to;
+            continue;
+        }
+        let starts = holes.clone().map(|[from, to]| if from < to { from } else { i32::MAX });
+        let end = starts.filter(|&from| from > next).fold(piece.to, i32::min);
+        parts.push(Piece { from: next, to: end, ..piece });
+        next = end;
     }
 }
 

@@ -15,6 +15,8 @@ pub struct SliceBranch {
     pub follow: LegBranch,
     /// The poses that it reaches at most, if they are a region of the plane and meet `links`.
     region: Option<Region>,
+    /// Whether its lower section moves in a sphere, and its middle joint limits what it reaches to arcs of rows.
+    arcs: bool,
     /// Whether nothing else limits what it reaches.
     decided: bool,
     /// How rows are clipped to the region, if they can be.
@@ -32,6 +34,7 @@ impl SliceBranch {
         Self {
             follow,
             region: None,
+            arcs: false,
             decided: false,
             plan: None,
             links: vec![],
@@ -55,9 +58,19 @@ impl SliceBranch {
         self.plan.is_some()
     }
 
+    /// Whether what it reaches of rows is limited by arcs.
+    pub fn has_arcs(&self) -> bool {
+        self.arcs
+    }
+
     /// Whether rows that are clipped to its regions are what it reaches.
     pub fn is_decided(&self) -> bool {
         self.plan.is_some() && self.decided
+    }
+
+    /// Whether what its arcs leave of rows is what it reaches.
+    pub fn is_decided_by_arcs(&self) -> bool {
+        self.arcs && self.decided
     }
 
     /// Finds its regions in a sheet whose first pose has the displacement `v`.
@@ -72,6 +85,7 @@ impl SliceBranch {
         let per_unit = scale.step.recip();
         self.region = manipulator.region(&self.follow, v, per_unit);
         self.decided = manipulator.regions_decide(&self.follow);
+        self.arcs = manipulator.has_arcs(&self.follow);
         // Steps may be too small to count in.
         let region = self.region.as_ref().filter(|_| per_unit.is_finite());
         self.plan = region.and_then(|region| ClipPlan::new(region, last, scale.extent));

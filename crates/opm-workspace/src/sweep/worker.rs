@@ -254,7 +254,9 @@ impl<'a> Worker<'a> {
             let known = self.fixed.as_ref().filter(|_| fixed).map(|(_, rows)| &**rows);
             let sheet = &self.sheet;
             self.clipping.begin((sweep, sheet), &numbers, window, (counted, known), &mut asked);
-            asked.ask(sweep, sheet, |branches| !(fixed && is_fixed(branches)));
+            let wanted = |branches: &[SliceBranch]| !(fixed && is_fixed(branches));
+            asked.cut_arcs(sweep, sheet, wanted);
+            asked.ask(sweep, sheet, wanted);
             let unused = self.sheet.branches().any(|branch| branch.unused);
             if unused && self.limit.is_none() && asked.count() > 0 {
                 self.use_branches(&asked, numbers.start, fixed, found);

@@ -4,12 +4,9 @@
 //! across the slide grows from one end to the other. So a limit on the direction is a range of that component, or
 //! everything but one, and the places of the link's outer end are a band along the slide, or everything but one.
 
-use crate::chain::limits::{Arc, Limits};
+use crate::chain::limits::{Arc, Components, Limits};
 use crate::chain::region::{Band, Convex, Region};
 use nalgebra::Complex;
-
-/// A range without ends.
-const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The limits on the direction of a link, by its joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,14 +21,6 @@ pub struct LinkLimits {
     inner: Option<Arc>,
     /// The directions from the slide that the outer pivot allows where the target does not rotate. They rotate with it.
     outer: Option<Arc>,
-}
-
-/// The components across a half circle's axis, from -1 to 1, of an arc's directions on it: those in a range that are not
-/// inside a hole.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Components {
-    whole: [f64; 2],
-    hole: Option<[f64; 2]>,
 }
 
 impl LinkLimits {
@@ -68,27 +57,6 @@ impl LinkLimits {
                 Convex::Bands([band; 2])
             };
             found(Region { whole: band(whole), hole: hole.map(band) });
-        }
-    }
-}
-
-impl Components {
-    /// The imaginary parts of those directions of an arc whose real part is not negative.
-    fn of(arc: &Arc) -> Self {
-        let ahead = |e: Complex<f64>| (e.re >= 0.0).then_some(e.im);
-        let all = |whole| Self { whole, hole: None };
-        let [least, most] = EVERYTHING;
-        match [ahead(arc.from), ahead(arc.to)] {
-            // Around the half circle, or within it.
-            [Some(from), Some(to)] if arc.wide => {
-                Self { whole: EVERYTHING, hole: (to < from).then_some([to, from]) }
-            }
-            // An arc of no more than its slack may be rounded to the other order.
-            [Some(from), Some(to)] => all([from.min(to), from.max(to)]),
-            [Some(from), None] => all([from, most]),
-            [None, Some(to)] => all([least, to]),
-            [None, None] if arc.wide => all(EVERYTHING),
-            [None, None] => all([most, least]),
         }
     }
 }

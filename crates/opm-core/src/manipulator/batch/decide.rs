@@ -135,7 +135,7 @@ impl WithSimd for Decide<'_> {
                     Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
                 block.solve_leg(manipulator, branches, leg);
                 for section in [Section::Lower, Section::Upper] {
-                    block.admit(manipulator, compiled, section);
+                    block.admit(manipulator, compiled, section, LANES);
                 }
                 let Status { beyond, open: of_branch, within_limits } = &block.status;
                 let mut reaches = [0; LANES];
@@ -162,7 +162,13 @@ impl WithSimd for Decide<'_> {
 impl Block {
     /// Notes whether a leg's joints of a section are within their limits.
     #[inline(always)]
-    pub(super) fn admit(&mut self, manipulator: &Manipulator, leg: &CompiledLeg, section: Section) {
+    pub(super) fn admit(
+        &mut self,
+        manipulator: &Manipulator,
+        leg: &CompiledLeg,
+        section: Section,
+        lanes: usize,
+    ) {
         let found = match section {
             Section::Lower => &self.lower,
             Section::Upper => &self.upper,
@@ -172,7 +178,7 @@ impl Block {
         {
             if let Some(coordinate) = coordinate {
                 let limits = &manipulator.limits[coordinate.number];
-                section::admit(limits, displacements, &mut self.status.within_limits);
+                section::admit(limits, displacements, &mut self.status.within_limits, lanes);
             }
         }
     }

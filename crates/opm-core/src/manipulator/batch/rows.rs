@@ -5,15 +5,17 @@
 //! [`transitions`](crate::manipulator::transitions), each of which a row meets in at most two places of a period. Between
 //! two of them one pose answers for all.
 
-use super::lanes::{Displacements, LANES, Lane};
+use super::lanes::{Column, Displacements, LANES, Lane};
 use super::section::{self, Side, Step};
 use super::{Batch, Block, Status};
+use crate::chain::shell::{ArcHole, Shell};
 use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, Path, PlanarDisplacement, PlanarPath, SubspaceKind};
 use crate::manipulator::{LegBranch, Manipulator, Transitions};
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::MOST_REDUCED;
 use pulp::{Simd, WithSimd};
+use std::f64::consts::TAU;
 
 /// How near to the end of what a leg reaches a pose may be, in steps, and still be decided by another pose.
 const TIE: f64 = 1e-6;
@@ -80,7 +82,50 @@ impl RowEnds {
     }
 }
 
+/// What a leg does not reach of some rows of a sphere.
+#[derive(Clone, Debug)]
+pub struct RowArcs {
+    holes: Vec<RowEnds>,
+    doubtful: Numbers,
+}
+
+impl RowArcs {
+    /// Nothing.
+    #[expect(clippy::new_without_default, reason = "it is working memory")]
+    pub fn new() -> Self {
+        Self { holes: Vec::new(), doubtful: [0; LANES] }
+    }
+
+    /// Whether rounding could change which poses of a row these are.
+    pub fn is_doubtful(&self, row: usize) -> bool {
+        self.doubtful[row] != 0
+    }
+
+    /// The poses of a row that are out of reach, as ranges that may be empty, in any order.
+    pub fn holes(&self, row: usize) -> impl Iterator<Item = [i32; 2]> + Clone {
+        self.holes.iter().map(move |hole| hole.of(row))
+    }
+}
+
 impl Manipulator {
+    /// Finds what a leg whose lower section moves in a sphere does not reach of some rows on a branch, whatever its limits of
+    /// the first and the last joint. Returns whether the leg is one of which that is known.
+    #[doc(hidden)]
+    pub fn row_arcs(
+        &self,
+        branch: &LegBranch,
+        rows: &SheetRows<'_>,
+        batch: &mut Batch,
+        arcs: &mut RowArcs,
+    ) -> bool {
+        let Some(shell) = self.legs[branch.leg].shell(branch.branches.lower) else { return false };
+        let Batch { arch, block, .. } = batch;
+        arcs.holes.clear();
+        arcs.doubtful = [0; LANES];
+        arch.dispatch(FindArcs { manipulator: self, branch, shell, rows, block, arcs });
+        true
+    }
+
     /// Finds the poses of some rows near which a leg's feasibility may change. Between them,
     /// [`Manipulator::reaches`] is the same for all poses of a row. With `folds` being false, that is so only among poses at
     /// which the leg closes, be it within its limits or not.
@@ -137,7 +182,7 @@ impl Manipulator {
         }
         let Batch { arch, block, .. } = batch;
         block.take_rows(self.task.lower_count, first, second, others);
-        arch.dispatch(Reach { manipulator: self, branch, block });
+        arch.dispatch(Reach { manipulator: self, branch, count: reached.len(), block });
         let Status { beyond, open, within_limits } = &block.status;
         for (lane, reached) in reached.iter_mut().enumerate() {
             *reached = if beyond[lane] == 0 && open[lane] != 0 {
@@ -149,13 +194,21 @@ impl Manipulator {
     }
 }
 
-/// Fewer poses than this are asked for one by one: a block takes as long for one pose as for all.
+/// So many lanes, and some more, so that they are whole vectors of every processor.
+#[inline(always)]
+fn vectors(lanes: usize) -> usize {
+    lanes.next_multiple_of(8).min(LANES)
+}
+
+/// Fewer poses than this are asked for one by one: it takes longer to begin a block.
 const FEW: usize = 6;
 
 /// Solves a branch for a block of poses.
 struct Reach<'a> {
     manipulator: &'a Manipulator,
     branch: &'a LegBranch,
+    /// The number of poses.
+    count: usize,
     block: &'a mut Block,
 }
 
@@ -164,26 +217,28 @@ impl WithSimd for Reach<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, branch, block } = self;
+        let Self { manipulator, branch, count, block } = self;
+        let lanes = vectors(count);
         block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
         let leg = &manipulator.legs[branch.leg];
         match &branch.with_upper {
             Some(b) => {
-                block.displace_section(manipulator, Section::Lower);
+                block.displace_section(manipulator, Section::Lower, LANES);
                 for lane in 0..LANES {
                     b.store(&mut block.b, lane);
                 }
                 block.solve_leg(manipulator, branch.branches, branch.leg);
-                block.admit(manipulator, leg, Section::Upper);
+                block.admit(manipulator, leg, Section::Upper, LANES);
             }
             None => {
-                block.aim(manipulator, branch);
+                block.aim(manipulator, branch, lanes);
                 let Block { shifted, lower, status, .. } = block;
-                section::solve(&leg.lower.chain, branch.branches.lower, shifted, lower);
+                let branch = branch.branches.lower;
+                section::solve(&leg.lower.chain, branch, shifted, lower, lanes);
                 status.note(lower);
             }
         }
-        block.admit(manipulator, leg, Section::Lower);
+        block.admit(manipulator, leg, Section::Lower, lanes);
     }
 }
 
@@ -198,38 +253,94 @@ struct FindEnds<'a> {
     ends: &'a mut Vec<RowEnds>,
 }
 
+/// Finds the arcs of rows.
+struct FindArcs<'a> {
+    manipulator: &'a Manipulator,
+    branch: &'a LegBranch,
+    shell: &'a Shell,
+    rows: &'a SheetRows<'a>,
+    block: &'a mut Block,
+    arcs: &'a mut RowArcs,
+}
+
+impl WithSimd for FindArcs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, branch, shell, rows, block, arcs } = self;
+        let scale = block.start_rows(manipulator, branch, rows);
+        let Path::Spherical { axis, .. } =
+            manipulator.task.row(&SubspaceKind::Spherical.identity())
+        else {
+            return;
+        };
+        let (tolerance, margin) = (shell.tolerance(), scale.tie / scale.per_step);
+        let lanes = vectors(rows.second.len());
+        let mut found = [HoleColumns::NONE; 2];
+        let [near, far] = &mut found;
+        for lane in 0..lanes {
+            let path = Path::Spherical { start: Lane::load(&block.shifted, lane), axis };
+            let holes = shell.holes(&path, tolerance, margin);
+            near.set(lane, holes[0], scale.first);
+            far.set(lane, holes[1], scale.first);
+        }
+        // A hole is shorter than a revolution.
+        let copies = (scale.length / TAU) as usize + 2;
+        for hole in &found {
+            for copy in 0..copies {
+                let later = copy as f64 * TAU;
+                let mut ends = RowEnds::NONE;
+                for lane in 0..lanes {
+                    let inner = hole.inner.each_ref().map(|column| column[lane] + later);
+                    let outer = hole.outer.each_ref().map(|column| column[lane] + later);
+                    let (certain, possible) = (scale.inside(inner), scale.inside(outer));
+                    ends.set(lane, possible);
+                    let same = (certain[0] == possible[0]) & (certain[1] == possible[1]);
+                    let empty = possible[1] <= possible[0];
+                    arcs.doubtful[lane] |= i32::from(!(same | empty));
+                }
+                arcs.holes.push(ends);
+            }
+        }
+    }
+}
+
+/// One hole of each row.
+#[derive(Clone, Copy)]
+struct HoleColumns {
+    inner: [Column; 2],
+    outer: [Column; 2],
+}
+
+impl HoleColumns {
+    const NONE: Self = Self { inner: [[0.0; LANES]; 2], outer: [[0.0; LANES]; 2] };
+
+    /// Stores a hole with the revolutions added that bring its end into the first one after `first`.
+    #[inline(always)]
+    fn set(&mut self, row: usize, ArcHole { inner, outer }: ArcHole, first: f64) {
+        let by = -TAU * ((outer[1] - first) / TAU).floor();
+        (self.inner[0][row], self.inner[1][row]) = (inner[0] + by, inner[1] + by);
+        (self.outer[0][row], self.outer[1][row]) = (outer[0] + by, outer[1] + by);
+    }
+}
+
 impl WithSimd for FindEnds<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, branch, transitions, rows, folds, block, ends } = self;
-        let home = manipulator.task.coordinates[0].home;
-        let firsts = &[home; LANES][..rows.second.len()];
-        block.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
-        block.aim(manipulator, branch);
+        let scale = block.start_rows(manipulator, branch, rows);
         let starts = &block.shifted;
         let kind = manipulator.task.form(Section::Lower).kind;
         let path = |lane| manipulator.task.row(&load(kind, starts, lane));
-        // Along a row the first coordinate is a displacement from home.
-        let from = rows.first - home;
-        let to = from + rows.step * (rows.count - 1) as f64;
-        let reach = from.abs().max(to.abs()) + rows.step;
+        let reach = scale.first.abs().max((scale.first + scale.length).abs()) + rows.step;
         // The size is a convex function of the second coordinate.
         let size = [0, rows.second.len().saturating_sub(1)].map(|row| path(row).size(reach));
         let size = size[0].max(size[1]);
-        let finder = Finder {
-            path: path(0),
-            starts,
-            lanes: rows.second.len().next_multiple_of(8).min(LANES),
-            scale: RowScale {
-                first: from,
-                per_step: rows.step.recip(),
-                length: to - from,
-                count: rows.count as f64,
-                tie: TIE.max(rows.extent * 1e-12),
-            },
-        };
+        let lanes = vectors(rows.second.len());
+        let finder = Finder { path: path(0), starts, lanes, scale };
         if !transitions.are_complete(size) {
             return ends.push(RowEnds::everything(rows.count));
         }
@@ -383,6 +494,17 @@ impl RowScale {
         (period * self.per_step > 2.0).then_some(repeats)
     }
 
+    /// The numbers of the poses in an interval.
+    #[inline(always)]
+    fn inside(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let first = ((from - self.first) * self.per_step).ceil();
+        let after = ((to - self.first) * self.per_step).floor() + 1.0;
+        let first = if first > 0.0 { first } else { 0.0 };
+        let first = if first < self.count { first } else { self.count };
+        let after = if after < self.count { after } else { self.count };
+        [first, if after > first { after } else { first }]
+    }
+
     /// The numbers of the poses near an interval.
     #[inline(always)]
     fn poses(&self, [from, to]: [f64; 2]) -> [f64; 2] {
@@ -420,6 +542,28 @@ impl Shift {
 }
 
 impl Block {
+    /// Computes where the paths of a branch's target along rows start, into `shifted`.
+    #[inline(always)]
+    fn start_rows(
+        &mut self,
+        manipulator: &Manipulator,
+        branch: &LegBranch,
+        rows: &SheetRows<'_>,
+    ) -> RowScale {
+        let home = manipulator.task.coordinates[0].home;
+        let firsts = &[home; LANES][..rows.second.len()];
+        self.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
+        self.aim(manipulator, branch, vectors(rows.second.len()));
+        RowScale {
+            // Along a row the first coordinate is a displacement from home.
+            first: rows.first - home,
+            per_step: rows.step.recip(),
+            length: rows.step * (rows.count - 1) as f64,
+            count: rows.count as f64,
+            tie: TIE.max(rows.extent * 1e-12),
+        }
+    }
+
     /// Takes poses of a section of so many coordinates: the first and second ones, and those that they share. The remaining
     /// lanes are filled with the last pose.
     fn take_rows(&mut self, width: usize, first: &[f64], second: &[f64], others: &[f64]) {
@@ -432,21 +576,21 @@ impl Block {
         }
     }
 
-    /// Computes the targets of a branch's lower chain, into `shifted`, of the poses of the block.
+    /// Computes the targets of a branch's lower chain, into `shifted`, of so many poses of the block.
     #[inline(always)]
-    fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch) {
-        self.displace_section(manipulator, Section::Lower);
+    fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch, lanes: usize) {
+        self.displace_section(manipulator, Section::Lower, lanes);
         let Self { v, tau, shifted, .. } = self;
         match branch.tau {
             Some(of_slice) => {
                 tau.fill(of_slice);
                 let step = Step { motion: manipulator.task.lower_intersection, side: Side::After };
-                section::shift(step, v, tau, shifted);
+                section::shift(step, v, tau, shifted, lanes);
             }
             None => shifted.clone_from(v),
         }
         if let Some(Displacement::Planar(offset)) = manipulator.legs[branch.leg].lower.offset {
-            for lane in 0..LANES {
+            for lane in 0..lanes.min(LANES) {
                 PlanarDisplacement::load(shifted, lane).after(&offset).store(shifted, lane);
             }
         }
@@ -470,7 +614,6 @@ mod tests {
     use super::*;
     use crate::chain::equation::Equation;
     use proptest::prelude::*;
-    use std::f64::consts::TAU;
 
     const TOLERANCE: f64 = 1e-10;
 

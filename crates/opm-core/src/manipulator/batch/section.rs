@@ -48,12 +48,14 @@ pub fn displace(
     at: [&Column; 3],
     home: [f64; 3],
     to: &mut Displacements,
+    lanes: usize,
 ) {
+    let lanes = lanes.min(LANES);
     // With a constant form, the loop has no branches.
     macro_rules! each {
         ($kind:ident, $shared:expr) => {{
             let form = Form { kind: SubspaceKind::$kind, shared: $shared };
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 let at = [at[0][lane], at[1][lane], at[2][lane]];
                 let values = SectionValues { at, home };
                 let angles = match section {
@@ -92,7 +94,7 @@ pub fn displace(
     }
     let euler = task.euler_section() == Some(section);
     if let (true, Some(inverse)) = (euler, task.home_orientation_inverse()) {
-        for lane in 0..LANES {
+        for lane in 0..lanes {
             (Matrix3::load(to, lane) * inverse).store(to, lane);
         }
     }
@@ -115,30 +117,36 @@ impl Displacement {
 
 /// The joints' displacements that move the outer link of `chain` by `targets`.
 #[inline(always)]
-pub fn solve(chain: &Chain, branch: Branch, targets: &Displacements, found: &mut Found) {
+pub fn solve(
+    chain: &Chain,
+    branch: Branch,
+    targets: &Displacements,
+    found: &mut Found,
+    lanes: usize,
+) {
     match chain {
         Chain::Rigid => (found.holds, found.beyond) = ([1; LANES], [0; LANES]),
-        Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Rpr(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Rpp(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Ppr(chain)) => attempt(chain, branch, targets, found),
-        Chain::Planar(PlanarChain::Prp(chain)) => attempt(chain, branch, targets, found),
-        Chain::Spherical(chain) => attempt(chain, branch, targets, found),
-        Chain::Ball(chain) => attempt(chain, branch, targets, found),
-        Chain::Translational(chain) => attempt(chain, branch, targets, found),
-        Chain::Spatial(chain) => attempt(chain, branch, targets, found),
+        Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rpr(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rpp(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Ppr(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Prp(chain)) => attempt(chain, branch, targets, found, lanes),
+        Chain::Spherical(chain) => attempt(chain, branch, targets, found, lanes),
+        Chain::Ball(chain) => attempt(chain, branch, targets, found, lanes),
+        Chain::Translational(chain) => attempt(chain, branch, targets, found, lanes),
+        Chain::Spatial(chain) => attempt(chain, branch, targets, found, lanes),
         Chain::Cylindrical(chain) => match chain.revolute() {
-            Some(0) => attempt(&WithRevolute::<0>(*chain), branch, targets, found),
-            Some(_) => attempt(&WithRevolute::<1>(*chain), branch, targets, found),
-            None => attempt(&WithRevolute::<2>(*chain), branch, targets, found),
+            Some(0) => attempt(&WithRevolute::<0>(*chain), branch, targets, found, lanes),
+            Some(_) => attempt(&WithRevolute::<1>(*chain), branch, targets, found, lanes),
+            None => attempt(&WithRevolute::<2>(*chain), branch, targets, found, lanes),
         },
     }
 }
 
 #[inline(always)]
-fn attempt<C>(chain: &C, branch: Branch, targets: &Displacements, found: &mut Found)
+fn attempt<C>(chain: &C, branch: Branch, targets: &Displacements, found: &mut Found, lanes: usize)
 where
     C: ClosedForm + Copy,
     C::Target: Lane,
@@ -152,7 +160,7 @@ where
     {
         displacements.are_directions = matches!(displacement, JointDisplacement::Direction(_));
     }
-    for lane in 0..LANES {
+    for lane in 0..lanes.min(LANES) {
         let Attempt { displacements, holds, beyond } =
             chain.attempt(&C::Target::load(targets, lane), branch);
         a.set(lane, displacements[0]);
@@ -186,11 +194,13 @@ pub fn shift(
     from: &Displacements,
     tau: &DisplacementColumns,
     to: &mut Displacements,
+    lanes: usize,
 ) {
+    let lanes = lanes.min(LANES);
     macro_rules! each {
         ($group:ty, $motion:expr, $read:ident) => {{
             let motion = $motion;
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 let displacement = <$group as Subgroup>::Displacement::load(from, lane);
                 match side {
                     Side::After => <$group>::after(&motion, &displacement, tau.$read(lane)),
@@ -273,11 +283,16 @@ pub fn report(
 
 /// Clears `within` where displacements are not within the limits.
 #[inline(always)]
-pub fn admit(limits: &Limits, displacements: &DisplacementColumns, within: &mut Mask) {
+pub fn admit(
+    limits: &Limits,
+    displacements: &DisplacementColumns,
+    within: &mut Mask,
+    lanes: usize,
+) {
     macro_rules! each {
         ($limits:expr, $read:ident) => {{
             let limits = $limits;
-            for lane in 0..LANES {
+            for lane in 0..lanes.min(LANES) {
                 within[lane] &= u64::from(limits.admits(displacements.$read(lane)));
             }
         }};
