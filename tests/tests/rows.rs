@@ -138,6 +138,39 @@ fn intervals_hold_the_poses_that_the_chains_reach() {
     assert!(partly > 100);
 }
 
+/// Rows so coarse that a hole, or all that is out of reach, lies between two poses. What a leg reaches may differ on both
+/// sides, though none of its joints is at a limit in between.
+#[test]
+fn coarse_rows_are_no_exception() {
+    let mut rng = Rng::with_seed(27);
+    let mut partly = 0;
+    for round in 0..3000 {
+        let pair = LEVEL[round % LEVEL.len()];
+        let options = Options { limited: rng.f64(), balls: false };
+        let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+        let counts = [2 + rng.u64(..8), 1 + rng.u64(..40), 1 + rng.u64(..4), 2, 1, 1];
+        let axes = manipulator.task_coordinates().iter().zip(counts).map(|(c, count)| {
+            let (below, above) = (3.0 * rng.f64(), 3.0 * rng.f64());
+            match count {
+                1 => Axis::fixed(c.name, c.home + 0.1 * (above - below)),
+                _ => Axis::new(c.name, c.home - below, c.home + above, count),
+            }
+        });
+        let grid = Grid::new(&manipulator, axes.collect()).unwrap();
+        let modes = match rng.u8(..3) {
+            0 => Modes::Any,
+            _ => Modes::One(manipulator.home_mode()),
+        };
+        let sweep = Sweep::new(&manipulator, &grid, modes);
+        let count = sweep.count(&Progress::default()).unwrap().reachable;
+        let expected = by_predicate(&manipulator, &grid, modes);
+        assert_eq!(count, expected, "round {round}: {pair:?} {modes:?}");
+        partly += u32::from(count > 0 && count < grid.poses());
+    }
+    assert!(partly > 500, "{partly}");
+}
+
 /// The shipped mechanisms have round dimensions, so limits, boundaries and holes coincide with
 /// poses.
 #[test]

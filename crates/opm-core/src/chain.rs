@@ -401,8 +401,8 @@ impl Chain {
     }
 
     /// The targets at which the two branches meet, or at which the chain stops closing, without those that limits of the
-    /// middle joint clearly exclude.
-    pub(crate) fn folds(&self, limits: &Limits) -> Vec<Surface> {
+    /// middle joint clearly exclude; each with its number among them.
+    pub(crate) fn folds(&self, limits: &Limits) -> Vec<(usize, Surface)> {
         let middle = match self {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
@@ -412,8 +412,25 @@ impl Chain {
             | Self::Translational(_)
             | Self::Spatial(_) => Vec::new(),
         };
-        let within = middle.into_iter().filter(|&displacement| limits.nearly_admits(displacement));
-        within.filter_map(|displacement| self.held(1, displacement)).collect()
+        let all = middle.into_iter().enumerate();
+        let within = all.filter(|&(_, displacement)| limits.nearly_admits(displacement));
+        within.filter_map(|(i, displacement)| Some((i, self.held(1, displacement)?))).collect()
+    }
+
+    /// Whether a fold bounds a convex set of the plane outside of which the chain does not close: a row that leaves it there
+    /// does not come back. In a ring, the outer circle is such a fold, and the inner one is not.
+    pub(crate) fn is_convex_fold(&self, fold: usize) -> bool {
+        match self {
+            Self::Planar(PlanarChain::Rrr(_)) => fold == 0,
+            Self::Planar(PlanarChain::Prr(_) | PlanarChain::Rrp(_)) => true,
+            Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Rigid
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => false,
+        }
     }
 
     /// The two ends of a joint's limits, as displacements at which the joint can be held.

@@ -112,7 +112,7 @@ impl DrivenLoop {
         let is_pole = matches!(chain, Chain::Planar(PlanarChain::Prp(_)));
         let dead_point = |at| DeadPoint { at, is_pole };
         let folds = chain.folds(&Limits::Free);
-        let zeros = folds.iter().flat_map(|surface| surface.along(&drive.path()).roots());
+        let zeros = folds.iter().flat_map(|(_, surface)| surface.along(&drive.path()).roots());
         let mut driven = Self {
             dead_points: zeros.map(|zero| dead_point(drive.at(zero))).collect(),
             screws: screws(&subspace, others)?,

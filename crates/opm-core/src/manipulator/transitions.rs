@@ -24,11 +24,11 @@ const FAR: f64 = 1e4;
 /// The targets at which a leg's feasibility can change within a slice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transitions {
-    /// Those at which the lower chain's branches meet, and in a sphere those at which its middle joint is at an end of its
-    /// limits.
-    folds: Vec<Surface>,
-    /// Those at which a joint of the lower chain is at an end of its limits.
-    ends: Vec<Surface>,
+    /// Those at which the lower chain leaves a convex set of the plane in which it closes, or what its middle joint leaves of
+    /// a sphere.
+    outer: Vec<Surface>,
+    /// The others at which the lower chain's branches meet, or a joint of it is at an end of its limits.
+    inner: Vec<Surface>,
     /// The targets at which the imaginary joint is at an end of what the upper section allows, each with the
     /// uncertainty of that end.
     tau_limits: Vec<(Surface, f64)>,
@@ -40,10 +40,10 @@ pub struct Transitions {
 }
 
 impl Transitions {
-    /// The surfaces, each with the uncertainty of where it is; with or without those where branches meet.
-    pub(super) fn surfaces(&self, folds: bool) -> impl Iterator<Item = (&Surface, f64)> {
-        let folds = self.folds.iter().filter(move |_| folds);
-        let known = folds.chain(&self.ends).map(|surface| (surface, 0.0));
+    /// The surfaces, each with the uncertainty of where it is; with or without the outer ones.
+    pub(super) fn surfaces(&self, outer: bool) -> impl Iterator<Item = (&Surface, f64)> {
+        let outer = self.outer.iter().filter(move |_| outer);
+        let known = outer.chain(&self.inner).map(|surface| (surface, 0.0));
         known.chain(self.tau_limits.iter().map(|(surface, blur)| (surface, *blur)))
     }
 
@@ -60,8 +60,8 @@ impl Transitions {
 }
 
 impl CompiledSection {
-    /// The surfaces at which the branches of the section's chain meet within its limits.
-    fn folds(&self) -> Vec<Surface> {
+    /// The surfaces at which the branches of the section's chain meet within its limits, with their numbers.
+    fn folds(&self) -> Vec<(usize, Surface)> {
         let middle = self.coordinates[1].as_ref();
         self.chain.folds(middle.map_or(&Limits::Free, |middle| &middle.limits))
     }
@@ -99,14 +99,22 @@ impl Manipulator {
     pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
-        let (mut folds, mut ends) = (leg.lower.folds(), leg.lower.ends()?);
-        if leg.shell(branch.branches.lower).is_some() {
-            let of_shell = ends.extract_if(.., |(joint, _)| *joint == 1);
-            folds.extend(of_shell.map(|(_, surface)| surface));
-        }
-        let ends = ends.into_iter().map(|(_, surface)| surface).collect();
-        let mut transitions =
-            Transitions { folds, ends, tau_limits: Vec::new(), size, largest_tau: None };
+        let spherical = leg.shell(branch.branches.lower).is_some();
+        let (folds, ends) = (leg.lower.folds(), leg.lower.ends()?);
+        let is_outer = |fold: usize| spherical || leg.lower.chain.is_convex_fold(fold);
+        let of_folds = folds.into_iter().map(|(fold, surface)| (is_outer(fold), surface));
+        let of_ends = ends.into_iter().map(|(joint, surface)| (spherical && joint == 1, surface));
+        let (outer, inner): (Vec<_>, Vec<_>) =
+            of_folds.chain(of_ends).partition(|(outer, _)| *outer);
+        let surfaces =
+            |of: Vec<(bool, Surface)>| of.into_iter().map(|(_, surface)| surface).collect();
+        let mut transitions = Transitions {
+            outer: surfaces(outer),
+            inner: surfaces(inner),
+            tau_limits: Vec::new(),
+            size,
+            largest_tau: None,
+        };
         if let Some(b) = &branch.with_upper {
             self.add_tau_limits(branch, b, &mut transitions)?;
         }
@@ -140,7 +148,7 @@ impl Manipulator {
         let size = transitions.size;
         let tau_limits = &mut transitions.tau_limits;
         let (folds, ends) = (leg.upper.folds(), leg.upper.ends()?);
-        for surface in folds.iter().chain(ends.iter().map(|(_, surface)| surface)) {
+        for (_, surface) in folds.iter().chain(&ends) {
             surface.meet(&path, &span, Uncertainty { size, blur: 0.0 }, &mut |[from, to]| {
                 let blur = 0.5 * (to - from);
                 let share = if rotation { blur } else { blur / size };

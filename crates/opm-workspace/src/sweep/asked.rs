@@ -20,6 +20,8 @@ struct Piece {
     row: usize,
     from: i32,
     to: i32,
+    /// Whether a leg may be unable to go from the pose before to the first one along the row, even if it reaches both.
+    apart: bool,
 }
 
 /// Whether the poses that are left of a row are in the regions of all legs that have any.
@@ -112,8 +114,10 @@ impl AskedRows {
         self.second.push(axes.get(1).map_or(0.0, |axis| axis.value(number)));
         self.clipped.push(clipped);
         let number = |pose: u64| (pose - self.window.from) as i32;
-        let pieces =
-            left.iter().map(|run| Piece { row, from: number(run.from), to: number(run.to) });
+        let pieces = left.iter().map(|run| {
+            let (from, to) = (number(run.from), number(run.to));
+            Piece { row, from, to, apart: true }
+        });
         self.left.extend(pieces);
     }
 
@@ -185,7 +189,7 @@ impl AskedRows {
                     self.clipped[piece.row] = Clipped::Not;
                     self.questions.push(piece);
                 } else {
-                    subtract(piece, self.arcs.holes(lane), &mut self.questions);
+                    subtract(piece, &self.arcs.holes(lane), &mut self.questions);
                 }
             }
             std::mem::swap(&mut self.left, &mut self.questions);
@@ -200,6 +204,8 @@ impl AskedRows {
         wanted: impl Fn(&[SliceBranch]) -> bool,
     ) {
         self.of_branch.resize_with(sheet.branches().count(), Vec::new);
+        // A union of what branches reach no longer tells where a leg cannot go along.
+        let all_single = sheet.legs.iter().all(|branches| branches.len() == 1);
         let unclipped = self.any_unclipped();
         let mut next = 0;
         for branches in &sheet.legs {
@@ -215,7 +221,8 @@ impl AskedRows {
             match &branches[..] {
                 [branch] => {
                     // What was clipped to the region of a leg's only branch, or to arcs, is where that closes.
-                    let closes = (branch.is_clippable() || branch.has_arcs()) && !unclipped;
+                    let arcs = branch.has_arcs() && all_single;
+                    let closes = (branch.is_clippable() || arcs) && !unclipped;
                     self.ask_branch(sweep, sheet, branch, [decided, closes]);
                     let (mut left, answers) = (std::mem::take(&mut self.left), &self.answers);
                     take_reached(&self.questions, answers, &mut left);
@@ -260,7 +267,7 @@ impl AskedRows {
         let [first, second] = &mut self.poses;
         first.clear();
         second.clear();
-        for &Piece { row, from, to } in &self.questions {
+        for &Piece { row, from, to, .. } in &self.questions {
             first.push(self.first[((from + to - 1) / 2) as usize]);
             second.push(self.second[row]);
         }
@@ -391,8 +398,12 @@ fn rows_of<'s>(
     }
 }
 
-/// Adds what some holes leave of a piece, which come in any order and may overlap.
-fn subtract(piece: Piece, holes: impl Iterator<Item = [i32; 2]> + Clone, parts: &mut Vec<Piece>) {
+/// Adds what some holes leave of a piece, which come in any order and may overlap, or lie between two poses.
+fn subtract(
+    piece: Piece,
+    holes: &(impl Iterator<Item = [i32; 2]> + Clone),
+    parts: &mut Vec<Piece>,
+) {
     let mut next = piece.from;
     while next < piece.to {
         let inside = holes.clone().find(|&[from, to]| from <= next && next < to);
@@ -400,9 +411,10 @@ fn subtract(piece: Piece, holes: impl Iterator<Item = [i32; 2]> + Clone, parts: 
             next = to;
             continue;
         }
-        let starts = holes.clone().map(|[from, to]| if from < to { from } else { i32::MAX });
-        let end = starts.filter(|&from| from > next).fold(piece.to, i32::min);
-        parts.push(Piece { from: next, to: end, ..piece });
+        let starts = holes.clone().map(|[from, _]| from).filter(|&from| from > next);
+        let end = starts.fold(piece.to, i32::min);
+        let apart = piece.apart || next > piece.from;
+        parts.push(Piece { from: next, to: end, apart, ..piece });
         next = end;
     }
 }
@@ -410,7 +422,10 @@ fn subtract(piece: Piece, holes: impl Iterator<Item = [i32; 2]> + Clone, parts: 
 /// Cuts a piece at some places, which are in order, and adds the parts, and each pose of these places apart.
 fn cut_piece(piece: Piece, cuts: &[[i32; 2]], parts: &mut Vec<Piece>) {
     let mut next = piece.from;
-    let mut add = |from: i32, to: i32| parts.push(Piece { from, to, ..piece });
+    let mut add = |from: i32, to: i32| {
+        let apart = piece.apart && from == piece.from;
+        parts.push(Piece { from, to, apart, ..piece });
+    };
     for &[from, to] in cuts {
         let (from, to) = (from.min(piece.to), to.min(piece.to));
         if from > next {
@@ -430,7 +445,9 @@ fn take_reached(questions: &[Piece], answers: &[bool], reached: &mut Vec<Piece>)
     reached.clear();
     for (&piece, _) in questions.iter().zip(answers).filter(|(_, reached)| **reached) {
         match reached.last_mut() {
-            Some(last) if (last.row, last.to) == (piece.row, piece.from) => last.to = piece.to,
+            Some(last) if !piece.apart && (last.row, last.to) == (piece.row, piece.from) => {
+                last.to = piece.to;
+            }
             _ => reached.push(piece),
         }
     }

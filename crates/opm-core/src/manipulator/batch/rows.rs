@@ -101,7 +101,8 @@ impl RowArcs {
         self.doubtful[row] != 0
     }
 
-    /// The poses of a row that are out of reach, as ranges that may be empty, in any order.
+    /// The poses of a row that are out of reach, as ranges, in any order. Where a range is empty, that is between its pose and
+    /// the one before, and something between them may be out of reach.
     pub fn holes(&self, row: usize) -> impl Iterator<Item = [i32; 2]> + Clone {
         self.holes.iter().map(move |hole| hole.of(row))
     }
@@ -127,15 +128,16 @@ impl Manipulator {
     }
 
     /// Finds the poses of some rows near which a leg's feasibility may change. Between them,
-    /// [`Manipulator::reaches`] is the same for all poses of a row. With `folds` being false, that is so only among poses at
-    /// which the leg closes, be it within its limits or not.
+    /// [`Manipulator::reaches`] is the same for all poses of a row. With `outer` being false, that is so only among poses
+    /// of a convex set of the plane in which the leg closes but for a hole, be it within its limits or not, or of one of
+    /// the intervals that [`RowArcs`] leave of a row on a sphere.
     #[doc(hidden)]
     pub fn row_ends(
         &self,
         branch: &LegBranch,
         transitions: &Transitions,
         rows: &SheetRows<'_>,
-        folds: bool,
+        outer: bool,
         batch: &mut Batch,
         ends: &mut Vec<RowEnds>,
     ) {
@@ -146,7 +148,7 @@ impl Manipulator {
             branch,
             transitions,
             rows,
-            folds,
+            outer,
             block,
             ends,
         });
@@ -248,7 +250,7 @@ struct FindEnds<'a> {
     branch: &'a LegBranch,
     transitions: &'a Transitions,
     rows: &'a SheetRows<'a>,
-    folds: bool,
+    outer: bool,
     block: &'a mut Block,
     ends: &'a mut Vec<RowEnds>,
 }
@@ -295,7 +297,8 @@ impl WithSimd for FindArcs<'_> {
                     let inner = hole.inner.each_ref().map(|column| column[lane] + later);
                     let outer = hole.outer.each_ref().map(|column| column[lane] + later);
                     let (certain, possible) = (scale.inside(inner), scale.inside(outer));
-                    ends.set(lane, possible);
+                    let is_hole = outer[0] <= outer[1];
+                    ends.set(lane, possible.map(|number| if is_hole { number } else { 0.0 }));
                     let same = (certain[0] == possible[0]) & (certain[1] == possible[1]);
                     let empty = possible[1] <= possible[0];
                     arcs.doubtful[lane] |= i32::from(!(same | empty));
@@ -330,7 +333,7 @@ impl WithSimd for FindEnds<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, branch, transitions, rows, folds, block, ends } = self;
+        let Self { manipulator, branch, transitions, rows, outer, block, ends } = self;
         let scale = block.start_rows(manipulator, branch, rows);
         let starts = &block.shifted;
         let kind = manipulator.task.form(Section::Lower).kind;
@@ -344,7 +347,7 @@ impl WithSimd for FindEnds<'_> {
         if !transitions.are_complete(size) {
             return ends.push(RowEnds::everything(rows.count));
         }
-        for (surface, blur) in transitions.surfaces(folds) {
+        for (surface, blur) in transitions.surfaces(outer) {
             let uncertainty = Uncertainty { size: transitions.size() + size, blur };
             finder.find(surface, surface.tolerance(uncertainty), ends);
         }
