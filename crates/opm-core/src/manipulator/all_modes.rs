@@ -6,6 +6,7 @@ use super::leg::{CompiledLeg, LegSolution};
 use super::pose::PoseError;
 use super::solution::{Solution, SolvedPose, Unreachable};
 use super::{Dependent, Manipulator, Mode};
+use pulp::{Simd, WithSimd};
 
 /// Every leg's solutions at one pose. [`Manipulator::all_modes`] makes a buffer of this type.
 ///
@@ -38,15 +39,21 @@ struct Completion {
     legs: Vec<LegModes>,
 }
 
-/// A leg's solutions in the order of [`super::mode::ModeLayout::of_leg`]; `None` for combinations that the
-/// leg does not have, and before the first pose.
-type LegModes = [Option<Result<LegSolution, Unreachable>>; 4];
+/// A leg's solutions in the order of [`super::mode::ModeLayout::of_leg`].
+#[derive(Clone, Debug)]
+struct LegModes {
+    /// They have a meaning where the outcome is `Ok`.
+    solutions: [LegSolution; 4],
+    /// `None` for combinations that the leg does not have, and before the first pose.
+    outcomes: [Option<Result<(), Unreachable>>; 4],
+}
 
 impl Manipulator {
     /// A buffer for [`Manipulator::inverse_all`].
     pub fn all_modes(&self) -> AllModes {
         let count = self.dependent.as_ref().map_or(1, Dependent::combinations);
-        let legs = vec![[None; 4]; self.legs.len()];
+        let leg = LegModes { solutions: [LegSolution::HOME; 4], outcomes: [None; 4] };
+        let legs = vec![leg; self.legs.len()];
         let completion = Completion { solved: self.solved_at_home(), missed: None, legs };
         AllModes { completions: vec![completion; count] }
     }
@@ -65,7 +72,7 @@ impl Manipulator {
         self.check_pose(pose)?;
         for (number, completion) in buffer.completions.iter_mut().enumerate() {
             let Completion { solved, missed, legs } = completion;
-            legs.fill([None; 4]);
+            legs.iter_mut().for_each(|leg| leg.outcomes = [None; 4]);
             // The choices that the dependent coordinates are computed with.
             let (mut mask, mut chosen) = (Mode::default(), Mode::default());
             *missed = None;
@@ -80,24 +87,8 @@ impl Manipulator {
             if missed.is_some() {
                 continue;
             }
-            (solved.v, solved.b) = self.task.sections(&solved.pose);
-            let (v, b) = (solved.v, solved.b);
-            let rise = self.task.rise(&solved.pose);
-            for (number, (leg, modes)) in self.legs.iter().zip(legs).enumerate() {
-                let own = self.modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
-                for (part, mode) in self.modes.leg_modes(number).enumerate() {
-                    if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
-                        continue;
-                    }
-                    let branches = self.modes.branches(mode, number);
-                    let solution = leg.solve(&self.task, [&v, &b], rise, branches, 0.0);
-                    modes[part] = Some(solution.map_err(|(section, deficit)| Unreachable {
-                        leg: number,
-                        section,
-                        deficit,
-                    }));
-                }
-            }
+            let wanted = Choices { mask, chosen };
+            self.arch.dispatch(SolveChoices { manipulator: self, completion, wanted });
         }
         Ok(buffer.reached().then_some(buffer))
     }
@@ -121,12 +112,12 @@ impl Manipulator {
         let near = Revolutions::NearHome;
         let mut angles = Angles::new(AngleOf::Leg(0));
         for (number, modes) in completion.legs.iter().enumerate() {
-            match &modes[self.modes.of_leg(mode, number)] {
+            match modes.get(self.modes.of_leg(mode, number)) {
                 Some(Ok(solution)) => {
                     buffer.legs[number] = *solution;
                     self.write(number, buffer, near, &mut angles);
                 }
-                Some(Err(unreachable)) => buffer.unreachable.push(*unreachable),
+                Some(Err(unreachable)) => buffer.unreachable.push(unreachable),
                 None => return None,
             }
         }
@@ -165,9 +156,9 @@ impl Manipulator {
         for (number, (leg, modes)) in self.legs.iter().zip(&completion.legs).enumerate() {
             let within = |solution: &LegSolution| self.admits(leg, solution, rise);
             // Legs share no choices, so that the first mode consists of the first choices of each leg.
-            let mode = (self.modes.leg_modes(number).zip(modes))
-                .find(|(_, solution)| matches!(solution, Some(Ok(solution)) if within(solution)))?
-                .0;
+            let mode = (self.modes.leg_modes(number).enumerate())
+                .find(|&(part, _)| modes.solution(part).is_some_and(within))?
+                .1;
             first.0 |= mode.0;
         }
         Some(first)
@@ -181,9 +172,9 @@ impl Manipulator {
         for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
             let rise = self.task.rise(&completion.solved.pose);
             let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
-                modes.map(|solution| {
-                    let solution = solution.and_then(Result::ok);
-                    solution.filter(|solution| self.admits(leg, solution, rise))
+                [0, 1, 2, 3].map(|part| {
+                    let solution = modes.solution(part);
+                    solution.filter(|solution| self.admits(leg, solution, rise)).copied()
                 })
             };
             let legs = || self.legs.iter().zip(&completion.legs);
@@ -206,9 +197,76 @@ impl Manipulator {
 impl Completion {
     /// The legs that no choice closes, with the deficit of the first one.
     fn open_legs(&self) -> impl Iterator<Item = Unreachable> + '_ {
-        let closes = |leg: &LegModes| leg.iter().any(|solution| matches!(solution, Some(Ok(_))));
-        let open = self.legs.iter().filter(move |leg| !closes(leg));
-        open.filter_map(|leg| leg.iter().flatten().find_map(|solution| solution.err()))
+        let open = self.legs.iter().filter(|leg| !leg.outcomes.contains(&Some(Ok(()))));
+        open.filter_map(|leg| leg.outcomes.iter().flatten().find_map(|outcome| outcome.err()))
+    }
+}
+
+impl LegModes {
+    /// The outcome of a combination.
+    fn get(&self, part: usize) -> Option<Result<&LegSolution, Unreachable>> {
+        self.outcomes[part].map(|outcome| outcome.map(|()| &self.solutions[part]))
+    }
+
+    /// The solution of a combination that closes the leg.
+    fn solution(&self, part: usize) -> Option<&LegSolution> {
+        self.get(part).and_then(Result::ok)
+    }
+}
+
+/// The modes in which some choices are these.
+#[derive(Clone, Copy)]
+struct Choices {
+    mask: Mode,
+    chosen: Mode,
+}
+
+/// Solves every leg at the pose of a completion, for all of its choices that are wanted, with the instructions of the
+/// processor at hand.
+struct SolveChoices<'a> {
+    manipulator: &'a Manipulator,
+    completion: &'a mut Completion,
+    wanted: Choices,
+}
+
+impl WithSimd for SolveChoices<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, completion, wanted: Choices { mask, chosen } } = self;
+        let Manipulator { task, modes, .. } = manipulator;
+        let Completion { solved, legs, .. } = completion;
+        (solved.v, solved.b) = task.sections(&solved.pose);
+        let rise = task.rise(&solved.pose);
+        for (number, (leg, found)) in manipulator.legs.iter().zip(legs).enumerate() {
+            let own = modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
+            let pose = [&solved.v, &solved.b];
+            let missed = |(section, deficit)| Unreachable { leg: number, section, deficit };
+            // On both branches of the section that is solved second, the other one is the same.
+            let mut of_first = [None; 2];
+            for (part, mode) in modes.leg_modes(number).enumerate() {
+                if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
+                    continue;
+                }
+                let branches = modes.branches(mode, number);
+                let first = &mut of_first[branches.of(leg.split_section) as usize];
+                // Closures would not be inlined, and would not have the processor's instructions.
+                let mut outcome = match *first {
+                    Some((earlier, outcome)) => {
+                        found.solutions[part] = found.solutions[earlier];
+                        outcome
+                    }
+                    None => leg.solve_first(pose, branches, 0.0, &mut found.solutions[part]),
+                };
+                *first = Some((part, outcome));
+                if outcome.is_ok() {
+                    let solution = &mut found.solutions[part];
+                    outcome = leg.solve_second(task, pose, rise, branches, 0.0, solution);
+                }
+                found.outcomes[part] = Some(outcome.map_err(missed));
+            }
+        }
     }
 }
 
@@ -234,7 +292,7 @@ impl AllModes {
             let completion = &self.completions[manipulator.completion(mode)];
             let mut legs = completion.legs.iter().enumerate();
             completion.missed.is_none()
-                && legs.all(|(number, leg)| matches!(leg[layout.of_leg(mode, number)], Some(Ok(_))))
+                && legs.all(|(number, leg)| leg.solution(layout.of_leg(mode, number)).is_some())
         })
     }
 }

@@ -364,6 +364,50 @@ impl CompiledLeg {
     pub fn solve_in(
         &self,
         task: &Task,
+        pose: [&Displacement; 2],
+        rise: f64,
+        branches: LegBranches,
+        near: f64,
+        out: &mut LegSolution,
+    ) -> Result<(), (Section, ReachDeficit)> {
+        self.solve_first(pose, branches, near, out)?;
+        self.solve_second(task, pose, rise, branches, near, out)
+    }
+
+    /// Solves the section that is solved first, and the imaginary joint that follows from it.
+    #[inline(always)]
+    pub fn solve_first(
+        &self,
+        [v, b]: [&Displacement; 2],
+        branches: LegBranches,
+        near: f64,
+        out: &mut LegSolution,
+    ) -> Result<(), (Section, ReachDeficit)> {
+        if self.lean.is_some() {
+            // Neither section is solved apart.
+            return Ok(());
+        }
+        match self.split_section {
+            Section::Upper => {
+                let solved = self.upper.solve(b, branches.upper, &mut out.upper);
+                solved.map_err(|deficit| (Section::Upper, deficit))?;
+                out.tau = self.unwound(self.step(&out.upper), near);
+            }
+            Section::Lower => {
+                let solved = self.lower.solve(v, branches.lower, &mut out.lower);
+                solved.map_err(|deficit| (Section::Lower, deficit))?;
+                // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
+                out.tau = self.unwound(self.step(&out.lower), -near).inverse();
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves the other section for what [`CompiledLeg::solve_first`] found.
+    #[inline(always)]
+    pub fn solve_second(
+        &self,
+        task: &Task,
         [v, b]: [&Displacement; 2],
         rise: f64,
         branches: LegBranches,
@@ -374,25 +418,16 @@ impl CompiledLeg {
             *out = self.solve_raised(task, [v, b], rise, branches, near)?;
             return Ok(());
         }
-        let of = |section: Section| move |deficit: ReachDeficit| (section, deficit);
         match self.split_section {
             Section::Upper => {
-                let solved = self.upper.solve(b, branches.upper, &mut out.upper);
-                solved.map_err(of(Section::Upper))?;
-                out.tau = self.unwound(self.step(&out.upper), near);
                 let target = task.lower_intersection.after(v, out.tau);
                 let solved = self.lower.solve(&target, branches.lower, &mut out.lower);
-                solved.map_err(of(Section::Lower))
+                solved.map_err(|deficit| (Section::Lower, deficit))
             }
             Section::Lower => {
-                let solved = self.lower.solve(v, branches.lower, &mut out.lower);
-                solved.map_err(of(Section::Lower))?;
-                // L · exp(I c) = v, with c the imaginary joint's displacement: τ = -c and U = exp(I c) · b.
-                let step = self.unwound(self.step(&out.lower), -near);
-                out.tau = step.inverse();
-                let target = task.upper_intersection.before(b, step);
+                let target = task.upper_intersection.before(b, out.tau.inverse());
                 let solved = self.upper.solve(&target, branches.upper, &mut out.upper);
-                solved.map_err(of(Section::Upper))
+                solved.map_err(|deficit| (Section::Upper, deficit))
             }
         }
     }
@@ -519,4 +554,15 @@ fn split_section(task: &Task, [lower, upper]: [usize; 2]) -> Option<Section> {
 pub(crate) struct LegBranches {
     pub lower: Branch,
     pub upper: Branch,
+}
+
+impl LegBranches {
+    /// The branch of a section's chain.
+    #[inline(always)]
+    pub fn of(self, section: Section) -> Branch {
+        match section {
+            Section::Lower => self.lower,
+            Section::Upper => self.upper,
+        }
+    }
 }
