@@ -179,11 +179,13 @@ impl<'a> Sweep<'a> {
     /// A sweep of `grid`, which has to be a grid of this manipulator or of one of its sections alone.
     pub fn new(manipulator: &'a Manipulator, grid: &'a Grid, modes: Modes) -> Self {
         let row = grid.row();
-        let stride = (BLOCK / row.min(SEGMENT)).max(1);
         let lower = grid.axes()[..grid.lower()].get(1..).unwrap_or_default();
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
+        // Small sheets are not divided: it takes some time to enter one.
+        let (stride, sheet) = ((BLOCK / row.min(SEGMENT)).max(1), side * segments);
+        let stride = if sheet <= stride { stride - stride % sheet } else { stride };
         let (limit, shard) = (None, Shard::WHOLE);
         Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
     }

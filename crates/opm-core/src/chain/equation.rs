@@ -133,6 +133,27 @@ impl Equation {
         }
     }
 
+    /// A function of the same kind with other coefficients, and with the same period.
+    #[inline(always)]
+    pub(crate) fn with(&self, c: [f64; 3]) -> Self {
+        match *self {
+            Self::Polynomial(_) => Self::Polynomial(c),
+            Self::Harmonic(_) => Self::Harmonic(c),
+            Self::Periodic(_, period) => Self::Periodic([c[0], c[1]], period),
+        }
+    }
+
+    /// Whether the absolute value of the function may be within `tolerance` anywhere. Where it is not, all of
+    /// [`Equation::near_zeros`] is empty.
+    #[inline(always)]
+    pub(crate) fn may_be_zero(&self, tolerance: f64) -> bool {
+        match *self {
+            Self::Polynomial([c0, c1, c2]) => c1 * c1 - 4.0 * c2 * (c0 - tolerance) >= 0.0,
+            Self::Harmonic([c0, c1, c2]) => c0.abs() <= (c1 * c1 + c2 * c2).sqrt() + tolerance,
+            Self::Periodic(..) => true,
+        }
+    }
+
     /// The slope at `t = 0`.
     pub(crate) fn slope_at_zero(&self) -> f64 {
         match *self {

@@ -5,7 +5,6 @@
 //! last one falls or grows all the way. So limits of that joint are two cosines.
 
 use super::surface::{Surface, Uncertainty};
-use crate::group::Path;
 use crate::numeric::angle::atan2;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -33,66 +32,44 @@ pub struct ArcHole {
 }
 
 impl Shell {
-    /// The largest value at which a target on one of the cones may be to the other side of it.
-    pub fn tolerance(&self) -> f64 {
-        let cone = Surface::Cone { fixed: self.fixed, carried: self.carried, cosine: 0.0 };
-        cone.tolerance(Uncertainty { size: 1.0, blur: 0.0 })
-    }
-
-    /// What a path on the sphere is out of, in one revolution: what is too near to the first axis, and what is too far from
-    /// it. Within `margin` of the ends, radians, nothing is certain. It has no branches: loops over many paths are vectorised.
-    #[inline(always)]
-    pub fn holes(&self, path: &Path, tolerance: f64, margin: f64) -> [ArcHole; 2] {
+    /// Two cones: a target is out of the shell where its last axis is in either, nearer to the cone's own axis than its
+    /// surface.
+    pub fn cones(&self) -> [Surface; 2] {
         let Self { fixed, carried, cosines: [least, most] } = *self;
-        // kept + r cos(t - phase)
-        let [kept, cosine, sine] =
-            Surface::Cone { fixed, carried, cosine: 0.0 }.along(path).coefficients();
-        let r = (cosine * cosine + sine * sine).sqrt();
-        let phase = atan2(sine, cosine);
-        let near = Edge::new(most - kept, r, tolerance);
-        let far = Edge::new(least - kept, r, tolerance);
-        let opposite = phase + 0.5 * TAU;
         [
-            hole(phase, near.angle, near.half + margin, near.misses & (near.angle < 1.0)),
-            hole(
-                opposite,
-                0.5 * TAU - far.angle,
-                far.half + margin,
-                far.misses & (far.angle > 1.0),
-            ),
+            Surface::Cone { fixed, carried, cosine: most },
+            Surface::Cone { fixed: -fixed, carried, cosine: -least },
         ]
     }
-}
 
-/// Where `r cos t` has a value.
-#[derive(Clone, Copy)]
-struct Edge {
-    /// The angle between 0 and π; one of these where no angle has the value.
-    angle: f64,
-    /// How far it may be off.
-    half: f64,
-    /// Whether no angle has the value.
-    misses: bool,
-}
-
-impl Edge {
-    #[inline(always)]
-    fn new(value: f64, r: f64, tolerance: f64) -> Self {
-        let square = (r - value) * (r + value);
-        let slope = square.max(0.0).sqrt();
-        // See `Equation::near_zeros`.
-        let parted = square > 4.0 * r * tolerance;
-        let half = if parted { 2.0 * tolerance / slope } else { 10.0 * (tolerance / r).sqrt() };
-        let misses = value.abs() > r + tolerance;
-        Self { angle: atan2(slope, value), half: if misses { 0.0 } else { half }, misses }
+    /// The largest value at which a target on one of the cones may be to the other side of it.
+    pub fn tolerance(&self) -> f64 {
+        self.cones()[0].tolerance(Uncertainty { size: 1.0, blur: 0.0 })
     }
 }
 
-/// The angles that are nearer to one than a half width, which may be off by `margin`.
+/// Whether `c₀ + c₁ cos t + c₂ sin t` may be positive anywhere, if values below the tolerance may have either sign.
 #[inline(always)]
-fn hole(middle: f64, half: f64, margin: f64, empty: bool) -> ArcHole {
-    let (inner, outer) = (half - margin, half + margin);
-    let outer = if empty { -1.0 } else { outer };
+pub fn may_have_hole([c0, c1, c2]: [f64; 3], tolerance: f64) -> bool {
+    c0 + (c1 * c1 + c2 * c2).sqrt() >= -tolerance
+}
+
+/// The angles at which `c₀ + c₁ cos t + c₂ sin t` is positive, if values below the tolerance may have either sign. Within
+/// `margin` of the ends, radians, nothing is certain. It has no branches: loops over many functions are vectorised.
+#[inline(always)]
+pub fn hole([c0, c1, c2]: [f64; 3], tolerance: f64, margin: f64) -> ArcHole {
+    // c₀ + r cos(t - phase)
+    let r = (c1 * c1 + c2 * c2).sqrt();
+    let square = (r - c0) * (r + c0);
+    let slope = square.max(0.0).sqrt();
+    let (middle, apart) = (atan2(c2, c1), atan2(slope, -c0));
+    // See `Equation::near_zeros`.
+    let parted = square > 4.0 * r * tolerance;
+    let off = if parted { 2.0 * tolerance / slope } else { 10.0 * (tolerance / r).sqrt() };
+    let has_no_zero = c0.abs() > r + tolerance;
+    let off = if has_no_zero { margin } else { off + margin };
+    let (inner, outer) = (apart - off, apart + off);
+    let outer = if has_no_zero & (c0 < 0.0) { -1.0 } else { outer };
     ArcHole { inner: [middle - inner, middle + inner], outer: [middle - outer, middle + outer] }
 }
 
@@ -102,6 +79,7 @@ mod tests {
     use crate::chain::Branch;
     use crate::chain::limits::Limits;
     use crate::chain::spherical::SphericalChain;
+    use crate::group::Path;
     use nalgebra::{Matrix3, Rotation3, Unit};
     use proptest::prelude::*;
 
@@ -147,7 +125,14 @@ mod tests {
                 prop_assert!(limits.range().1 - limits.range().0 > TAU / 2.0);
                 return Ok(());
             };
-            let holes = shell.holes(&path, shell.tolerance(), 1e-9);
+            let holes = shell.cones().map(|cone| {
+                let along = cone.along(&path).coefficients();
+                let found = hole(along, shell.tolerance(), 1e-9);
+                if !may_have_hole(along, shell.tolerance()) {
+                    assert!(found.outer[1] < found.outer[0], "{found:?}");
+                }
+                found
+            });
             for share in shares {
                 let t = TAU * share;
                 let target = rotation(&about, t) * start;

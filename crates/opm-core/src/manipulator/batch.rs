@@ -19,6 +19,7 @@ use super::{Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
+use crate::task::Task;
 use decide::Decided;
 use lanes::{Column, DisplacementColumns, Displacements, LANES, Mask};
 use pulp::{Arch, Simd, WithSimd};
@@ -351,16 +352,12 @@ impl Block {
     fn displace_section(&mut self, manipulator: &Manipulator, section: Section, lanes: usize) {
         let task = &manipulator.task;
         let Self { pose, v, b, .. } = self;
-        let mut at = [&[0.0; LANES]; 3];
-        let mut home = [0.0; 3];
-        for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
-            (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
-        }
+        let (at, home) = columns_of(task, section, pose);
         let to = match section {
             Section::Lower => v,
             Section::Upper => b,
         };
-        section::displace(task, section, at, home, to, lanes);
+        section::displace(task, section, &at, home, to, lanes);
     }
 
     /// Solves both chains of a leg.
@@ -434,6 +431,20 @@ impl Block {
             section::imaginary(joint, &self.tau, &mut self.imaginary[number]);
         }
     }
+}
+
+/// The columns of a section's coordinates without its height, of zeros beyond the last, and their values at home.
+#[inline(always)]
+fn columns_of<'p>(
+    task: &Task,
+    section: Section,
+    pose: &'p [Column],
+) -> ([&'p Column; 3], [f64; 3]) {
+    let (mut at, mut home) = ([&[0.0; LANES]; 3], [0.0; 3]);
+    for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
+        (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
+    }
+    (at, home)
 }
 
 /// Writes columns to rows of as many numbers. Squares of four rows and four columns are transposed in the processor's

@@ -51,6 +51,8 @@ pub struct AskedRows {
     of_branch: Vec<Vec<Piece>>,
     /// Pieces of rows of which one pose answers for all.
     questions: Vec<Piece>,
+    /// Poses of which rounding could change whether a leg reaches them.
+    doubts: Vec<Piece>,
     cuts: Cuts,
     arcs: RowArcs,
     poses: [Vec<f64>; 2],
@@ -64,7 +66,7 @@ struct Cuts {
     /// The second coordinates of the rows that are cut.
     second: Vec<f64>,
     ends: Vec<RowEnds>,
-    /// The ends that fall on what is left of one row, in order.
+    /// The ends that fall on what is left of one row, or the holes of one, in order.
     of_row: Vec<[i32; 2]>,
 }
 
@@ -81,6 +83,7 @@ impl AskedRows {
             ends: Vec::new(),
             of_branch: Vec::new(),
             questions: Vec::new(),
+            doubts: Vec::new(),
             cuts: Cuts::default(),
             arcs: RowArcs::new(),
             poses: [Vec::new(), Vec::new()],
@@ -182,18 +185,43 @@ impl AskedRows {
             let rows = rows_of(sweep, sheet, &self.first, &self.cuts.second);
             sheet.manipulator().row_arcs(&branch.follow, &rows, &mut self.batch, &mut self.arcs);
             self.questions.clear();
+            self.doubts.clear();
             lanes = Lanes::new();
             for &piece in &self.left {
-                let (lane, _) = lanes.of(piece.row);
-                if self.arcs.is_doubtful(lane) {
-                    self.clipped[piece.row] = Clipped::Not;
-                    self.questions.push(piece);
-                } else {
-                    subtract(piece, &self.arcs.holes(lane), &mut self.questions);
+                let (lane, is_first) = lanes.of(piece.row);
+                let holes = &mut self.cuts.of_row;
+                if is_first {
+                    holes.clear();
+                    holes.extend(self.arcs.holes(lane));
+                    holes.sort_unstable_by_key(|hole| hole[0]);
                 }
+                subtract(piece, holes, &mut self.questions);
+                let inside = |pose: &i32| (piece.from..piece.to).contains(pose);
+                let poses = self.arcs.doubtful(lane).filter(inside);
+                self.doubts.extend(poses.map(|from| Piece {
+                    from,
+                    to: from + 1,
+                    apart: true,
+                    ..piece
+                }));
             }
             std::mem::swap(&mut self.left, &mut self.questions);
+            self.settle_doubts(sweep, sheet, branch);
         }
+    }
+
+    /// Adds those of the doubtful poses that a branch reaches to what is left.
+    fn settle_doubts(&mut self, sweep: &Sweep<'_>, sheet: &Sheet<'_>, branch: &SliceBranch) {
+        if self.doubts.is_empty() {
+            return;
+        }
+        self.doubts.sort_unstable_by_key(|piece| (piece.row, piece.from));
+        self.doubts.dedup();
+        std::mem::swap(&mut self.questions, &mut self.doubts);
+        self.answer(sweep, sheet, branch);
+        let reached = self.questions.iter().zip(&self.answers).filter(|(_, reached)| **reached);
+        self.left.extend(reached.map(|(&piece, _)| piece));
+        self.left.sort_unstable_by_key(|piece| (piece.row, piece.from));
     }
 
     /// Leaves the poses that those legs reach that are `wanted`, where regions do not tell it already.
@@ -263,6 +291,16 @@ impl AskedRows {
     ) {
         self.find_ends(sweep, sheet, branch, [decided, closes]);
         self.cut(decided);
+        self.answer(sweep, sheet, branch);
+        if decided {
+            for (answer, piece) in self.answers.iter_mut().zip(&self.questions) {
+                *answer |= self.clipped[piece.row] == Clipped::Surely;
+            }
+        }
+    }
+
+    /// Answers each question for a branch by its middle pose.
+    fn answer(&mut self, sweep: &Sweep<'_>, sheet: &Sheet<'_>, branch: &SliceBranch) {
         let manipulator = sheet.manipulator();
         let [first, second] = &mut self.poses;
         first.clear();
@@ -278,11 +316,6 @@ impl AskedRows {
         for ((first, second), answers) in poses.zip(self.answers.chunks_mut(MOST)) {
             let (others, batch) = (others_of_sheet(sweep, sheet), &mut self.batch);
             manipulator.reaches_many(&branch.follow, [first, second], others, batch, answers);
-        }
-        if decided {
-            for (answer, piece) in self.answers.iter_mut().zip(&self.questions) {
-                *answer |= self.clipped[piece.row] == Clipped::Surely;
-            }
         }
     }
 
@@ -398,24 +431,19 @@ fn rows_of<'s>(
     }
 }
 
-/// Adds what some holes leave of a piece, which come in any order and may overlap, or lie between two poses.
-fn subtract(
-    piece: Piece,
-    holes: &(impl Iterator<Item = [i32; 2]> + Clone),
-    parts: &mut Vec<Piece>,
-) {
-    let mut next = piece.from;
-    while next < piece.to {
-        let inside = holes.clone().find(|&[from, to]| from <= next && next < to);
-        if let Some([_, to]) = inside {
-            next = to;
-            continue;
+/// Adds what some holes leave of a piece. They are in order, and may overlap, or lie between two poses.
+fn subtract(piece: Piece, holes: &[[i32; 2]], parts: &mut Vec<Piece>) {
+    let (mut next, mut apart) = (piece.from, piece.apart);
+    let inside = |[from, to]: &&[i32; 2]| *to >= piece.from && *from <= piece.to;
+    for &[from, to] in holes.iter().filter(inside) {
+        if from > next {
+            parts.push(Piece { from: next, to: from.min(piece.to), apart, ..piece });
         }
-        let starts = holes.clone().map(|[from, _]| from).filter(|&from| from > next);
-        let end = starts.fold(piece.to, i32::min);
-        let apart = piece.apart || next > piece.from;
-        parts.push(Piece { from: next, to: end, apart, ..piece });
-        next = end;
+        next = next.max(from).max(to);
+        apart = true;
+    }
+    if next < piece.to {
+        parts.push(Piece { from: next, apart, ..piece });
     }
 }
 

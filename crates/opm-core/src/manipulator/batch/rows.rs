@@ -6,9 +6,9 @@
 //! two of them one pose answers for all.
 
 use super::lanes::{Column, Displacements, LANES, Lane};
-use super::section::{self, Side, Step};
-use super::{Batch, Block, Status};
-use crate::chain::shell::{ArcHole, Shell};
+use super::section::{self, FirstOfRows, OfSheet, Side, Step};
+use super::{Batch, Block, Status, columns_of};
+use crate::chain::shell::{self, ArcHole, Shell};
 use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, Path, PlanarDisplacement, PlanarPath, SubspaceKind};
 use crate::manipulator::{LegBranch, Manipulator, Transitions};
@@ -85,8 +85,17 @@ impl RowEnds {
 /// What a leg does not reach of some rows of a sphere.
 #[derive(Clone, Debug)]
 pub struct RowArcs {
-    holes: Vec<RowEnds>,
+    holes: Vec<RowHoles>,
     doubtful: Numbers,
+}
+
+/// One hole of each row.
+#[derive(Clone, Debug)]
+struct RowHoles {
+    /// The poses that are certainly out of reach.
+    certain: RowEnds,
+    /// Those, and poses that rounding could move out of reach.
+    possible: RowEnds,
 }
 
 impl RowArcs {
@@ -96,15 +105,24 @@ impl RowArcs {
         Self { holes: Vec::new(), doubtful: [0; LANES] }
     }
 
-    /// Whether rounding could change which poses of a row these are.
-    pub fn is_doubtful(&self, row: usize) -> bool {
-        self.doubtful[row] != 0
+    /// The poses of a row that are or may be out of reach, as ranges, in any order. Where a range is empty, that is between its
+    /// pose and the one before, and something between them may be out of reach.
+    pub fn holes(&self, row: usize) -> impl Iterator<Item = [i32; 2]> + Clone {
+        self.holes.iter().map(move |hole| hole.possible.of(row))
     }
 
-    /// The poses of a row that are out of reach, as ranges, in any order. Where a range is empty, that is between its pose and
-    /// the one before, and something between them may be out of reach.
-    pub fn holes(&self, row: usize) -> impl Iterator<Item = [i32; 2]> + Clone {
-        self.holes.iter().map(move |hole| hole.of(row))
+    /// Those of them that may be in reach, in any order.
+    pub fn doubtful(&self, row: usize) -> impl Iterator<Item = i32> {
+        let holes = self.holes.iter().filter(move |_| self.doubtful[row] != 0);
+        let possible = holes.flat_map(move |hole| {
+            let ([from, to], [first, after]) = (hole.possible.of(row), hole.certain.of(row));
+            // Where nothing is certain, both parts meet.
+            let (first, after) = if first < after { (first, after) } else { (to, to) };
+            (from..first).chain(after..to)
+        });
+        let is_in = |pose: i32, [from, to]: [i32; 2]| from <= pose && pose < to;
+        possible
+            .filter(move |&pose| !self.holes.iter().any(|hole| is_in(pose, hole.certain.of(row))))
     }
 }
 
@@ -196,6 +214,13 @@ impl Manipulator {
     }
 }
 
+/// Which coordinates of the lower section some poses share.
+#[derive(Clone, Copy)]
+enum Shared {
+    AllButSecond,
+    AllButTwo,
+}
+
 /// So many lanes, and some more, so that they are whole vectors of every processor.
 #[inline(always)]
 fn vectors(lanes: usize) -> usize {
@@ -233,7 +258,7 @@ impl WithSimd for Reach<'_> {
                 block.admit(manipulator, leg, Section::Upper, LANES);
             }
             None => {
-                block.aim(manipulator, branch, lanes);
+                block.aim(manipulator, branch, Shared::AllButTwo, lanes);
                 let Block { shifted, lower, status, .. } = block;
                 let branch = branch.branches.lower;
                 section::solve(&leg.lower.chain, branch, shifted, lower, lanes);
@@ -279,46 +304,71 @@ impl WithSimd for FindArcs<'_> {
         };
         let (tolerance, margin) = (shell.tolerance(), scale.tie / scale.per_step);
         let lanes = vectors(rows.second.len());
-        let mut found = [HoleColumns::NONE; 2];
-        let [near, far] = &mut found;
-        for lane in 0..lanes {
-            let path = Path::Spherical { start: Lane::load(&block.shifted, lane), axis };
-            let holes = shell.holes(&path, tolerance, margin);
-            near.set(lane, holes[0], scale.first);
-            far.set(lane, holes[1], scale.first);
+        for cone in shell.cones() {
+            let Surface::Cone { fixed, carried, cosine } = cone else { return };
+            // The coefficients of a function of each row that is positive where the last axis is in the cone.
+            let mut along = [[0.0; LANES]; 3];
+            let mut any = 0;
+            for lane in 0..lanes {
+                let path = Path::Spherical { start: Lane::load(&block.shifted, lane), axis };
+                let function = Surface::Cone { fixed, carried, cosine }.along(&path).coefficients();
+                any |= u64::from(shell::may_have_hole(function, tolerance));
+                for (column, coefficient) in along.iter_mut().zip(function) {
+                    column[lane] = coefficient;
+                }
+            }
+            if any != 0 {
+                let mut found = HoleColumns { inner: [[0.0; LANES]; 2], outer: [[0.0; LANES]; 2] };
+                for lane in 0..lanes {
+                    let function = along.each_ref().map(|column| column[lane]);
+                    found.set(lane, shell::hole(function, tolerance, margin), scale.first);
+                }
+                arcs.take(&found, &scale, lanes);
+            }
         }
+    }
+}
+
+impl RowArcs {
+    /// Takes one hole of each row.
+    #[inline(always)]
+    fn take(&mut self, found: &HoleColumns, scale: &RowScale, lanes: usize) {
+        let HoleColumns { inner, outer } = found;
         // A hole is shorter than a revolution.
         let copies = (scale.length / TAU) as usize + 2;
-        for hole in &found {
-            for copy in 0..copies {
-                let later = copy as f64 * TAU;
-                let mut ends = RowEnds::NONE;
-                for lane in 0..lanes {
-                    let inner = hole.inner.each_ref().map(|column| column[lane] + later);
-                    let outer = hole.outer.each_ref().map(|column| column[lane] + later);
-                    let (certain, possible) = (scale.inside(inner), scale.inside(outer));
-                    let is_hole = outer[0] <= outer[1];
-                    ends.set(lane, possible.map(|number| if is_hole { number } else { 0.0 }));
-                    let same = (certain[0] == possible[0]) & (certain[1] == possible[1]);
-                    let empty = possible[1] <= possible[0];
-                    arcs.doubtful[lane] |= i32::from(!(same | empty));
-                }
-                arcs.holes.push(ends);
+        for copy in 0..copies {
+            let later = copy as f64 * TAU;
+            let mut holes = RowHoles { certain: RowEnds::NONE, possible: RowEnds::NONE };
+            let mut any = 0;
+            for lane in 0..lanes {
+                let is_hole = outer[0][lane] <= outer[1][lane];
+                let certain = scale.inside([inner[0][lane] + later, inner[1][lane] + later]);
+                let possible = scale.inside([outer[0][lane] + later, outer[1][lane] + later]);
+                let possible = [
+                    if is_hole { possible[0] } else { 0.0 },
+                    if is_hole { possible[1] } else { 0.0 },
+                ];
+                holes.certain.set(lane, certain);
+                holes.possible.set(lane, possible);
+                let same = (certain[0] == possible[0]) & (certain[1] == possible[1]);
+                let empty = possible[1] <= possible[0];
+                self.doubtful[lane] |= i32::from(!(same | empty));
+                any |= i32::from((possible[0] < scale.count) & (possible[1] > 0.0));
+            }
+            if any != 0 {
+                self.holes.push(holes);
             }
         }
     }
 }
 
 /// One hole of each row.
-#[derive(Clone, Copy)]
 struct HoleColumns {
     inner: [Column; 2],
     outer: [Column; 2],
 }
 
 impl HoleColumns {
-    const NONE: Self = Self { inner: [[0.0; LANES]; 2], outer: [[0.0; LANES]; 2] };
-
     /// Stores a hole with the revolutions added that bring its end into the first one after `first`.
     #[inline(always)]
     fn set(&mut self, row: usize, ArcHole { inner, outer }: ArcHole, first: f64) {
@@ -389,16 +439,30 @@ impl Finder<'_> {
                 let surface = $surface;
                 let function = |$start| surface.along(&$path);
                 // It is the same for all rows.
-                let period = function(Lane::load(self.starts, 0)).period();
-                let Some(repeats) = self.scale.repeats(period) else {
+                let first = function(Lane::load(self.starts, 0));
+                let Some(repeats) = self.scale.repeats(first.period()) else {
                     return ends.push(RowEnds::everything(self.scale.count as u64));
                 };
+                let lanes = self.lanes.min(LANES);
+                let mut along = [[0.0; LANES]; 3];
+                let mut any = 0;
+                for lane in 0..lanes {
+                    let $start = Lane::load(self.starts, lane);
+                    let function = surface.along(&$path);
+                    any |= u64::from(function.may_be_zero(tolerance));
+                    for (column, coefficient) in along.iter_mut().zip(function.coefficients()) {
+                        column[lane] = coefficient;
+                    }
+                }
+                if any == 0 {
+                    return;
+                }
                 for copy in 0..repeats.copies {
                     let (mut near, mut far) = (RowEnds::NONE, RowEnds::NONE);
                     let shift = repeats.shift(copy);
-                    for lane in 0..self.lanes.min(LANES) {
-                        let $start = Lane::load(self.starts, lane);
-                        let [first, second] = surface.along(&$path).near_zeros(tolerance);
+                    for lane in 0..lanes {
+                        let function = first.with(along.each_ref().map(|column| column[lane]));
+                        let [first, second] = function.near_zeros(tolerance);
                         near.set(lane, self.scale.poses(shift.of(first)));
                         far.set(lane, self.scale.poses(shift.of(second)));
                     }
@@ -556,7 +620,7 @@ impl Block {
         let home = manipulator.task.coordinates[0].home;
         let firsts = &[home; LANES][..rows.second.len()];
         self.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
-        self.aim(manipulator, branch, vectors(rows.second.len()));
+        self.aim(manipulator, branch, Shared::AllButSecond, vectors(rows.second.len()));
         RowScale {
             // Along a row the first coordinate is a displacement from home.
             first: rows.first - home,
@@ -581,14 +645,27 @@ impl Block {
 
     /// Computes the targets of a branch's lower chain, into `shifted`, of so many poses of the block.
     #[inline(always)]
-    fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch, lanes: usize) {
-        self.displace_section(manipulator, Section::Lower, lanes);
-        let Self { v, tau, shifted, .. } = self;
+    fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch, shared: Shared, lanes: usize) {
+        let Manipulator { task, .. } = manipulator;
+        let Self { pose, v, shifted, .. } = self;
+        let ([first, second, third], home) = columns_of(task, Section::Lower, pose);
+        // A height comes after the first two coordinates.
+        debug_assert!(task.height_in(Section::Lower).is_none_or(|place| place >= 2));
+        let third = third[0];
+        match shared {
+            Shared::AllButSecond => {
+                let poses = FirstOfRows { first: first[0], second, third };
+                section::displace(task, Section::Lower, &poses, home, v, lanes);
+            }
+            Shared::AllButTwo => {
+                let poses = OfSheet { first, second, third };
+                section::displace(task, Section::Lower, &poses, home, v, lanes);
+            }
+        }
         match branch.tau {
-            Some(of_slice) => {
-                tau.fill(of_slice);
-                let step = Step { motion: manipulator.task.lower_intersection, side: Side::After };
-                section::shift(step, v, tau, shifted, lanes);
+            Some(tau) => {
+                let step = Step { motion: task.lower_intersection, side: Side::After };
+                section::shift(step, v, &tau, shifted, lanes);
             }
             None => shifted.clone_from(v),
         }

@@ -40,12 +40,54 @@ impl Found {
     }
 }
 
+/// The coordinates of a section at some poses. What they share is computed once.
+pub trait SectionPoses {
+    /// Those of pose number `lane`.
+    fn at(&self, lane: usize) -> [f64; 3];
+}
+
+/// Poses that share nothing.
+impl SectionPoses for [&Column; 3] {
+    #[inline(always)]
+    fn at(&self, lane: usize) -> [f64; 3] {
+        [self[0][lane], self[1][lane], self[2][lane]]
+    }
+}
+
+/// Poses that share their third coordinate.
+pub struct OfSheet<'a> {
+    pub first: &'a Column,
+    pub second: &'a Column,
+    pub third: f64,
+}
+
+impl SectionPoses for OfSheet<'_> {
+    #[inline(always)]
+    fn at(&self, lane: usize) -> [f64; 3] {
+        [self.first[lane], self.second[lane], self.third]
+    }
+}
+
+/// The first poses of rows: they share all but the second coordinate.
+pub struct FirstOfRows<'a> {
+    pub first: f64,
+    pub second: &'a Column,
+    pub third: f64,
+}
+
+impl SectionPoses for FirstOfRows<'_> {
+    #[inline(always)]
+    fn at(&self, lane: usize) -> [f64; 3] {
+        [self.first, self.second[lane], self.third]
+    }
+}
+
 /// The displacements of a section, for its coordinates and their values at home.
 #[inline(always)]
 pub fn displace(
     task: &Task,
     section: Section,
-    at: [&Column; 3],
+    poses: &impl SectionPoses,
     home: [f64; 3],
     to: &mut Displacements,
     lanes: usize,
@@ -56,8 +98,7 @@ pub fn displace(
         ($kind:ident, $shared:expr) => {{
             let form = Form { kind: SubspaceKind::$kind, shared: $shared };
             for lane in 0..lanes {
-                let at = [at[0][lane], at[1][lane], at[2][lane]];
-                let values = SectionValues { at, home };
+                let values = SectionValues { at: poses.at(lane), home };
                 let angles = match section {
                     Section::Lower => lower_angles(form, values),
                     Section::Upper => upper_angles(form, values),
@@ -187,12 +228,57 @@ pub struct Step {
     pub side: Side,
 }
 
+/// Displacements along a motion, one for each pose of a block.
+pub trait Displaced {
+    /// Whether they are directions; otherwise they are values.
+    fn are_directions(&self) -> bool;
+    /// That of pose number `lane`, which must be a direction.
+    fn direction(&self, lane: usize) -> JointDisplacement;
+    /// That of pose number `lane`, which must be a value.
+    fn value(&self, lane: usize) -> JointDisplacement;
+}
+
+impl Displaced for DisplacementColumns {
+    #[inline(always)]
+    fn are_directions(&self) -> bool {
+        self.are_directions
+    }
+
+    #[inline(always)]
+    fn direction(&self, lane: usize) -> JointDisplacement {
+        self.direction(lane)
+    }
+
+    #[inline(always)]
+    fn value(&self, lane: usize) -> JointDisplacement {
+        self.value(lane)
+    }
+}
+
+/// The same displacement for all poses.
+impl Displaced for JointDisplacement {
+    #[inline(always)]
+    fn are_directions(&self) -> bool {
+        matches!(self, Self::Direction(_))
+    }
+
+    #[inline(always)]
+    fn direction(&self, _: usize) -> JointDisplacement {
+        *self
+    }
+
+    #[inline(always)]
+    fn value(&self, _: usize) -> JointDisplacement {
+        *self
+    }
+}
+
 /// Moves displacements of a subspace along the intersection motion.
 #[inline(always)]
 pub fn shift(
     Step { motion, side }: Step,
     from: &Displacements,
-    tau: &DisplacementColumns,
+    tau: &impl Displaced,
     to: &mut Displacements,
     lanes: usize,
 ) {
@@ -210,7 +296,7 @@ pub fn shift(
             }
         }};
     }
-    match (motion, tau.are_directions) {
+    match (motion, tau.are_directions()) {
         (IntersectionMotion::None(_), _) => to.copy_from_slice(from),
         (IntersectionMotion::Planar(PlanarMotion::Rotation), true) => {
             each!(Planar, PlanarMotion::Rotation, direction);
