@@ -112,15 +112,6 @@ impl DisplacementColumns {
         self.columns[0] = [0.0; LANES];
     }
 
-    /// Sets every displacement to this one.
-    #[inline(always)]
-    pub fn fill(&mut self, displacement: JointDisplacement) {
-        self.are_directions = matches!(displacement, JointDisplacement::Direction(_));
-        for lane in 0..LANES {
-            self.set(lane, displacement);
-        }
-    }
-
     /// The displacement of pose number `lane`, which must be a direction.
     #[inline(always)]
     pub fn direction(&self, lane: usize) -> JointDisplacement {
