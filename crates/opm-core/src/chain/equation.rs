@@ -193,8 +193,8 @@ impl Equation {
                 // |c₀ (1 - cos d) - slope · sin d|, by d off a zero, is over the tolerance from twice the quotient on.
                 // Where the zeros meet, |c₀| and r differ by 4 tolerances at most, and r (1 - cos d) by 5.
                 let parted = square > 4.0 * r * tolerance;
-                let half =
-                    if parted { 2.0 * tolerance / slope } else { 10.0 * (tolerance / r).sqrt() };
+                let share = tolerance / if parted { slope } else { r };
+                let half = if parted { 2.0 * share } else { 10.0 * share.sqrt() };
                 let half = if c0.abs() > r + tolerance { -f64::INFINITY } else { half };
                 around([phase - apart, phase + apart], half)
             }

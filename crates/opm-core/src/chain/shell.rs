@@ -7,7 +7,6 @@
 use super::surface::{Surface, Uncertainty};
 use crate::numeric::angle::atan2;
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
 
 /// The targets `g` with `fixed · g carried` between two cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +64,8 @@ pub fn hole([c0, c1, c2]: [f64; 3], tolerance: f64, margin: f64) -> ArcHole {
     let (middle, apart) = (atan2(c2, c1), atan2(slope, -c0));
     // See `Equation::near_zeros`.
     let parted = square > 4.0 * r * tolerance;
-    let off = if parted { 2.0 * tolerance / slope } else { 10.0 * (tolerance / r).sqrt() };
+    let share = tolerance / if parted { slope } else { r };
+    let off = if parted { 2.0 * share } else { 10.0 * share.sqrt() };
     let has_no_zero = c0.abs() > r + tolerance;
     let off = if has_no_zero { margin } else { off + margin };
     let (inner, outer) = (apart - off, apart + off);
@@ -82,6 +82,7 @@ mod tests {
     use crate::group::Path;
     use nalgebra::{Matrix3, Rotation3, Unit};
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
 
     fn axis() -> impl Strategy<Value = Unit<Vector3<f64>>> {
         let whole = || (-1..=1_i32).prop_map(f64::from);

@@ -372,7 +372,7 @@ impl HoleColumns {
     /// Stores a hole with the revolutions added that bring its end into the first one after `first`.
     #[inline(always)]
     fn set(&mut self, row: usize, ArcHole { inner, outer }: ArcHole, first: f64) {
-        let by = -TAU * ((outer[1] - first) / TAU).floor();
+        let by = -TAU * ((outer[1] - first) * TAU.recip()).floor();
         (self.inner[0][row], self.inner[1][row]) = (inner[0] + by, inner[1] + by);
         (self.outer[0][row], self.outer[1][row]) = (outer[0] + by, outer[1] + by);
     }
@@ -548,6 +548,8 @@ struct Shift {
     repeats: Repeats,
     /// The number of repetitions after the first.
     copy: f64,
+    /// The number of periods in a unit.
+    per_period: f64,
 }
 
 impl RowScale {
@@ -589,7 +591,8 @@ impl RowScale {
 
 impl Repeats {
     fn shift(self, copy: usize) -> Shift {
-        Shift { repeats: self, copy: copy as f64 }
+        let per_period = self.period.unwrap_or(f64::INFINITY).recip();
+        Shift { repeats: self, copy: copy as f64, per_period }
     }
 }
 
@@ -599,7 +602,7 @@ impl Shift {
     #[inline(always)]
     fn of(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let Some(period) = self.repeats.period else { return [from, to] };
-        let by = period * (self.copy - ((from - self.repeats.from) / period).floor());
+        let by = period * (self.copy - ((from - self.repeats.from) * self.per_period).floor());
         let fits = to - from <= SLACK * period;
         let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
         let shifted = [if fits { from + by } else { least }, if fits { to + by } else { most }];
