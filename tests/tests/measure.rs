@@ -157,6 +157,37 @@ fn the_polygon_of_the_helical_manipulator() {
     }
 }
 
+/// At one orientation the area in the plane is exact. It is compared with the poses of a fine grid.
+#[test]
+fn places_at_one_orientation_take_one_box() {
+    const STEPS: u32 = 500;
+    let m = example("plano-spherical-5dof");
+    for (zeta, xi, psi) in [(0.0, 0.0, 0.0), (0.4, 0.3, -0.9), (-2.0, 0.5, 1.0), (1.0, 1.2, 0.5)] {
+        for modes in [Modes::One(m.home_mode()), Modes::Any] {
+            let over = [
+                CoordinateRange::new("x", -0.3, 0.25),
+                CoordinateRange::new("y", -0.2, 0.3),
+                CoordinateRange::new("zeta", zeta, zeta),
+                CoordinateRange::new("xi", xi, xi),
+                CoordinateRange::new("psi", psi, psi),
+            ];
+            let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+            let found = measured(&m, &domain, modes, Goal { tolerance: 1e-6, ..Goal::default() });
+            assert_eq!((found.boxes, found.stop), (1, Stop::Tolerance), "{found:?}");
+            let at = |step: u32| (f64::from(step) + 0.5) / f64::from(STEPS);
+            let hit = |k: u32| {
+                let pose = domain.pose(&[at(k % STEPS), at(k / STEPS)]).unwrap();
+                counts(&m, &domain, modes.one(), &pose)
+            };
+            let hits = (0..STEPS * STEPS).filter(|&k| hit(k)).count() as f64;
+            let counted = hits / f64::from(STEPS * STEPS);
+            // Cells on the boundary, which is a few sides of the rectangle long.
+            let off = 2.0 / f64::from(STEPS);
+            assert!((counted - found.fraction()).abs() < off, "{counted} {found:?}");
+        }
+    }
+}
+
 /// The part of a convex polygon on which `left` is not negative.
 fn clip(polygon: &[[f64; 2]], left: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let mut clipped = Vec::new();

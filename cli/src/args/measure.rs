@@ -23,9 +23,10 @@ const MOST_BOXES: f64 = 1e12;
 /// positive xi counts orientations twice if zeta has a full revolution.
 ///
 /// The number of boxes depends on how many coordinates have a range, and on the widths of the ranges. Three
-/// coordinates take some thousand boxes. Five with full revolutions among them take more than the default
-/// --budget; the result and a warning then say which accuracy was reached. To improve it, use narrower
-/// ranges of --over, --section upper, or a larger --budget.
+/// coordinates take some thousand boxes. Where x and y of a plane have ranges, the area that the legs reach
+/// there is exact, and boxes cover the other coordinates only; legs with limits on angles in the plane are an
+/// exception. If the --budget ends first, the result and a warning say which accuracy was reached. To improve
+/// it, use narrower ranges of --over, --section upper, or a larger --budget.
 ///
 /// A coordinate without --over stays at home. With --section upper, an angle without --over has a full
 /// revolution instead. Without any --over, ranges are fitted to the workspace as in `opm workspace`.

@@ -8,6 +8,9 @@
 //! side has a closed form (`share.rs`). Shares of several conditions are combined by inequalities that hold
 //! however the conditions depend on each other.
 //!
+//! Where a section moves in a plane, a box that has a range of both coordinates of a place is integrated over them
+//! exactly (`slice.rs`, `area.rs`), so that only its other coordinates are ever split.
+//!
 //! The bounds hold for the poses that [`Manipulator::inverse`] finds in reach and within limits, including
 //! its tolerance for rounding on a limit or on the boundary of reach, a fraction of 1e-12.
 //!
@@ -16,20 +19,24 @@
 //! weight in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
 
 mod affine;
+mod area;
+mod boundary;
 mod chain;
 mod planar;
 mod raised;
 mod share;
+mod slice;
 mod target;
 
 use crate::chain::limits::Limits;
 use crate::chain::{Branch, Chain};
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
-use crate::task::{CoordinateKind, TaskCoordinate};
+use crate::task::{CoordinateKind, Task, TaskCoordinate};
 use affine::{Affine, Plane};
 use raised::RaisedChain;
 use share::Share;
+use slice::{Bounded, Rectangle, Slice};
 use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
 
@@ -112,74 +119,59 @@ impl Manipulator {
     /// If the number of sides is not that of the query, or more than [`MOST`] sides have a width.
     #[doc(hidden)]
     pub fn enclose(&self, query: BoxQuery, mode: Option<Mode>, sides: &[Side]) -> Verdict {
-        let wide = sides.iter().filter(|side| side.half > 0.0).count();
+        let plane = self.plane(query, mode, sides);
+        let of = if plane.is_some() { 2 } else { 0 };
+        let request = Request { query, mode, sides, plane };
+        let wide = sides.iter().filter(|side| side.half > 0.0).count() - of;
         match wide {
-            0..=2 => self.enclose_in::<2>(query, mode, sides),
-            3 => self.enclose_in::<3>(query, mode, sides),
-            4..=5 => self.enclose_in::<5>(query, mode, sides),
-            _ => self.enclose_in::<MOST>(query, mode, sides),
+            0..=2 => self.enclose_in::<2>(request),
+            3 => self.enclose_in::<3>(request),
+            4..=5 => self.enclose_in::<5>(request),
+            _ => self.enclose_in::<MOST>(request),
         }
     }
 
-    fn enclose_in<const N: usize>(
-        &self,
-        query: BoxQuery,
-        mode: Option<Mode>,
-        sides: &[Side],
-    ) -> Verdict {
-        let lower_count = self.task().lower_count;
+    fn enclose_in<const N: usize>(&self, request: Request<'_>) -> Verdict {
+        let Request { query, mode, sides, plane } = request;
         let mut numbers = [None; N];
         let mut next = 0;
+        let first = if query == BoxQuery::Upper { self.task().lower_count } else { 0 };
         let coordinate = |(number, side): (usize, &Side)| {
-            let value = if side.half > 0.0 {
-                numbers[next] = Some(number);
-                next += 1;
-                Affine::<N>::coordinate(side.middle, side.half, next - 1)
-            } else {
-                Affine::constant(side.middle)
-            };
-            let number = if query == BoxQuery::Upper { lower_count + number } else { number };
-            let kind = self.task().coordinates.get(number).map(TaskCoordinate::kind);
+            let task = self.task().coordinates.get(first + number);
+            let value =
+                if let Some(task) = task.filter(|_| plane.is_some_and(|p| p.contains(&number))) {
+                    // The area is that of the places about home.
+                    Affine::constant(task.home)
+                } else if side.half > 0.0 {
+                    numbers[next] = Some(number);
+                    next += 1;
+                    Affine::<N>::coordinate(side.middle, side.half, next - 1)
+                } else {
+                    Affine::constant(side.middle)
+                };
             match side.half_turn {
                 None => Coordinate::Linear(value),
-                Some(half_turn) => Coordinate::Polar(polar(half_turn, value, kind)),
+                Some(half_turn) => {
+                    Coordinate::Polar(polar(half_turn, value, task.map(TaskCoordinate::kind)))
+                }
             }
         };
         let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
-        let task = self.task();
         let rise = self.rise_over(query, &coordinates);
         let still = Affine::constant(0.0);
         let conditions = LegConditions { manipulator: self, mode, rise: rise.unwrap_or(still) };
-        let legs = 0..self.legs.len();
-        let share = match query {
-            BoxQuery::Whole => {
-                let v = target::task::lower(task, &coordinates[..lower_count]);
-                let b = target::task::upper(task, &coordinates[lower_count..]);
-                all(legs, |leg| conditions.whole(leg, &v, &b))
+        let Bounded { lower, upper, contributions } = match plane {
+            Some(plane) => {
+                let rectangle = self.rectangle(plane, sides);
+                conditions.over_rectangle(query, &coordinates, rise, rectangle)
             }
-            BoxQuery::Upper => {
-                let b = target::task::upper(task, &coordinates);
-                all(legs, |leg| conditions.upper(leg, &b))
-            }
-            BoxQuery::Lower => {
-                let v = target::task::lower(task, &coordinates[..lower_count]);
-                let mut taus = coordinates[lower_count..].iter();
-                all(legs, |leg| {
-                    let tau = match self.legs[leg].bridge() {
-                        Some(Section::Upper) => match taus.next() {
-                            Some(&Coordinate::Linear(tau)) => tau,
-                            _ => unreachable!(
-                                "a length or an angle for the intersection displacement of every leg"
-                            ),
-                        },
-                        Some(Section::Lower) | None => Affine::constant(0.0),
-                    };
-                    conditions.lower(leg, &v, tau)
-                })
+            None => {
+                let share = conditions.over_box(query, &coordinates);
+                let share = rise.map_or(share, |rise| share.and(self.lifts_within(rise)));
+                let contributions = share.contributions();
+                Bounded { lower: share.lower, upper: share.upper, contributions }
             }
         };
-        let share = rise.map_or(share, |rise| share.and(self.lifts_within(rise)));
-        let contributions = share.contributions();
         let mut split = None;
         for (&contribution, number) in contributions.iter().zip(numbers) {
             let larger = split.is_none_or(|(_, most)| contribution > most);
@@ -193,8 +185,18 @@ impl Manipulator {
             None if contributions.iter().any(|c| !c.is_finite()) => numbers[0],
             None => None,
         };
-        Verdict { lower: share.lower, upper: share.upper, split }
+        Verdict { lower, upper, split }
     }
+}
+
+/// A question about a box.
+#[derive(Clone, Copy)]
+struct Request<'a> {
+    query: BoxQuery,
+    mode: Option<Mode>,
+    sides: &'a [Side],
+    /// The numbers of the sides that are integrated over as places in the plane.
+    plane: Option<[usize; 2]>,
 }
 
 impl Manipulator {
@@ -258,6 +260,60 @@ fn any<T, const N: usize>(
     options.into_iter().fold(Share::NONE, |share, option| share.or(share_of(option)))
 }
 
+/// The chain of a section over a box of targets.
+enum SectionChain<'a, const N: usize> {
+    /// With the joints at home where they are.
+    Fixed(&'a Chain, &'a Target<N>),
+    /// At the heights of the box.
+    Raised(RaisedChain<N>),
+}
+
+impl<const N: usize> SectionChain<'_, N> {
+    /// The share for which the chain closes.
+    fn closes(&self) -> Share<N> {
+        match self {
+            Self::Fixed(chain, target) => chain::closes(chain, target),
+            Self::Raised(raised) => raised.closes(),
+        }
+    }
+
+    /// The joints' displacements. The bounds hold where the chain closes.
+    fn displacements(&self, branch: Branch) -> [Enclosed<N>; 3] {
+        match self {
+            Self::Fixed(chain, target) => chain::displacements(chain, target, branch),
+            Self::Raised(raised) => raised.displacements(branch),
+        }
+    }
+}
+
+/// The displacement `b` over a box.
+struct Upper<const N: usize> {
+    target: Target<N>,
+    /// The same as a rotation along the intersection motion and another displacement, where a coordinate rotates.
+    turned: Option<(Affine<N>, Target<N>)>,
+}
+
+impl<const N: usize> Upper<N> {
+    fn new(task: &Task, pose: &[Coordinate<N>]) -> Self {
+        let turned = target::task::upper_turned(task, pose);
+        Self { target: target::task::upper(task, pose), turned }
+    }
+
+    /// What a chain has to reach, but for that rotation.
+    fn of_chain(&self) -> &Target<N> {
+        self.turned.as_ref().map_or(&self.target, |(_, other)| other)
+    }
+
+    /// The displacement along the intersection motion, from the displacements of the chain's joints.
+    fn step(&self, leg: &CompiledLeg, displacements: &[Enclosed<N>; 3]) -> Enclosed<N> {
+        match (leg.imaginary_joint(), &self.turned) {
+            (None, _) => Enclosed::Value(Affine::constant(0.0)),
+            (Some(joint), None) => displacements[joint],
+            (Some(joint), Some((turn, _))) => displacements[joint].turned(*turn),
+        }
+    }
+}
+
 /// A leg's conditions over a box.
 struct LegConditions<'a, const N: usize> {
     manipulator: &'a Manipulator,
@@ -294,22 +350,29 @@ impl<const N: usize> LegConditions<'_, N> {
         then: impl Fn(&[Enclosed<N>; 3]) -> Share<N>,
     ) -> Share<N> {
         let compiled = self.leg(leg).section(section);
-        let raised = self.raised(leg, section, target);
-        let closes = match &raised {
-            Some(raised) => raised.closes(),
-            None => chain::closes(&compiled.chain, target),
-        };
+        let chain = self.chain(leg, section, target);
+        let closes = chain.closes();
         if closes.is_none() {
             return closes;
         }
         closes.and(any(self.branches(leg, section), |branch| {
-            let displacements = match &raised {
-                Some(raised) => raised.displacements(branch),
-                None => chain::displacements(&compiled.chain, target, branch),
-            };
+            let displacements = chain.displacements(branch);
             let within = self.admits(compiled, &displacements);
             if within.is_none() { within } else { within.and(then(&displacements)) }
         }))
+    }
+
+    /// The chain of a section with what it has to reach.
+    fn chain<'t>(
+        &'t self,
+        leg: usize,
+        section: Section,
+        target: &'t Target<N>,
+    ) -> SectionChain<'t, N> {
+        match self.raised(leg, section, target) {
+            Some(raised) => SectionChain::Raised(raised),
+            None => SectionChain::Fixed(&self.leg(leg).section(section).chain, target),
+        }
     }
 
     /// The chain of a section that the leg's lift is in, if that leans, at the heights of the box.
@@ -318,6 +381,66 @@ impl<const N: usize> LegConditions<'_, N> {
         match &self.leg(leg).section(section).chain {
             Chain::Planar(chain) => Some(RaisedChain::new(lean, chain, self.rise, target.planar())),
             _ => None,
+        }
+    }
+
+    /// The share of a box that meets a query.
+    fn over_box(&self, query: BoxQuery, coordinates: &[Coordinate<N>]) -> Share<N> {
+        let task = self.manipulator.task();
+        let legs = 0..self.manipulator.legs.len();
+        let (lower, others) = match query {
+            BoxQuery::Upper => {
+                let b = target::task::upper(task, coordinates);
+                return all(legs, |leg| self.upper(leg, &b));
+            }
+            BoxQuery::Whole | BoxQuery::Lower => coordinates.split_at(task.lower_count),
+        };
+        let v = target::task::lower(task, lower);
+        if query == BoxQuery::Whole {
+            let b = Upper::new(task, others);
+            return all(legs, |leg| self.whole(leg, &v, &b));
+        }
+        let mut taus = others.iter();
+        all(legs, |leg| self.lower(leg, &v, self.next_tau(leg, &mut taus)))
+    }
+
+    /// The same for a box with a rectangle of the plane, whose place in the coordinates is home.
+    fn over_rectangle(
+        &self,
+        query: BoxQuery,
+        coordinates: &[Coordinate<N>],
+        rise: Option<Affine<N>>,
+        rectangle: Rectangle,
+    ) -> Bounded<N> {
+        let task = self.manipulator.task();
+        let (lower, others) = coordinates.split_at(task.lower_count);
+        let v = target::task::lower(task, lower);
+        let b = (query == BoxQuery::Whole).then(|| Upper::new(task, others));
+        let mut taus = others.iter();
+        let mut slice = Slice::new(self, rectangle);
+        let lifts = rise.map_or(Share::ALL, |rise| self.manipulator.lifts_within(rise));
+        let reached = slice.require(lifts)
+            && (0..self.manipulator.legs.len()).all(|leg| match &b {
+                Some(b) => slice.leg(leg, &v, Some(b), None),
+                None => slice.leg(leg, &v, None, Some(self.next_tau(leg, &mut taus))),
+            });
+        if reached { slice.share() } else { Bounded::NONE }
+    }
+
+    /// The displacement of a leg along the intersection motion, where these are coordinates of the box.
+    fn next_tau<'t>(
+        &self,
+        leg: usize,
+        taus: &mut impl Iterator<Item = &'t Coordinate<N>>,
+    ) -> Affine<N> {
+        match self.leg(leg).bridge() {
+            Some(Section::Upper) => match taus.next() {
+                Some(&Coordinate::Linear(tau)) => tau,
+                _ => unreachable!(
+                    "a length or an angle for the intersection displacement of every leg"
+                ),
+            },
+            Some(Section::Lower) | None => Affine::constant(0.0),
         }
     }
 
@@ -335,12 +458,11 @@ impl<const N: usize> LegConditions<'_, N> {
         }
     }
 
-    fn whole(&self, leg: usize, v: &Target<N>, b: &Target<N>) -> Share<N> {
+    fn whole(&self, leg: usize, v: &Target<N>, b: &Upper<N>) -> Share<N> {
         let compiled = self.leg(leg);
         match compiled.split_section {
-            Section::Upper => self.section(leg, Section::Upper, b, |displacements| {
-                let none = Enclosed::Value(Affine::constant(0.0));
-                let tau = compiled.imaginary_joint().map_or(none, |joint| displacements[joint]);
+            Section::Upper => self.section(leg, Section::Upper, b.of_chain(), |displacements| {
+                let tau = b.step(compiled, displacements);
                 self.unwound(compiled, tau, |tau| self.reaches(leg, v, tau))
             }),
             Section::Lower => self.section(leg, Section::Lower, v, |displacements| {
@@ -349,8 +471,8 @@ impl<const N: usize> LegConditions<'_, N> {
                 }
                 let step = displacements[compiled.lower.chain.freedoms() - 1];
                 self.unwound(compiled, step, |step| {
-                    let target =
-                        target::before(self.manipulator.task().upper_intersection, b, step);
+                    let motion = self.manipulator.task().upper_intersection;
+                    let target = target::before(motion, &b.target, step);
                     self.section(leg, Section::Upper, &target, |_| Share::ALL)
                 })
             }),

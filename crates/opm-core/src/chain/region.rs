@@ -217,12 +217,19 @@ impl Band {
         Self { across, met, inverse }
     }
 
-    fn turned(&self, rotation: Complex<f64>) -> Self {
+    /// The unit vector perpendicular to the band.
+    pub fn across(&self) -> Complex<f64> {
+        self.across
+    }
+
+    /// The ends of the range of the coordinate along that vector, the smaller one first.
+    pub fn range(&self) -> [f64; 2] {
         let [near, far] = self.met;
-        Self::new(
-            rotation * self.across,
-            if self.inverse > 0.0 { [near, far] } else { [far, near] },
-        )
+        if self.inverse > 0.0 { [near, far] } else { [far, near] }
+    }
+
+    fn turned(&self, rotation: Complex<f64>) -> Self {
+        Self::new(rotation * self.across, self.range())
     }
 
     #[inline(always)]
@@ -280,6 +287,16 @@ impl Disc {
     /// negative.
     pub fn new(centre: Complex<f64>, square: f64) -> Self {
         Self { centre, square, radius: square.max(0.0).sqrt() }
+    }
+
+    /// The centre.
+    pub fn centre(&self) -> Complex<f64> {
+        self.centre
+    }
+
+    /// The radius; `None` where the disc is empty.
+    pub fn radius(&self) -> Option<f64> {
+        (self.square >= 0.0).then_some(self.radius)
     }
 
     fn turned(&self, rotation: Complex<f64>) -> Self {
@@ -344,6 +361,11 @@ impl Capsule {
             half: Band::new(along, [at(along), f64::INFINITY]),
             tip: Disc::new(tip, square),
         }
+    }
+
+    /// The bands that the half band is in, and the disc about the ray's end.
+    pub fn parts(&self) -> ([Band; 2], Disc) {
+        ([self.band, self.half], self.tip)
     }
 
     /// The chord of the row at the second coordinate `y`: the union of the chords of the half band and of

@@ -21,8 +21,9 @@ pub struct Shape {
     link_limits: Option<LinkLimits>,
 }
 
+/// How the region in which a chain closes moves as the target rotates by `r`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum ShapeMotion {
+pub enum ShapeMotion {
     /// The region `R - r p`.
     Carried(Region, Complex<f64>),
     /// The region `p + r R`.
@@ -86,6 +87,16 @@ impl Shape {
         let rotation_limits =
             (*limits != Limits::Free).then_some(RotationLimits { reversed, limits: *limits });
         Self { rotation_limits, ..self }
+    }
+
+    /// How the region moves, whatever the limits on the rotation and on links.
+    pub fn motion(&self) -> &ShapeMotion {
+        &self.motion
+    }
+
+    /// The limits on the target's rotation, and whether they are those of the opposite rotation.
+    pub fn rotation_limits(&self) -> Option<(bool, &Limits)> {
+        self.rotation_limits.as_ref().map(|of| (of.reversed, &of.limits))
     }
 
     /// Calls `found` with the regions that limits on a link's direction leave, which are all to be met, placed as that of

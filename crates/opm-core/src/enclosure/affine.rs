@@ -69,6 +69,11 @@ impl<const N: usize> Affine<N> {
         self.centre + self.radius()
     }
 
+    /// The largest absolute value.
+    pub fn furthest(&self) -> f64 {
+        self.centre.abs() + self.radius()
+    }
+
     /// The largest distance from the linear function.
     pub fn total_error(&self) -> f64 {
         self.error.iter().sum::<f64>() + self.rounding

@@ -45,7 +45,7 @@ impl<const N: usize> Share<N> {
         Self { lower, upper, errors: [0.0; N], slopes: [0.0; N], undecided: 0 }
     }
 
-    fn is_all(&self) -> bool {
+    pub fn is_all(&self) -> bool {
         self.lower >= 1.0
     }
 

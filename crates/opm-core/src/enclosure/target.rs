@@ -179,6 +179,16 @@ impl<const N: usize> Enclosed<N> {
         }
     }
 
+    /// The rotation followed by one more, radians.
+    pub fn turned(self, by: Affine<N>) -> Self {
+        match self {
+            Self::UnitDirection(e) => Self::UnitDirection(e * by.unit_vector()),
+            Self::Direction(e) => Self::Direction(e * by.unit_vector()),
+            Self::Angle(angle) => Self::Angle(angle + by),
+            Self::Value(value) => Self::Value(value + by),
+        }
+    }
+
     /// The displacement as a number; a rotation up to full revolutions.
     pub fn number(self) -> Affine<N> {
         match self {
@@ -380,6 +390,26 @@ pub mod task {
                 Target::Translational(Plane { re: none, im: q(0) })
             }
             IntersectionMotion::Spatial(_) => Target::Spatial([q(0), q(1), none]),
+        }
+    }
+
+    /// The displacement `b` as a rotation along the intersection motion, radians, and then another displacement. A leg's
+    /// displacement along that motion is the rotation plus what the other displacement makes, so it is exactly linear in the
+    /// coordinate that rotates. `None` where there is no such coordinate.
+    pub fn upper_turned<const N: usize>(
+        task: &Task,
+        pose: &[Coordinate<N>],
+    ) -> Option<(Affine<N>, Target<N>)> {
+        let (mut pose, _) = in_plane(task, Section::Upper, pose);
+        match (task.upper_intersection, pose[0]) {
+            (
+                IntersectionMotion::Spherical(SphericalMotion::Rotation),
+                Coordinate::Linear(turn),
+            ) => {
+                pose[0] = Coordinate::Linear(Affine::constant(0.0));
+                Some((turn, orientation(task, &pose)))
+            }
+            _ => None,
         }
     }
 

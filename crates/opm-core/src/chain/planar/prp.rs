@@ -20,7 +20,7 @@ impl Prp {
         Self { slides: [d1, d3], pivot }
     }
 
-    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+    pub(crate) fn joints(&self) -> [PlanarJoint; 3] {
         let [first, second] = self.slides.map(|along| PlanarJoint::Prismatic { along });
         [first, self.pivot.joint(), second]
     }
