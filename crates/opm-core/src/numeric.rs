@@ -3,6 +3,7 @@
 //! units, and the format of numbers in messages. This module knows nothing of mechanisms.
 
 pub(crate) mod angle;
+pub(crate) mod extremes;
 pub(crate) mod least_squares;
 pub mod number;
 mod quantity;

@@ -60,6 +60,7 @@ mod screws;
 mod section;
 mod serial;
 mod singularity;
+mod weighted;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
