@@ -77,7 +77,7 @@ pub struct WorkspaceArgs {
     /// Count a pose only if its condition number is at most C in one of the working modes
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
-    /// Also compute the global conditioning index, the mean of 1 / condition number (a few us per pose)
+    /// Also compute the global conditioning index, the mean of 1 / condition number
     #[arg(long)]
     pub conditioning: bool,
     /// Characteristic length of condition numbers, instead of the spread of the joint axes

@@ -13,7 +13,7 @@
 
 mod all_modes;
 mod angles;
-mod batch;
+pub(crate) mod batch;
 mod closure;
 mod dependent;
 mod inverse;

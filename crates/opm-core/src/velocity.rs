@@ -54,6 +54,7 @@ mod closure;
 mod condition;
 mod dependent;
 mod jacobian;
+mod many;
 mod pose;
 mod rotation_vector;
 mod screws;
@@ -64,6 +65,9 @@ mod weighted;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub use many::{ConditionBatch, ConditionQuery};
 pub use singularity::{Cause, Measures, Singularities};
 
 use crate::group::{JointDisplacement, LocalTwist};

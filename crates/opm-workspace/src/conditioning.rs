@@ -4,7 +4,8 @@
 
 use crate::condition::{ConditionError, ConditionLimit, Conditioned};
 use crate::progress::{Cancelled, Progress};
-use crate::sweep::Sweep;
+use crate::sweep::{Hits, Sweep};
+use opm_core::manipulator::Manipulator;
 
 /// Local indices are summed as whole numbers, in units of one over this: such a sum is the same in any order.
 const UNIT: f64 = (1_u64 << 60) as f64;
@@ -50,7 +51,7 @@ impl ConditioningIndex {
     }
 
     /// The indices of the poses that a sweep reaches, with a characteristic `length` in metres. This takes a
-    /// few microseconds for each reachable pose.
+    /// fraction of a microsecond for each reachable pose.
     ///
     /// # Errors
     /// [`ConditionError`]: a grid of one section alone, a length that is not a positive number or not the
@@ -66,26 +67,17 @@ impl ConditioningIndex {
     }
 
     fn of_checked(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
-        let nothing = Self::nothing(length);
-        let limit = sweep.limit().unwrap_or(ConditionLimit::none(length));
-        let mut all = nothing;
+        let mut all = Self::nothing(length);
         sweep.points(
             progress,
-            |hits, (index, conditioned): &mut (Self, Option<Conditioned<'_>>)| {
-                let conditioned =
-                    conditioned.get_or_insert_with(|| Conditioned::new(sweep.manipulator(), limit));
-                let mut pose = vec![0.0; hits.others.len() + 1];
-                pose[1..].copy_from_slice(hits.others);
-                for &first in hits.first {
-                    pose[0] = first;
-                    if let Some(local) = conditioned.local_index(&pose, sweep.modes()) {
-                        index.take(local);
-                    }
-                }
+            |hits, made: &mut Option<Indexing<'_>>| {
+                made.get_or_insert_with(|| Indexing::new(sweep, length)).take(sweep, hits);
             },
-            || (nothing, None),
-            |(index, _)| {
-                all.add(&index);
+            || None,
+            |made| {
+                if let Some(made) = made {
+                    all.add(&made.finish(sweep));
+                }
                 Ok::<(), Cancelled>(())
             },
         )?;
@@ -106,10 +98,56 @@ impl ConditioningIndex {
         self.sum += other.sum;
     }
 
+    /// Takes the local index of a pose; NaN where it has none.
     fn take(&mut self, local: f64) {
+        if local.is_nan() {
+            return;
+        }
         self.poses += 1;
         self.min = self.min.min(local);
         self.max = self.max.max(local);
         self.sum += (local * UNIT).round() as u128;
+    }
+}
+
+/// The indices of a block of a sweep, of which some poses are still to be decided.
+struct Indexing<'a> {
+    index: ConditioningIndex,
+    conditioned: Conditioned<'a>,
+    /// The poses, row after row.
+    poses: Vec<f64>,
+}
+
+impl<'a> Indexing<'a> {
+    fn new(sweep: &Sweep<'a>, length: f64) -> Self {
+        let limit = sweep.limit().unwrap_or(ConditionLimit::none(length));
+        let conditioned = Conditioned::new(sweep.manipulator(), limit);
+        Self { index: ConditioningIndex::nothing(length), conditioned, poses: Vec::new() }
+    }
+
+    /// Takes poses, as many together as are decided at once.
+    fn take(&mut self, sweep: &Sweep<'_>, hits: &Hits<'_>) {
+        let width = hits.others.len() + 1;
+        for &first in hits.first {
+            self.poses.push(first);
+            self.poses.extend_from_slice(hits.others);
+            if self.poses.len() == Manipulator::DECIDED * width {
+                self.decide(sweep);
+            }
+        }
+    }
+
+    fn decide(&mut self, sweep: &Sweep<'_>) {
+        let mut indices = [0.0; Manipulator::DECIDED];
+        let indices = &mut indices[..self.poses.len() / sweep.grid().axes().len()];
+        self.conditioned.local_indices(&self.poses, sweep.modes(), indices);
+        indices.iter().for_each(|&local| self.index.take(local));
+        self.poses.clear();
+    }
+
+    /// The indices of all poses.
+    fn finish(mut self, sweep: &Sweep<'_>) -> ConditioningIndex {
+        self.decide(sweep);
+        self.index
     }
 }

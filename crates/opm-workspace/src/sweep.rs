@@ -8,6 +8,7 @@
 mod asked;
 mod clip;
 mod known_range;
+mod limited;
 mod row;
 pub(crate) mod runs;
 mod shard;
@@ -211,7 +212,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The same sweep, but a pose counts only in a working mode in which its condition number is within
-    /// `limit`. That is decided pose by pose, a few microseconds for each pose and mode.
+    /// `limit`. That is decided for each reachable pose, in a fraction of a microsecond for each mode.
     ///
     /// # Errors
     /// [`ConditionError::Section`] on a grid of one section alone: only the whole mechanism has a condition

@@ -1070,7 +1070,7 @@ class Sweep:
             As for :func:`sweep`.
         """
     def conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> Conditioning:
-        """The global conditioning index, and the smallest and largest local one: a few microseconds for each reachable pose.
+        """The global conditioning index, and the smallest and largest local one, of every reachable pose.
 
         Each pose is taken in the first working mode that counts; every pose has the same weight.
 

@@ -53,7 +53,7 @@ type Indices = (u64, f64, f64, u128);
 
 #[pymethods]
 impl Sweep {
-    /// The global conditioning index, and the smallest and largest local one: a few microseconds for each reachable pose.
+    /// The global conditioning index, and the smallest and largest local one, of every reachable pose.
     ///
     /// Each pose is taken in the first working mode that counts; every pose has the same weight.
     ///
@@ -160,15 +160,15 @@ impl Sweep {
             |hits, (made, conditioned): &mut (Vec<(u64, f64)>, Option<Conditioned<'_>>)| {
                 let conditioned =
                     conditioned.get_or_insert_with(|| Conditioned::new(manipulator, limit));
-                let mut pose = vec![0.0; hits.others.len() + 1];
-                pose[1..].copy_from_slice(hits.others);
-                let numbers = hits.numbers(self.workspace.grid()).flat_map(|run| run.from..run.to);
-                for (number, &first) in numbers.zip(hits.first) {
-                    pose[0] = first;
-                    if let Some(local) = conditioned.local_index(&pose, self.workspace.modes()) {
-                        made.push((number, local));
-                    }
+                let mut poses = Vec::with_capacity(hits.first.len() * (1 + hits.others.len()));
+                for &first in hits.first {
+                    poses.push(first);
+                    poses.extend_from_slice(hits.others);
                 }
+                let mut indices = vec![f64::NAN; hits.first.len()];
+                conditioned.local_indices(&poses, self.workspace.modes(), &mut indices);
+                let numbers = hits.numbers(self.workspace.grid()).flat_map(|run| run.from..run.to);
+                made.extend(numbers.zip(indices));
             },
             |(made, _)| {
                 for (number, local) in made {

@@ -54,7 +54,12 @@ impl PlanarDisplacement {
         if screw.x == 0.0 {
             return Self::translation(linear(screw) * displacement.value());
         }
-        let rotation = displacement.unit_direction();
+        Self::along_rotation(screw, displacement.unit_direction())
+    }
+
+    /// The displacement along a joint's screw at home that is a rotation of angular velocity ±1, by a unit complex number.
+    #[inline(always)]
+    pub(crate) fn along_rotation(screw: &LocalTwist, rotation: Complex<f64>) -> Self {
         // v = -i ω p, with ω = ±1.
         let point = quarter(linear(screw)) * screw.x;
         Self::about(point, if screw.x < 0.0 { rotation.conj() } else { rotation })

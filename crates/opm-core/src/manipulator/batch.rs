@@ -7,9 +7,9 @@
 //! rare: they are marked and left to [`Manipulator::inverse`].
 
 mod decide;
-mod lanes;
+pub(crate) mod lanes;
 mod rows;
-mod section;
+pub(crate) mod section;
 
 use super::all_modes::AllModes;
 use super::leg::{CompiledLeg, LegBranches};
@@ -96,38 +96,39 @@ impl BatchOutput<'_> {
 /// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`]. See the example there.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    arch: Arch,
-    block: Box<Block>,
+    pub(crate) arch: Arch,
+    pub(crate) block: Box<Block>,
     solution: Solution,
     all: AllModes,
 }
 
 /// The poses and results of a block, by columns.
 #[derive(Clone, Debug)]
-struct Block {
+pub(crate) struct Block {
     /// One column for every task coordinate.
-    pose: Vec<Column>,
-    v: Displacements,
-    b: Displacements,
-    lower: Found,
-    upper: Found,
-    tau: DisplacementColumns,
+    pub pose: Vec<Column>,
+    pub v: Displacements,
+    pub b: Displacements,
+    pub lower: Found,
+    pub upper: Found,
+    /// The displacements along the intersection motion of the leg that was solved last.
+    pub tau: DisplacementColumns,
     shifted: Displacements,
     /// One column for every joint coordinate.
     joints: Vec<Column>,
     imaginary: Vec<Column>,
-    status: Status,
+    pub status: Status,
     decided: Decided,
 }
 
 /// What is known of the reachability of each pose of a block.
 #[derive(Clone, Debug)]
-struct Status {
+pub(crate) struct Status {
     /// Whether a pose is certainly out of reach of some leg.
-    beyond: Mask,
+    pub beyond: Mask,
     /// Whether the general case of some leg's closed form does not apply to a pose.
-    open: Mask,
-    within_limits: Mask,
+    pub open: Mask,
+    pub within_limits: Mask,
 }
 
 impl Manipulator {
@@ -295,7 +296,7 @@ impl WithSimd for Solve<'_, '_> {
 
 impl Block {
     /// Copies poses into the block, and fills its remaining lanes with the last one.
-    fn take(&mut self, poses: &[f64], width: usize) {
+    pub fn take(&mut self, poses: &[f64], width: usize) {
         for (number, column) in self.pose.iter_mut().enumerate() {
             let mut last = 0.0;
             for (to, pose) in column.iter_mut().zip(poses.chunks_exact(width)) {
@@ -330,7 +331,7 @@ impl Block {
 
     /// Computes `v` and `b` of every pose.
     #[inline(always)]
-    fn displace(&mut self, manipulator: &Manipulator) {
+    pub fn displace(&mut self, manipulator: &Manipulator) {
         let task = &manipulator.task;
         let Self { pose, status, .. } = self;
         *status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
@@ -362,7 +363,7 @@ impl Block {
 
     /// Solves both chains of a leg.
     #[inline(always)]
-    fn solve_leg(&mut self, manipulator: &Manipulator, branches: LegBranches, number: usize) {
+    pub fn solve_leg(&mut self, manipulator: &Manipulator, branches: LegBranches, number: usize) {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
         for section in leg.order() {
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
@@ -396,7 +397,7 @@ impl Block {
 
     /// Computes the values of the lifts.
     #[inline(always)]
-    fn lift(&mut self, manipulator: &Manipulator) {
+    pub fn lift(&mut self, manipulator: &Manipulator) {
         let Some(height) = &manipulator.task.height else { return };
         let home = manipulator.task.coordinates[height.coordinate].home;
         for lift in manipulator.lifts() {

@@ -12,6 +12,8 @@
 //! Every step is a loop over the lanes, with the same arithmetic for any number of them: the result for one matrix does
 //! not depend on which others are beside it.
 
+#![expect(clippy::needless_range_loop, reason = "a loop over the lanes is one for all columns")]
+
 /// A matrix for each of `L` lanes, by columns: `matrices[column][row][lane]`. There is room for `N` columns and rows.
 pub(crate) type Matrices<const N: usize, const L: usize> = [[[f64; L]; N]; N];
 
@@ -180,31 +182,36 @@ fn root<const N: usize, const L: usize>(
     columns: usize,
     end: End,
 ) -> [f64; L] {
-    // The last numbers before the root, and the first ones behind it.
-    let (mut before, mut behind) = match end {
-        End::Low => ([0.0; L], [2.0; L]),
-        End::High => ([1.0; L], [-1.0; L]),
+    // The sense in which the root is approached, and the last numbers before it.
+    let (inward, mut before) = match end {
+        End::Low => (1.0, [0.0; L]),
+        End::High => (-1.0, [1.0; L]),
     };
     let mut at = before;
+    // How far to go back from a number behind the root, relative to it: the farther, the more often.
+    let mut back = [0.0; L];
     let mut settled = [0_u64; L];
+    let (mut steps, mut are_before) = ([0.0; L], [0_u64; L]);
     for _ in 0..MOST_STEPS {
+        for lane in 0..L {
+            (steps[lane], are_before[lane]) = laguerre(squares, columns, lane, at[lane], end);
+        }
         let mut moves = 0;
         for lane in 0..L {
-            let (step, is_before) = laguerre(squares, columns, lane, at[lane], end);
-            before[lane] = if is_before { at[lane] } else { before[lane] };
-            behind[lane] = if is_before { behind[lane] } else { at[lane] };
-            // Among roots that are nearly equal, rounding may lead across one.
-            let next = at[lane] - step;
-            let is_inside = match end {
-                End::Low => next < behind[lane],
-                End::High => next > behind[lane],
-            };
-            let halfway = 0.5 * (before[lane] + behind[lane]);
-            let next = if is_before & is_inside { next } else { halfway };
-            let goes = (next - before[lane]).abs() > SETTLED * next;
-            settled[lane] |= u64::from(!goes);
-            at[lane] = if settled[lane] == 0 { next } else { before[lane] };
-            moves |= settled[lane] ^ 1;
+            let (here, last) = (at[lane], before[lane]);
+            let is_before = are_before[lane] != 0;
+            let last = if is_before { here } else { last };
+            // Steps stop short of the root. Where roots are nearly equal, rounding may still lead across one.
+            let (step, short) = if is_before { (steps[lane], SETTLED) } else { (0.0, back[lane]) };
+            let next = (here - step) * (1.0 - inward * short);
+            let halfway = 0.5 * (here + last);
+            let next = if inward * (next - last) > 0.0 { next } else { halfway };
+            let goes = u64::from(inward * (next - last) > SETTLED * next) & (settled[lane] ^ 1);
+            back[lane] = 16.0 * short;
+            before[lane] = last;
+            settled[lane] = goes ^ 1;
+            at[lane] = if goes != 0 { next } else { last };
+            moves |= goes;
         }
         if moves == 0 {
             break;
@@ -214,11 +221,11 @@ fn root<const N: usize, const L: usize>(
 }
 
 /// Laguerre's step `n p / (p′ ± √((n − 1) ((n − 1) p′² − n p p″)))` from a number before the first root from one end, and
-/// whether the number is there. It is if the polynomials of the first one, two … columns all have the sign that they
-/// have at this end.
+/// whether the number is there. It is if the polynomials of the first one, two … columns are all positive, with the
+/// signs with which they are at this end.
 ///
-/// With `uₖ` the polynomial of the first `k` columns, and `w` an auxiliary one,
-/// `wₖ₊₁ = uₖ − eₖ² wₖ` and `uₖ₊₁ = λ wₖ₊₁ − dₖ₊₁² uₖ`.
+/// With `uₖ` the polynomial of the first `k` columns, `w` an auxiliary one, and `s` the sign of `λ` at the end,
+/// `wₖ₊₁ = uₖ − s eₖ² wₖ` and `uₖ₊₁ = s (λ wₖ₊₁ − dₖ₊₁² uₖ)`.
 #[inline(always)]
 fn laguerre<const N: usize, const L: usize>(
     squares: &Squares<N, L>,
@@ -226,28 +233,29 @@ fn laguerre<const N: usize, const L: usize>(
     lane: usize,
     at: f64,
     end: End,
-) -> (f64, bool) {
+) -> (f64, u64) {
+    let s = match end {
+        End::Low => -1.0,
+        End::High => 1.0,
+    };
     // Each with its first and its second derivative.
     let (mut u, mut w) = ([1.0, 0.0, 0.0], [0.0; 3]);
-    let mut is_before = true;
+    let mut is_before = 1;
     for k in 0..columns {
-        let e = if k > 0 { squares.above[k - 1][lane] } else { 0.0 };
-        let d = squares.diagonal[k][lane];
+        let e = if k > 0 { s * squares.above[k - 1][lane] } else { 0.0 };
+        let d = s * squares.diagonal[k][lane];
         w = [u[0] - e * w[0], u[1] - e * w[1], u[2] - e * w[2]];
         u = [
-            at * w[0] - d * u[0],
-            w[0] + at * w[1] - d * u[1],
-            2.0 * w[1] + at * w[2] - d * u[2],
+            s * at * w[0] - d * u[0],
+            s * w[0] + s * at * w[1] - d * u[1],
+            2.0 * s * w[1] + s * at * w[2] - d * u[2],
         ];
-        is_before &= match end {
-            End::Low if k % 2 == 0 => u[0] <= 0.0,
-            End::Low | End::High => u[0] >= 0.0,
-        };
+        is_before &= u64::from(u[0] >= 0.0);
     }
     let n = columns as f64;
     let [p, first, second] = u;
     let square = (n - 1.0) * ((n - 1.0) * first * first - n * p * second);
-    let root = if square > 0.0 { square.sqrt() } else { 0.0 };
+    let root = square.max(0.0).sqrt();
     // At a root that is a multiple one, this would be zero over zero.
     let step = n * p / (first + root.copysign(first));
     (if p == 0.0 { 0.0 } else { step }, is_before)

@@ -75,43 +75,58 @@ fn count_above(values: &[f64], tolerance: f64) -> usize {
     values.iter().filter(|&&value| value > tolerance * largest).count()
 }
 
-/// Rotates the columns of a matrix of any scale until they are orthogonal, and those of `right` with them.
+/// Rotates the columns of a matrix of any scale until they are orthogonal, pair by pair, and those of `right` with them.
 fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f64>>) {
     let negligible = (f64::EPSILON * image.norm()).powi(2);
     let [rows, columns] = [image.nrows(), image.ncols()];
-    let orthogonal = |Products { pp, qq, pq }: &Products| {
-        pp.min(*qq) <= negligible || pq.abs() <= f64::EPSILON * (pp * qq).sqrt()
-    };
-    let rotated = |p: usize, q: usize, rotation: Rotation| {
-        if let Some(right) = &mut right {
-            rotation.apply(right.as_mut_slice(), columns, p, q);
+    let image = image.as_mut_slice();
+    for _ in 0..MAX_SWEEPS {
+        let mut settled = true;
+        for p in 0..columns {
+            for q in p + 1..columns {
+                let [pp, qq, pq] = products(image, rows, p, q);
+                if pp.min(qq) <= negligible || pq.abs() <= f64::EPSILON * (pp * qq).sqrt() {
+                    continue;
+                }
+                settled = false;
+                let zeta = (qq - pp) / (2.0 * pq);
+                // `hypot` does not overflow, whatever the scale.
+                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+                let cos = 1.0 / tan.hypot(1.0);
+                let rotation = Rotation { cos, sin: cos * tan };
+                rotation.apply(image, rows, p, q);
+                if let Some(right) = &mut right {
+                    rotation.apply(right.as_mut_slice(), columns, p, q);
+                }
+            }
         }
-    };
-    // `hypot` does not overflow, whatever the scale.
-    let secant = |tan: f64| tan.hypot(1.0);
-    jacobi(image.as_mut_slice(), [rows, columns], orthogonal, secant, rotated);
+        if settled {
+            break;
+        }
+    }
 }
 
-/// The inner products of two columns `p` and `q`.
-pub(crate) struct Products {
-    /// `p · p`.
-    pub pp: f64,
-    /// `q · q`.
-    pub qq: f64,
-    /// `p · q`.
-    pub pq: f64,
+/// The inner products `p · p`, `q · q` and `p · q` of two columns.
+fn products(matrix: &mut [f64], rows: usize, p: usize, q: usize) -> [f64; 3] {
+    let [mut pp, mut qq, mut pq] = [0.0; 3];
+    let (p, q) = pair(matrix, rows, p, q);
+    for (&mut x, &mut y) in p.iter_mut().zip(q) {
+        pp += x * x;
+        qq += y * y;
+        pq += x * y;
+    }
+    [pp, qq, pq]
 }
 
 /// The rotation that makes two columns orthogonal.
 #[derive(Clone, Copy)]
-pub(crate) struct Rotation {
+struct Rotation {
     cos: f64,
     sin: f64,
 }
 
 impl Rotation {
     /// Rotates columns `p < q` of a matrix with `rows` rows, which is stored by columns.
-    #[inline(always)]
     fn apply(self, matrix: &mut [f64], rows: usize, p: usize, q: usize) {
         let Self { cos, sin } = self;
         let (p, q) = pair(matrix, rows, p, q);
@@ -121,51 +136,7 @@ impl Rotation {
     }
 }
 
-/// One-sided Jacobi rotations: the columns of a matrix, which is stored by columns, are rotated pair by pair
-/// until every pair is `orthogonal`. Nothing is allocated.
-///
-/// `secant` computes the square root of `1 + tan²`. `rotated` is called after every rotation, with the
-/// numbers of the two columns.
-#[inline(always)]
-pub(crate) fn jacobi(
-    matrix: &mut [f64],
-    [rows, columns]: [usize; 2],
-    orthogonal: impl Fn(&Products) -> bool,
-    secant: impl Fn(f64) -> f64,
-    mut rotated: impl FnMut(usize, usize, Rotation),
-) {
-    for _ in 0..MAX_SWEEPS {
-        let mut settled = true;
-        for p in 0..columns {
-            for q in p + 1..columns {
-                let mut products = Products { pp: 0.0, qq: 0.0, pq: 0.0 };
-                let (column_p, column_q) = pair(matrix, rows, p, q);
-                for (&mut x, &mut y) in column_p.iter_mut().zip(column_q) {
-                    products.pp += x * x;
-                    products.qq += y * y;
-                    products.pq += x * y;
-                }
-                if orthogonal(&products) {
-                    continue;
-                }
-                settled = false;
-                let Products { pp, qq, pq } = products;
-                let zeta = (qq - pp) / (2.0 * pq);
-                let tan = zeta.signum() / (zeta.abs() + secant(zeta));
-                let cos = 1.0 / secant(tan);
-                let rotation = Rotation { cos, sin: cos * tan };
-                rotation.apply(matrix, rows, p, q);
-                rotated(p, q, rotation);
-            }
-        }
-        if settled {
-            break;
-        }
-    }
-}
-
 /// Two columns `p < q` of a matrix that is stored by columns, as slices.
-#[inline(always)]
 fn pair(matrix: &mut [f64], rows: usize, p: usize, q: usize) -> (&mut [f64], &mut [f64]) {
     let (before, after) = matrix.split_at_mut(q * rows);
     (&mut before[p * rows..][..rows], &mut after[..rows])

@@ -1,6 +1,6 @@
 //! How far a pose is from a singularity: condition number and manipulability.
 
-use super::weighted::Weighted;
+use super::weighted::{Metric, Weighted};
 use super::{Jacobians, SingularCause, SingularLeg};
 use crate::manipulator::Manipulator;
 use nalgebra::DMatrix;
@@ -8,9 +8,6 @@ use nalgebra::DMatrix;
 /// A singular value below this share of the largest counts as zero: the rounding of the few dozen operations
 /// that lead to it.
 const RANK: f64 = 1e-13;
-
-/// The most degrees of freedom that a platform has.
-const FREEDOMS: usize = 6;
 
 /// The conditioning of the actuated joints' Jacobian by the platform's twist.
 ///
@@ -86,13 +83,28 @@ impl Manipulator {
         if jacobians.singular.iter().any(serial) {
             return Conditioning::SERIAL;
         }
-        let n = jacobians.platform.ncols();
-        let mut weighted = Weighted::<FREEDOMS, 1>::new(n, length.recip());
-        for (component, column) in weighted.platform.iter_mut().zip(jacobians.platform.column_iter()) {
-            *component = std::array::from_fn(|i| [column[i]]);
+        match jacobians.platform.ncols() {
+            1 => self.weighted_conditioning::<1>(jacobians, length),
+            2 => self.weighted_conditioning::<2>(jacobians, length),
+            3 => self.weighted_conditioning::<3>(jacobians, length),
+            4 => self.weighted_conditioning::<4>(jacobians, length),
+            5 => self.weighted_conditioning::<5>(jacobians, length),
+            _ => self.weighted_conditioning::<6>(jacobians, length),
         }
+    }
+
+    /// The same for `N` degrees of freedom, away from serial singularities.
+    fn weighted_conditioning<const N: usize>(
+        &self,
+        jacobians: &Jacobians,
+        length: f64,
+    ) -> Conditioning {
+        let platform =
+            std::array::from_fn(|i| std::array::from_fn(|k| [jacobians.platform[(k, i)]]));
+        let metric = Metric::<N, 1>::new(&platform, length.recip());
+        let mut weighted = Weighted::new(&metric);
         let entries = |matrix: &DMatrix<f64>, row: usize| {
-            std::array::from_fn(|column| [if column < n { matrix[(row, column)] } else { 0.0 }])
+            std::array::from_fn(|column| [matrix[(row, column)]])
         };
         for &coordinate in self.actuated() {
             let quantity = self.coordinates()[coordinate].quantity;

@@ -103,32 +103,32 @@ pub struct Jacobians {
 
 /// The unit twists that are the components of the section twist.
 #[derive(Clone, Debug)]
-struct Basis {
+pub(super) struct Basis {
     /// The components of the upper section, in its frame.
-    upper: [LocalTwist; 3],
+    pub upper: [LocalTwist; 3],
     /// The components of the lower section, in its frame.
-    lower: [LocalTwist; 3],
+    pub lower: [LocalTwist; 3],
     /// The numbers of upper and of lower components; the rest are zeros.
-    counts: [usize; 2],
+    pub counts: [usize; 2],
     /// The same twists in base coordinates, upper ones first, and a height's at last.
-    in_base: Vec<BaseTwist>,
+    pub in_base: Vec<BaseTwist>,
     /// The home position of the platform's reference point, in the upper section's frame.
-    platform: Vector3<f64>,
+    pub platform: Vector3<f64>,
 }
 
 /// A twist in base directions.
 #[derive(Clone, Debug)]
-struct BaseTwist {
+pub(super) struct BaseTwist {
     /// The angular velocity.
-    angular: Vector3<f64>,
+    pub angular: Vector3<f64>,
     /// The velocity of the point at `origin`.
-    linear: Vector3<f64>,
+    pub linear: Vector3<f64>,
     /// A point, in base coordinates, metres.
-    origin: Vector3<f64>,
+    pub origin: Vector3<f64>,
 }
 
 impl Basis {
-    fn new(task: &Task, platform: &Point3<f64>) -> Self {
+    pub fn new(task: &Task, platform: &Point3<f64>) -> Self {
         let (kept, rest) = (task.upper.kind.basis(), task.lower.kind.basis());
         let rotation = task.shared() == Some(MotionType::Rotation);
         let upper = if rotation { kept } else { task.upper_intersection.complement() };

@@ -3,6 +3,7 @@
 use super::runs::{self, Run};
 use super::worker::Visitor;
 use super::{Count, Hits, Sweep};
+use crate::condition::Conditioned;
 use crate::grid::Sections;
 use opm_core::manipulator::{Batch, Manipulator};
 use std::ops::Range;
@@ -12,8 +13,10 @@ use std::ops::Range;
 const FEW: u64 = 8;
 
 /// A thread's working memory for poses of several slices.
-pub struct Together {
+pub struct Together<'a> {
     batch: Batch,
+    /// Decides by the limit on the condition number, if there is one.
+    limited: Option<Conditioned<'a>>,
     /// The numbers of the present pose's coordinates, and their values.
     digits: Vec<u64>,
     pose: Vec<f64>,
@@ -28,17 +31,18 @@ impl Sweep<'_> {
     /// Whether poses of several slices are decided together.
     pub(super) fn takes_slices_together(&self) -> bool {
         self.grid.sections() == Sections::Whole
-            && self.limit.is_none()
             && self.manipulator.decides_many()
             && self.side * self.sheets <= FEW / self.grid.row().max(1)
     }
 }
 
-impl Together {
-    pub fn new(sweep: &Sweep<'_>) -> Self {
+impl<'a> Together<'a> {
+    pub fn new(sweep: &Sweep<'a>) -> Self {
         let axes = sweep.grid.axes().len();
+        let limited = |limit| Conditioned::new(sweep.manipulator, limit);
         Self {
             batch: sweep.manipulator.batch(),
+            limited: sweep.limit.map(limited),
             digits: vec![0; axes],
             pose: vec![0.0; axes],
             poses: Vec::new(),
@@ -70,11 +74,24 @@ impl Together {
                 self.advance(sweep);
             }
             let reached = &mut self.reached[..count as usize];
-            let mode = sweep.modes.one();
-            let (manipulator, batch) = (sweep.manipulator, &mut self.batch);
-            manipulator.decide_many(&self.poses, mode, batch, reached, |imaginary, range| {
+            let mut used = |imaginary: usize, range: [f64; 2]| {
                 range.into_iter().for_each(|end| found.widen(imaginary, end));
-            });
+            };
+            match &mut self.limited {
+                Some(conditioned) => {
+                    let mut conditions = [0.0; Manipulator::DECIDED];
+                    let conditions = &mut conditions[..reached.len()];
+                    let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
+                        if hit.is_none() { Some(&mut used) } else { None };
+                    conditioned.decide(&self.poses, sweep.modes, conditions, used);
+                    let admitted = conditions.iter().map(|condition| !condition.is_nan());
+                    reached.iter_mut().zip(admitted).for_each(|(to, admitted)| *to = admitted);
+                }
+                None => {
+                    let (mode, batch) = (sweep.modes.one(), &mut self.batch);
+                    sweep.manipulator.decide_many(&self.poses, mode, batch, reached, used);
+                }
+            }
             found.poses += count;
             found.reachable += reached.iter().filter(|&&reached| reached).count() as u64;
             if let Some(hit) = hit {

@@ -3,12 +3,12 @@
 use super::asked::{AskedRows, Clipped};
 use super::clip::{Clip, ClippedRows, Intersect, Intersection, ROWS, RowState, Rows};
 use super::known_range::KnownRanges;
+use super::limited::LimitedRows;
 use super::row::Row;
 use super::runs::{self, Run};
 use super::sheet::{Sheet, SheetKind, SliceBranch};
 use super::together::Together;
 use super::{Count, Hits, Modes, Sweep};
-use crate::condition::Conditioned;
 use crate::grid::{Axis, Sections};
 use opm_core::manipulator::{AllModes, Solution};
 use pulp::Arch;
@@ -27,9 +27,9 @@ pub struct Worker<'a> {
     /// The poses that the legs reach that are the same in every slice, of the rows of the range.
     fixed: Option<(Range<u64>, Box<AskedRows>)>,
     hits: HitPoses,
-    limit: Option<LimitedRow<'a>>,
+    limit: Option<LimitedRows<'a>>,
     one: OnePose,
-    together: Option<Together>,
+    together: Option<Together<'a>>,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
 }
@@ -66,12 +66,6 @@ struct OnePose {
     pose: Vec<f64>,
     all: AllModes,
     solution: Solution,
-}
-
-/// Poses of a row that are held against the limit on the condition number.
-struct LimitedRow<'a> {
-    conditioned: Conditioned<'a>,
-    pose: Vec<f64>,
 }
 
 impl Clipping {
@@ -181,8 +175,6 @@ impl<'a> Worker<'a> {
     pub fn new(sweep: &'a Sweep<'a>) -> Self {
         let manipulator = sweep.manipulator;
         let pose = || vec![0.0; sweep.grid.axes().len()];
-        let limited =
-            |limit| LimitedRow { conditioned: Conditioned::new(manipulator, limit), pose: pose() };
         Self {
             sweep,
             sheet: Sheet::new(sweep),
@@ -191,7 +183,7 @@ impl<'a> Worker<'a> {
             asked: None,
             fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
-            limit: sweep.limit.map(limited),
+            limit: sweep.limit.map(|limit| LimitedRows::new(manipulator, limit)),
             one: OnePose {
                 pose: pose(),
                 all: manipulator.all_modes(),
@@ -264,8 +256,9 @@ impl<'a> Worker<'a> {
             if count_alone {
                 reachable += asked.count();
             } else {
+                self.limit_rows(&asked, hit.is_none(), found);
                 for place in 0..asked.numbers().len() {
-                    reachable += self.take_row(&asked, place, window, found, hit);
+                    reachable += self.take_row(&asked, place, window, hit);
                 }
             }
             self.asked = Some(asked);
@@ -339,7 +332,6 @@ impl<'a> Worker<'a> {
         asked: &AskedRows,
         place: usize,
         window: Run,
-        found: &mut Count,
         hit: &mut Visitor<'_>,
     ) -> u64 {
         let number = asked.numbers()[place];
@@ -347,12 +339,9 @@ impl<'a> Worker<'a> {
         if count == 0 {
             return 0;
         }
-        let grid = self.sweep.grid;
-        if grid.lower() > 1 {
-            self.sheet.others[0] = grid.axes()[1].value(number);
-        }
-        if self.limit.is_some() {
-            count = self.limit_row(hit.is_none(), found);
+        self.go_to_row(number);
+        if let Some(limit) = &mut self.limit {
+            count = self.row.retain(|_| limit.next());
         }
         self.hand_over(number, window, hit);
         count
@@ -379,12 +368,13 @@ impl<'a> Worker<'a> {
         hit: &mut Visitor<'_>,
     ) -> u64 {
         let axes = self.sweep.grid.axes();
-        if self.sweep.grid.lower() > 1 {
-            self.sheet.others[0] = axes[1].value(number);
-        }
+        self.go_to_row(number);
         self.row.take(std::iter::once(window));
-        let count = if self.limit.is_some() {
-            self.limit_row(hit.is_none(), found)
+        let count = if let Some(limit) = &mut self.limit {
+            limit.begin(hit.is_none());
+            limit.add(self.sweep, std::iter::once(window), &self.sheet.others, found);
+            limit.decide(self.sweep, found);
+            self.row.retain(|_| limit.next())
         } else {
             let (manipulator, ranges) = (self.sweep.manipulator, hit.is_none());
             let modes = self.sweep.modes;
@@ -417,22 +407,25 @@ impl<'a> Worker<'a> {
         count
     }
 
-    /// Keeps those of the row's reachable poses that are conditioned well enough, and takes (`ranges`)
-    /// the imaginary joints of the modes in which they are; returns how many are left.
-    fn limit_row(&mut self, ranges: bool, found: &mut Count) -> u64 {
-        let Some(LimitedRow { conditioned, pose }) = &mut self.limit else { return 0 };
-        let axis = &self.sweep.grid.axes()[0];
-        pose[1..].copy_from_slice(&self.sheet.others);
-        self.row.retain(|number| {
-            pose[0] = axis.value(number);
-            conditioned.any(pose, self.sweep.modes, |solution| {
-                if ranges {
-                    let values = solution.imaginary().iter().enumerate();
-                    values.for_each(|(imaginary, &value)| found.widen(imaginary, value));
-                }
-                ranges
-            })
-        })
+    /// Holds the reachable poses of the rows that were asked for against the limit, if there is one, and takes (`ranges`)
+    /// the imaginary joints of the modes in which they are admitted.
+    fn limit_rows(&mut self, asked: &AskedRows, ranges: bool, found: &mut Count) {
+        let Some(mut limit) = self.limit.take() else { return };
+        limit.begin(ranges);
+        for (place, &number) in asked.numbers().iter().enumerate() {
+            self.go_to_row(number);
+            limit.add(self.sweep, asked.runs(place), &self.sheet.others, found);
+        }
+        limit.decide(self.sweep, found);
+        self.limit = Some(limit);
+    }
+
+    /// Goes to row `number` of the sheet: takes its second coordinate.
+    fn go_to_row(&mut self, number: u64) {
+        let grid = self.sweep.grid;
+        if grid.lower() > 1 {
+            self.sheet.others[0] = grid.axes()[1].value(number);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::lanes::{Column, LANES, Mask};
 use super::{Batch, Block, Status, section};
-use crate::manipulator::{CompiledLeg, Manipulator, Mode};
+use crate::manipulator::{CompiledLeg, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use pulp::{Simd, WithSimd};
 
@@ -40,6 +40,18 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn decides_many(&self) -> bool {
         self.dependent.is_none() && self.lifts_straight() && !self.shares_height()
+    }
+
+    /// The branches of a leg in a mode, or (`None`) in any, all-plus first.
+    #[inline(always)]
+    pub(crate) fn branches_of(
+        &self,
+        mode: Option<Mode>,
+        leg: usize,
+    ) -> impl Iterator<Item = LegBranches> {
+        let one = mode.map(|mode| self.modes.branches(mode, leg));
+        let each = self.modes.leg_modes(leg).take(if one.is_some() { 0 } else { 4 });
+        one.into_iter().chain(each.map(move |mode| self.modes.branches(mode, leg)))
     }
 
     /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
@@ -127,23 +139,10 @@ impl WithSimd for Decide<'_> {
         for (leg, compiled) in manipulator.legs.iter().enumerate() {
             let mut reached = [0; LANES];
             let mut open = [0; LANES];
-            let one = mode.map(|mode| manipulator.modes.branches(mode, leg));
-            let each = manipulator.modes.leg_modes(leg).take(if one.is_some() { 0 } else { 4 });
-            let each = each.map(|mode| manipulator.modes.branches(mode, leg));
-            for branches in one.into_iter().chain(each) {
-                block.status =
-                    Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
-                block.solve_leg(manipulator, branches, leg);
-                for section in [Section::Lower, Section::Upper] {
-                    block.admit(manipulator, compiled, section, LANES);
-                }
-                let Status { beyond, open: of_branch, within_limits } = &block.status;
-                let mut reaches = [0; LANES];
+            for branches in manipulator.branches_of(mode, leg) {
+                let reaches = block.reach(manipulator, leg, branches, &mut open);
                 for lane in 0..LANES {
-                    let closes = beyond[lane] ^ 1;
-                    reaches[lane] = closes & (of_branch[lane] ^ 1) & within_limits[lane];
                     reached[lane] |= reaches[lane];
-                    open[lane] |= closes & of_branch[lane];
                 }
                 if let Some(imaginary) = compiled.imaginary {
                     block.note_imaginary(manipulator, number, imaginary, reaches);
@@ -160,9 +159,34 @@ impl WithSimd for Decide<'_> {
 }
 
 impl Block {
+    /// Solves a branch of a leg. Returns whether it reaches each pose within the leg's limits, and marks in `open` where
+    /// that is not known.
+    #[inline(always)]
+    pub fn reach(
+        &mut self,
+        manipulator: &Manipulator,
+        number: usize,
+        branches: LegBranches,
+        open: &mut Mask,
+    ) -> Mask {
+        self.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        self.solve_leg(manipulator, branches, number);
+        for section in [Section::Lower, Section::Upper] {
+            self.admit(manipulator, &manipulator.legs[number], section, LANES);
+        }
+        let Status { beyond, open: of_branch, within_limits } = &self.status;
+        let mut reaches = [0; LANES];
+        for lane in 0..LANES {
+            let closes = beyond[lane] ^ 1;
+            reaches[lane] = closes & (of_branch[lane] ^ 1) & within_limits[lane];
+            open[lane] |= closes & of_branch[lane];
+        }
+        reaches
+    }
+
     /// Notes whether a leg's joints of a section are within their limits.
     #[inline(always)]
-    pub(super) fn admit(
+    pub fn admit(
         &mut self,
         manipulator: &Manipulator,
         leg: &CompiledLeg,

@@ -144,7 +144,7 @@ pub fn displace(
 impl Displacement {
     /// Stores a displacement in the columns of its kind.
     #[inline(always)]
-    pub(super) fn store(&self, to: &mut Displacements, lane: usize) {
+    pub(crate) fn store(&self, to: &mut Displacements, lane: usize) {
         match self {
             Self::Identity(_) => {}
             Self::Planar(g) => g.store(to, lane),

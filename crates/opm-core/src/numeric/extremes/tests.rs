@@ -86,7 +86,19 @@ fn given_values() {
     let mut draw = Draw(3);
     for round in 0..20_000 {
         let n = 1 + draw.below(6);
-        let kinds = [1.0, 1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 - 1e-9, 1.0 + 1e-6, 0.3, 1e-3, 1e-6, 1e-10, 0.0];
+        let kinds = [
+            1.0,
+            1.0,
+            1.0 + 1e-15,
+            1.0 + 1e-12,
+            1.0 - 1e-9,
+            1.0 + 1e-6,
+            0.3,
+            1e-3,
+            1e-6,
+            1e-10,
+            0.0,
+        ];
         let few = if round % 2 == 0 { kinds.len() } else { 6 };
         let values: Vec<f64> = (0..n).map(|_| kinds[draw.below(few)]).collect();
         let diagonal = DMatrix::from_fn(n, n, |i, j| if i == j { values[i] } else { 0.0 });
@@ -154,7 +166,8 @@ fn lanes_are_independent() {
 #[test]
 fn what_is_not_finite_has_no_finite_largest_value() {
     for bad in [f64::NAN, f64::INFINITY, 1e200] {
-        let mut a = DMatrix::from_fn(4, 4, |i, j| f64::from(i as u32 + 1) / f64::from(j as u32 + 2));
+        let mut a =
+            DMatrix::from_fn(4, 4, |i, j| f64::from(i as u32 + 1) / f64::from(j as u32 + 2));
         a[(2, 1)] = bad;
         assert!(!of(&a)[0].is_finite(), "{bad}");
     }

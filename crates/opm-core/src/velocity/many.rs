@@ -1,0 +1,315 @@
+//! Condition numbers of many poses at once.
+//!
+//! Poses are solved in the blocks of [`Manipulator::inverse_many`], and every further step is a loop over the block, too:
+//! each leg's rows of the Jacobian, their weights, the singular values. It is the arithmetic of
+//! [`Manipulator::differentiate`] and [`Manipulator::conditioning`] without what nobody asks for here, and condition
+//! numbers are equal to theirs to the bit. A block of branches of the legs is combined to working modes.
+
+mod leg;
+mod platform;
+
+use super::jacobian::Basis;
+use super::weighted::{Metric, Weighted};
+use crate::chain::Chain;
+use crate::manipulator::batch::Batch;
+use crate::manipulator::batch::lanes::{Column, LANES, Mask};
+use crate::manipulator::{LARGEST, Manipulator, Mode};
+use leg::{BranchRows, LegRows};
+use platform::PlatformColumns;
+use pulp::{Simd, WithSimd};
+
+/// The number of lanes whose singular values are computed together. Their matrices fit into the fastest memory.
+const CHUNK: usize = 16;
+
+/// What [`Manipulator::condition_many`] is asked for.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct ConditionQuery {
+    /// The working mode; `None` for any.
+    pub mode: Option<Mode>,
+    /// The characteristic length, metres.
+    pub length: f64,
+    /// The largest condition number that is admitted.
+    pub most: f64,
+    /// Whether imaginary joints are asked for in every admitted mode.
+    pub every: bool,
+}
+
+/// Working memory of [`Manipulator::condition_many`]; made by [`Manipulator::condition_batch`].
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct ConditionBatch {
+    batch: Batch,
+    work: Box<Work>,
+}
+
+/// The results of a block, and what leads to them.
+#[derive(Clone, Debug)]
+struct Work {
+    /// Whether all steps are straight-line arithmetic for this mechanism.
+    applies: bool,
+    basis: Basis,
+    platform: PlatformColumns,
+    leg: LegRows,
+    /// The leg of each actuated joint, and the number of its row there.
+    places: Vec<(usize, usize)>,
+    /// The branches of every leg that reach any pose of the block within the leg's limits.
+    branches: Vec<Vec<BranchRows>>,
+    /// The number of those of each leg that are of the present block.
+    counts: Vec<usize>,
+    /// The present one of each leg.
+    choice: Vec<usize>,
+    /// Whether a pose has to be decided by itself.
+    open: Mask,
+    /// The condition number in the first mode that is admitted; NaN where there is none.
+    conditions: Column,
+    /// The least and the largest value of every imaginary joint in admitted modes.
+    ranges: Vec<[f64; 2]>,
+}
+
+impl Manipulator {
+    /// Working memory for [`Manipulator::condition_many`].
+    #[doc(hidden)]
+    pub fn condition_batch(&self) -> ConditionBatch {
+        let basis = Basis::new(self.task(), &self.mechanism().platform);
+        let freedoms = basis.in_base.len();
+        // The rates of a spherical joint are those of its rotation vector, which has no straight-line arithmetic.
+        let drives_ball = self.legs.iter().any(|leg| {
+            [&leg.lower, &leg.upper]
+                .iter()
+                .any(|section| matches!(section.chain, Chain::Ball(_)) && section.driven)
+        });
+        let place = |&coordinate: &usize| {
+            (0..self.legs.len()).find_map(|leg| {
+                let rows = BranchRows::new(self, leg).rows;
+                Some((leg, rows.iter().position(|row| row.coordinate == coordinate)?))
+            })
+        };
+        ConditionBatch {
+            batch: self.batch(),
+            work: Box::new(Work {
+                applies: self.decides_many() && !drives_ball,
+                leg: LegRows::new(self, &basis),
+                basis,
+                platform: PlatformColumns::new(freedoms),
+                places: self.actuated().iter().filter_map(place).collect(),
+                branches: vec![Vec::new(); self.legs.len()],
+                counts: vec![0; self.legs.len()],
+                choice: vec![0; self.legs.len()],
+                open: [0; LANES],
+                conditions: [f64::NAN; LANES],
+                ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; self.imaginary().len()],
+            }),
+        }
+    }
+
+    /// Finds the condition numbers of some poses, row after row, each in the first working mode, all-plus first, in which
+    /// the pose is in reach within all joint limits and no worse conditioned than asked for; NaN where there is no such
+    /// mode. `used` is called with the number of an imaginary joint and the least and the largest of its values in all such
+    /// modes, if [`ConditionQuery::every`] of them is asked for.
+    ///
+    /// Returns a bit for each pose, set where it is not decided, and has to be asked for by itself.
+    ///
+    /// # Panics
+    /// If there are more answers than [`Manipulator::DECIDED`], or fewer poses than answers.
+    #[doc(hidden)]
+    pub fn condition_many(
+        &self,
+        poses: &[f64],
+        query: &ConditionQuery,
+        batch: &mut ConditionBatch,
+        conditions: &mut [f64],
+        mut used: impl FnMut(usize, [f64; 2]),
+    ) -> u64 {
+        let count = conditions.len();
+        let ConditionBatch { batch, work } = batch;
+        if count == 0 || !work.applies {
+            return u64::MAX;
+        }
+        batch.block.take(poses, self.task_coordinates().len());
+        let arch = batch.arch;
+        arch.dispatch(Conditions { manipulator: self, query, count, batch, work });
+        conditions.copy_from_slice(&work.conditions[..count]);
+        for (number, &range) in work.ranges.iter().enumerate() {
+            if range[0] <= range[1] {
+                used(number, range);
+            }
+        }
+        work.open.iter().rev().fold(0, |bits, open| bits << 1 | open)
+    }
+}
+
+/// Finds the condition numbers of a block with the instructions of the processor at hand.
+struct Conditions<'a> {
+    manipulator: &'a Manipulator,
+    query: &'a ConditionQuery,
+    /// The number of poses.
+    count: usize,
+    batch: &'a mut Batch,
+    work: &'a mut Work,
+}
+
+impl WithSimd for Conditions<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        self.work.conditions = [f64::NAN; LANES];
+        self.work.ranges.fill([f64::INFINITY, f64::NEG_INFINITY]);
+        if !self.solve() {
+            return;
+        }
+        // With a constant number of freedoms, loops over the components are none.
+        match self.work.basis.in_base.len() {
+            1 => self.combine::<1>(),
+            2 => self.combine::<2>(),
+            3 => self.combine::<3>(),
+            4 => self.combine::<4>(),
+            5 => self.combine::<5>(),
+            _ => self.combine::<6>(),
+        }
+    }
+}
+
+impl Conditions<'_> {
+    /// Solves every branch of every leg. Returns whether each leg has one that reaches any pose.
+    #[inline(always)]
+    fn solve(&mut self) -> bool {
+        let Self { manipulator, query, batch, work, .. } = self;
+        let block = &mut *batch.block;
+        block.displace(manipulator);
+        block.lift(manipulator);
+        work.open = block.status.open;
+        for column in &block.pose {
+            for (open, value) in work.open.iter_mut().zip(column) {
+                let fits = value.abs() <= LARGEST;
+                *open |= u64::from(!fits);
+            }
+        }
+        let lifted = block.status.within_limits;
+        work.platform.find(manipulator, &work.basis, block);
+        work.leg.begin(manipulator, &work.basis, block);
+        let mut all = true;
+        for number in 0..manipulator.legs.len() {
+            let mut found = 0;
+            for branches in manipulator.branches_of(query.mode, number) {
+                let mut reaches = block.reach(manipulator, number, branches, &mut work.open);
+                for lane in 0..LANES {
+                    reaches[lane] &= lifted[lane];
+                }
+                if reaches.iter().all(|&reaches| reaches == 0) {
+                    continue;
+                }
+                let of_leg = &mut work.branches[number];
+                if found == of_leg.len() {
+                    of_leg.push(BranchRows::new(manipulator, number));
+                }
+                of_leg[found].reaches = reaches;
+                work.leg.differentiate(manipulator, number, block, &mut of_leg[found]);
+                found += 1;
+            }
+            work.counts[number] = found;
+            all &= found > 0;
+        }
+        all
+    }
+
+    /// Combines the branches to working modes, all-plus first.
+    #[inline(always)]
+    fn combine<const N: usize>(&mut self) {
+        let scale = self.query.length.recip();
+        for start in (0..self.count).step_by(CHUNK) {
+            let platform = self.work.platform.chunk::<N, CHUNK>(&self.work.basis, start);
+            let metric = Metric::new(&platform, scale);
+            self.work.choice.fill(0);
+            loop {
+                let (mask, any) = self.asked(start);
+                if any {
+                    let found = self.conditions::<N>(&metric, start);
+                    self.admit(start, &mask, &found);
+                }
+                if !self.work.choose_next() {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Which poses of a chunk the present mode reaches that are still asked for, and whether there are any.
+    #[inline(always)]
+    fn asked(&self, start: usize) -> ([u64; CHUNK], bool) {
+        let Work { branches, choice, open, conditions, .. } = &*self.work;
+        let mut mask = [0; CHUNK];
+        for (i, mask) in mask.iter_mut().enumerate() {
+            let decided = !self.query.every && !conditions[start + i].is_nan();
+            *mask = u64::from(start + i < self.count && !decided) & (open[start + i] ^ 1);
+        }
+        for (of_leg, &choice) in branches.iter().zip(choice) {
+            for (i, mask) in mask.iter_mut().enumerate() {
+                *mask &= of_leg[choice].reaches[start + i];
+            }
+        }
+        (mask, mask.iter().any(|&mask| mask != 0))
+    }
+
+    /// The condition numbers of a chunk in the present mode.
+    #[inline(always)]
+    fn conditions<const N: usize>(&self, metric: &Metric<N, CHUNK>, start: usize) -> [f64; CHUNK] {
+        let Work { branches, choice, places, .. } = &*self.work;
+        let mut weighted = Weighted::new(metric);
+        for (&coordinate, &(leg, row)) in self.manipulator.actuated().iter().zip(places) {
+            let found = &branches[leg][choice[leg]].rows[row].rates;
+            let mut rates = [[0.0; CHUNK]; N];
+            for (rates, found) in rates.iter_mut().zip(found) {
+                rates.copy_from_slice(&found[start..start + CHUNK]);
+            }
+            weighted.push(rates, self.manipulator.coordinates()[coordinate].quantity);
+        }
+        let found = weighted.conditioning(std::iter::empty());
+        let mut serial = [0; CHUNK];
+        for (of_leg, &choice) in branches.iter().zip(choice) {
+            for (i, serial) in serial.iter_mut().enumerate() {
+                *serial |= of_leg[choice].serial[start + i];
+            }
+        }
+        std::array::from_fn(|i| if serial[i] == 0 { found[i].condition } else { f64::INFINITY })
+    }
+
+    /// Takes the condition numbers of the asked poses of a chunk that are small enough.
+    #[inline(always)]
+    fn admit(&mut self, start: usize, asked: &[u64; CHUNK], found: &[f64; CHUNK]) {
+        let Work { branches, choice, conditions, ranges, .. } = &mut *self.work;
+        let admitted: [bool; CHUNK] =
+            std::array::from_fn(|i| asked[i] != 0 && found[i] <= self.query.most);
+        for i in 0..CHUNK {
+            let first = admitted[i] && conditions[start + i].is_nan();
+            conditions[start + i] = if first { found[i] } else { conditions[start + i] };
+        }
+        if !self.query.every {
+            return;
+        }
+        for (of_leg, &choice) in branches.iter().zip(&*choice) {
+            let Some((number, values)) = &of_leg[choice].imaginary else { continue };
+            let range = &mut ranges[*number];
+            for i in (0..CHUNK).filter(|&i| admitted[i]) {
+                let value = values[start + i];
+                *range = [range[0].min(value), range[1].max(value)];
+            }
+        }
+    }
+}
+
+impl Work {
+    /// Goes on to the next combination of branches, the first leg's fastest. Returns whether there is one.
+    #[inline(always)]
+    fn choose_next(&mut self) -> bool {
+        for (choice, &count) in self.choice.iter_mut().zip(&self.counts) {
+            *choice += 1;
+            if *choice < count {
+                return true;
+            }
+            *choice = 0;
+        }
+        false
+    }
+}
