@@ -93,6 +93,10 @@ impl BatchOutput<'_> {
     }
 }
 
+/// The number of poses for which something is computed that all of a block share: as many as fit into one vector of any
+/// processor.
+pub(crate) const FEWEST: usize = 8;
+
 /// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`]. See the example there.
 #[derive(Clone, Debug)]
 pub struct Batch {
@@ -109,6 +113,9 @@ pub(crate) struct Block {
     pub pose: Vec<Column>,
     pub v: Displacements,
     pub b: Displacements,
+    /// Whether all poses have the coordinates of the upper section in common. Then what follows from these alone is computed
+    /// for [`FEWEST`] of them.
+    pub one_upper: bool,
     pub lower: Found,
     pub upper: Found,
     /// The displacements along the intersection motion of the leg that was solved last.
@@ -142,6 +149,7 @@ impl Manipulator {
                 pose: columns(self.task.coordinates.len()),
                 v: [[0.0; LANES]; 9],
                 b: [[0.0; LANES]; 9],
+                one_upper: false,
                 lower: Found::new(),
                 upper: Found::new(),
                 tau: DisplacementColumns::new(),
@@ -305,6 +313,23 @@ impl Block {
             }
             column[poses.len() / width..].fill(last);
         }
+        self.one_upper = false;
+    }
+
+    /// Finds out whether all poses have the coordinates of the upper section in common.
+    #[inline(always)]
+    fn compare_upper(&mut self, task: &Task) {
+        let columns = &self.pose[task.range(Section::Upper)];
+        self.one_upper = columns.iter().all(|column| {
+            let differ = |any: u64, value: &f64| any | (value.to_bits() ^ column[0].to_bits());
+            column.iter().fold(0, differ) == 0
+        });
+    }
+
+    /// The number of poses for which the upper section is computed.
+    #[inline(always)]
+    pub fn upper_lanes(&self) -> usize {
+        if self.one_upper { FEWEST } else { LANES }
     }
 
     /// Writes the block's results to rows, including the rows that are still open.
@@ -344,8 +369,12 @@ impl Block {
                 }
             }
         }
+        self.compare_upper(task);
         self.displace_section(manipulator, Section::Lower, LANES);
-        self.displace_section(manipulator, Section::Upper, LANES);
+        self.displace_section(manipulator, Section::Upper, self.upper_lanes());
+        if self.one_upper {
+            self.b.iter_mut().for_each(lanes::repeat);
+        }
     }
 
     /// Computes the displacements of a section, of so many poses.
@@ -366,14 +395,19 @@ impl Block {
     pub fn solve_leg(&mut self, manipulator: &Manipulator, branches: LegBranches, number: usize) {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
         for section in leg.order() {
-            let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
             let is_first = section == leg.split_section;
+            let one = self.one_upper && is_first && section == Section::Upper;
+            let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
             let (of_section, branch, found, target) = match section {
                 Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
             };
             let target = if is_first { target } else { &*shifted };
-            section::solve(&of_section.chain, branch, target, found, LANES);
+            let lanes = if one { FEWEST } else { LANES };
+            section::solve(&of_section.chain, branch, target, found, lanes);
+            if one {
+                found.repeat();
+            }
             status.note(found);
             if is_first {
                 match leg.imaginary_joint() {

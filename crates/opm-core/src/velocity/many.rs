@@ -218,9 +218,15 @@ impl Conditions<'_> {
     #[inline(always)]
     fn combine<const N: usize>(&mut self) {
         let scale = self.query.length.recip();
+        let metric_at = |work: &Work, start: usize| {
+            Metric::new(&work.platform.chunk::<N, CHUNK>(&work.basis, start), scale)
+        };
+        let mut metric = metric_at(self.work, 0);
         for start in (0..self.count).step_by(CHUNK) {
-            let platform = self.work.platform.chunk::<N, CHUNK>(&self.work.basis, start);
-            let metric = Metric::new(&platform, scale);
+            // The platform's twist depends on the upper section alone.
+            if start > 0 && !self.batch.block.one_upper {
+                metric = metric_at(self.work, start);
+            }
             self.work.choice.fill(0);
             loop {
                 let (mask, any) = self.asked(start);

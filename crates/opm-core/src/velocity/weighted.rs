@@ -72,10 +72,14 @@ impl<const N: usize, const L: usize> Metric<N, L> {
             let (before, column) = columns.split_at_mut(j);
             let column = &mut column[0];
             for (k, before) in before.iter().enumerate() {
+                let factor = self.factor[j][k];
                 for (row, before) in column.iter_mut().zip(before) {
+                    // What is loaded before anything is stored is done in vectors.
+                    let mut rest = *row;
                     for lane in 0..L {
-                        row[lane] -= before[lane] * self.factor[j][k][lane];
+                        rest[lane] -= before[lane] * factor[lane];
                     }
+                    *row = rest;
                 }
             }
             for row in column {

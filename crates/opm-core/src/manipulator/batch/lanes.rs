@@ -91,6 +91,12 @@ impl Lane for Matrix3<f64> {
     }
 }
 
+/// Repeats the first value of a column for all poses.
+#[inline(always)]
+pub fn repeat(column: &mut Column) {
+    *column = [column[0]; LANES];
+}
+
 /// One joint displacement for each pose, all of the same variant.
 #[derive(Clone, Debug)]
 pub struct DisplacementColumns {
@@ -110,6 +116,12 @@ impl DisplacementColumns {
     pub fn clear(&mut self) {
         self.are_directions = false;
         self.columns[0] = [0.0; LANES];
+    }
+
+    /// Repeats the first one for all poses.
+    #[inline(always)]
+    pub fn repeat(&mut self) {
+        self.columns.iter_mut().for_each(repeat);
     }
 
     /// The displacement of pose number `lane`, which must be a direction.

@@ -38,6 +38,13 @@ impl Found {
             [DisplacementColumns::new(), DisplacementColumns::new(), DisplacementColumns::new()];
         Self { displacements, holds: [0; LANES], beyond: [0; LANES] }
     }
+
+    /// Repeats the result of the first pose for all.
+    #[inline(always)]
+    pub fn repeat(&mut self) {
+        self.displacements.iter_mut().for_each(DisplacementColumns::repeat);
+        (self.holds, self.beyond) = ([self.holds[0]; LANES], [self.beyond[0]; LANES]);
+    }
 }
 
 /// The coordinates of a section at some poses. What they share is computed once.

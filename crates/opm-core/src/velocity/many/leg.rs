@@ -9,7 +9,7 @@ use crate::group::{
 };
 use crate::manipulator::batch::Block;
 use crate::manipulator::batch::lanes::{
-    Column, DisplacementColumns, Displacements, LANES, Lane, Mask,
+    Column, DisplacementColumns, Displacements, LANES, Lane, Mask, repeat,
 };
 use crate::manipulator::batch::section::{self, Found, Side, Step};
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Section};
@@ -81,16 +81,22 @@ impl Screws {
 
     /// Displaces the screws of a section: see [`Screws`](crate::velocity::screws::Screws).
     #[inline(always)]
-    fn displace(&mut self, kind: SubspaceKind, section: &CompiledSection, found: &Found) {
+    fn displace(
+        &mut self,
+        kind: SubspaceKind,
+        section: &CompiledSection,
+        found: &Found,
+        lanes: usize,
+    ) {
         let Self { moved: [first, second, third], steps: [one, two], .. } = self;
         let [s1, s2, s3] = section.screws;
         let [q1, q2, _] = &found.displacements;
         fill(first, &s1);
         match kind {
             SubspaceKind::Planar => {
-                along_screw(&s1, q1, one);
-                along_screw(&s2, q2, two);
-                for lane in 0..LANES {
+                along_screw(&s1, q1, one, lanes);
+                along_screw(&s2, q2, two, lanes);
+                for lane in 0..lanes {
                     let one = PlanarDisplacement::load(one, lane);
                     let two = one.after(&PlanarDisplacement::load(two, lane));
                     store(second, lane, Planar::adjoint(&one, &s2));
@@ -98,9 +104,9 @@ impl Screws {
                 }
             }
             SubspaceKind::Spherical => {
-                unit_directions(q1, one);
-                unit_directions(q2, two);
-                for lane in 0..LANES {
+                unit_directions(q1, one, lanes);
+                unit_directions(q2, two, lanes);
+                for lane in 0..lanes {
                     let one = Complex::load(one, lane);
                     let two = Complex::load(two, lane);
                     store(second, lane, rotated(&s1, one, &s2));
@@ -119,25 +125,32 @@ impl Screws {
 
     /// Computes the determinant, whose unit is `scale`, and marks the poses at which it counts as zero.
     #[inline(always)]
-    fn invert(&mut self, scale: f64, serial: &mut Mask) {
+    fn invert(&mut self, scale: f64, serial: &mut Mask, lanes: usize) {
         let Self { moved: [first, second, third], inverse, .. } = self;
-        for lane in 0..LANES {
+        let mut singular = [0; LANES];
+        for lane in 0..lanes {
             let cross = vector(second, lane).cross(&vector(third, lane));
             let determinant = vector(first, lane).dot(&cross);
-            serial[lane] |= u64::from((determinant / scale).abs() < SINGULAR);
+            singular[lane] = u64::from((determinant / scale).abs() < SINGULAR);
             inverse[lane] = determinant.recip();
+        }
+        if lanes < LANES {
+            singular = [singular[0]; LANES];
+        }
+        for lane in 0..LANES {
+            serial[lane] |= singular[lane];
         }
     }
 
     /// The reciprocal screw of a joint.
     #[inline(always)]
-    fn reciprocal(&self, joint: usize, to: &mut VectorColumns) {
+    fn reciprocal(&self, joint: usize, to: &mut VectorColumns, lanes: usize) {
         let [a, b] = match joint {
             0 => [&self.moved[1], &self.moved[2]],
             1 => [&self.moved[2], &self.moved[0]],
             _ => [&self.moved[0], &self.moved[1]],
         };
-        for lane in 0..LANES {
+        for lane in 0..lanes {
             store(to, lane, vector(a, lane).cross(&vector(b, lane)) * self.inverse[lane]);
         }
     }
@@ -145,16 +158,16 @@ impl Screws {
 
 /// The displacements along a screw of the plane.
 #[inline(always)]
-fn along_screw(screw: &LocalTwist, q: &DisplacementColumns, to: &mut Displacements) {
+fn along_screw(screw: &LocalTwist, q: &DisplacementColumns, to: &mut Displacements, lanes: usize) {
     // The displacement of a slider is a value.
     if screw.x == 0.0 {
-        for lane in 0..LANES {
+        for lane in 0..lanes {
             PlanarDisplacement::along_screw(screw, q.value(lane)).store(to, lane);
         }
         return;
     }
-    unit_directions(q, to);
-    for lane in 0..LANES {
+    unit_directions(q, to, lanes);
+    for lane in 0..lanes {
         let rotation = Complex::load(to, lane);
         PlanarDisplacement::along_rotation(screw, rotation).store(to, lane);
     }
@@ -162,10 +175,10 @@ fn along_screw(screw: &LocalTwist, q: &DisplacementColumns, to: &mut Displacemen
 
 /// The unit complex numbers in the directions of angles.
 #[inline(always)]
-fn unit_directions(q: &DisplacementColumns, to: &mut Displacements) {
+fn unit_directions(q: &DisplacementColumns, to: &mut Displacements, lanes: usize) {
     macro_rules! each {
         ($read:ident) => {
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 q.$read(lane).unit_direction().store(to, lane);
             }
         };
@@ -263,20 +276,22 @@ impl LegRows {
     ) {
         let (task, leg) = (manipulator.task(), &manipulator.legs[number]);
         out.serial = [0; LANES];
-        for (section, kind, found, screws) in [
-            (&leg.lower, task.lower.kind, &block.lower, &mut self.lower_screws),
-            (&leg.upper, task.upper.kind, &block.upper, &mut self.upper_screws),
+        // What is solved first in the upper section may be the same at all poses.
+        let first = leg.split_section == Section::Upper;
+        let upper_lanes = if first { block.upper_lanes() } else { LANES };
+        for (section, kind, found, screws, lanes) in [
+            (&leg.lower, task.lower.kind, &block.lower, &mut self.lower_screws, LANES),
+            (&leg.upper, task.upper.kind, &block.upper, &mut self.upper_screws, upper_lanes),
         ] {
             // A spherical joint is never singular, and is not actuated here.
             if !matches!(section.chain, Chain::Ball(_)) {
-                screws.displace(kind, section, found);
-                screws.invert(section.scale, &mut out.serial);
+                screws.displace(kind, section, found, lanes);
+                screws.invert(section.scale, &mut out.serial, lanes);
             }
         }
-        self.carry(manipulator, leg, block);
-        for section in [Section::Lower, Section::Upper] {
-            self.section_rows(leg, section, out);
-        }
+        self.carry(manipulator, leg, block, upper_lanes);
+        self.section_rows(leg, Section::Lower, out, LANES);
+        self.section_rows(leg, Section::Upper, out, upper_lanes);
         if let Some(lift) = &leg.lift
             && let Some(rates) = out.row(lift.coordinate.number)
             && let Some(height) = rates.last_mut()
@@ -291,7 +306,13 @@ impl LegRows {
 
     /// Finds the rates along the intersection motion, and the twists that it carries along.
     #[inline(always)]
-    fn carry(&mut self, manipulator: &Manipulator, leg: &CompiledLeg, block: &Block) {
+    fn carry(
+        &mut self,
+        manipulator: &Manipulator,
+        leg: &CompiledLeg,
+        block: &Block,
+        upper_lanes: usize,
+    ) {
         let [n_upper, n_lower] = self.counts;
         if leg.split_section == Section::Lower {
             self.back.clone_from(&block.tau);
@@ -315,21 +336,30 @@ impl LegRows {
             self.along = [[0.0; LANES]; 3];
             return;
         };
-        let (screws, own) = match leg.split_section {
-            Section::Upper => (&self.upper_screws, &self.upper[..n_upper]),
-            Section::Lower => (&self.lower_screws, &self.moved_lower[..n_lower]),
+        let (screws, own, lanes) = match leg.split_section {
+            Section::Upper => (&self.upper_screws, &self.upper[..n_upper], upper_lanes),
+            Section::Lower => (&self.lower_screws, &self.moved_lower[..n_lower], LANES),
         };
-        screws.reciprocal(joint, &mut self.reciprocal);
+        screws.reciprocal(joint, &mut self.reciprocal, lanes);
         for (twist, rates) in own.iter().zip(&mut self.along) {
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 rates[lane] = vector(&self.reciprocal, lane).dot(&vector(twist, lane));
+            }
+            if lanes < LANES {
+                repeat(rates);
             }
         }
     }
 
     /// Computes the rows of a section's actuated joints.
     #[inline(always)]
-    fn section_rows(&mut self, leg: &CompiledLeg, section: Section, out: &mut BranchRows) {
+    fn section_rows(
+        &mut self,
+        leg: &CompiledLeg,
+        section: Section,
+        out: &mut BranchRows,
+        lanes: usize,
+    ) {
         let [n_upper, n_lower] = self.counts;
         let Self { lower_screws, upper_screws, along, reciprocal, .. } = self;
         // Where the components of the section itself are, those of the other one, and what these carry along.
@@ -350,10 +380,13 @@ impl LegRows {
         for (coordinate, joint) in leg.section(section).coordinates.iter().zip(0..) {
             let Some(coordinate) = coordinate else { continue };
             let Some(rates) = out.row(coordinate.number) else { continue };
-            screws.reciprocal(joint, reciprocal);
+            screws.reciprocal(joint, reciprocal, lanes);
             for (twist, rates) in own.iter().zip(&mut rates[start..]) {
-                for lane in 0..LANES {
+                for lane in 0..lanes {
                     rates[lane] = vector(reciprocal, lane).dot(&vector(twist, lane));
+                }
+                if lanes < LANES {
+                    repeat(rates);
                 }
             }
             for (along, rates) in along[..count].iter().zip(&mut rates[other..]) {

@@ -4,7 +4,7 @@ use crate::group::{
     Cylindrical, Planar, Spherical, Subgroup, SubspaceKind, TranslationalPlane, TranslationalSpace,
 };
 use crate::manipulator::batch::Block;
-use crate::manipulator::batch::lanes::{Column, LANES, Lane};
+use crate::manipulator::batch::lanes::{Column, LANES, Lane, repeat};
 use crate::manipulator::{Manipulator, Section};
 use crate::task::Height;
 use crate::velocity::jacobian::{BaseTwist, Basis};
@@ -51,9 +51,10 @@ impl PlatformColumns {
     pub fn find(&mut self, manipulator: &Manipulator, basis: &Basis, block: &Block) {
         let task = manipulator.task();
         let Self { point, velocities } = self;
+        let lanes = block.upper_lanes();
         macro_rules! each {
             ($group:ty) => {
-                for lane in 0..LANES {
+                for lane in 0..lanes {
                     let b = Lane::load(&block.b, lane);
                     let moved = <$group>::act(&b, &basis.platform);
                     store(point, lane, task.upper.restored(&moved).coords);
@@ -70,16 +71,19 @@ impl PlatformColumns {
         }
         if let Some(Height { section: Section::Upper, up, coordinate, .. }) = &task.height {
             let home = task.coordinates[*coordinate].home;
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 let rise = block.pose[*coordinate][lane] - home;
                 store(point, lane, vector(point, lane) + up * rise);
             }
         }
         for (velocities, twist) in velocities.iter_mut().zip(&basis.in_base) {
             let BaseTwist { angular, linear, origin } = twist;
-            for lane in 0..LANES {
+            for lane in 0..lanes {
                 let velocity = linear + angular.cross(&(vector(point, lane) - origin));
                 store(velocities, lane, velocity);
+            }
+            if block.one_upper {
+                velocities.iter_mut().for_each(repeat);
             }
         }
     }
