@@ -52,9 +52,15 @@ impl PlanarDisplacement {
     #[inline]
     pub(crate) fn along_screw(screw: &LocalTwist, displacement: JointDisplacement) -> Self {
         if screw.x == 0.0 {
-            return Self::translation(linear(screw) * displacement.value());
+            return Self::along_slider(screw, displacement);
         }
         Self::along_rotation(screw, displacement.unit_direction())
+    }
+
+    /// The displacement along a slider's screw at home, which is a unit translation.
+    #[inline(always)]
+    pub(crate) fn along_slider(screw: &LocalTwist, displacement: JointDisplacement) -> Self {
+        Self::translation(linear(screw) * displacement.value())
     }
 
     /// The displacement along a joint's screw at home that is a rotation of angular velocity ±1, by a unit complex number.

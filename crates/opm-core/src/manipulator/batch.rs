@@ -113,9 +113,9 @@ pub(crate) struct Block {
     pub pose: Vec<Column>,
     pub v: Displacements,
     pub b: Displacements,
-    /// Whether all poses have the coordinates of the upper section in common. Then what follows from these alone is computed
-    /// for [`FEWEST`] of them.
-    pub one_upper: bool,
+    /// The number of poses for which the upper section is computed: [`FEWEST`] if they all have its coordinates in common,
+    /// otherwise all.
+    pub upper_lanes: usize,
     pub lower: Found,
     pub upper: Found,
     /// The displacements along the intersection motion of the leg that was solved last.
@@ -149,7 +149,7 @@ impl Manipulator {
                 pose: columns(self.task.coordinates.len()),
                 v: [[0.0; LANES]; 9],
                 b: [[0.0; LANES]; 9],
-                one_upper: false,
+                upper_lanes: LANES,
                 lower: Found::new(),
                 upper: Found::new(),
                 tau: DisplacementColumns::new(),
@@ -313,23 +313,25 @@ impl Block {
             }
             column[poses.len() / width..].fill(last);
         }
-        self.one_upper = false;
+        self.upper_lanes = LANES;
     }
 
     /// Finds out whether all poses have the coordinates of the upper section in common.
     #[inline(always)]
     fn compare_upper(&mut self, task: &Task) {
-        let columns = &self.pose[task.range(Section::Upper)];
-        self.one_upper = columns.iter().all(|column| {
-            let differ = |any: u64, value: &f64| any | (value.to_bits() ^ column[0].to_bits());
-            column.iter().fold(0, differ) == 0
-        });
+        let mut differ = 0;
+        for column in &self.pose[task.range(Section::Upper)] {
+            for value in column {
+                differ |= value.to_bits() ^ column[0].to_bits();
+            }
+        }
+        self.upper_lanes = if differ == 0 { FEWEST } else { LANES };
     }
 
-    /// The number of poses for which the upper section is computed.
+    /// Whether all poses have the coordinates of the upper section in common.
     #[inline(always)]
-    pub fn upper_lanes(&self) -> usize {
-        if self.one_upper { FEWEST } else { LANES }
+    pub fn one_upper(&self) -> bool {
+        self.upper_lanes < LANES
     }
 
     /// Writes the block's results to rows, including the rows that are still open.
@@ -371,9 +373,9 @@ impl Block {
         }
         self.compare_upper(task);
         self.displace_section(manipulator, Section::Lower, LANES);
-        self.displace_section(manipulator, Section::Upper, self.upper_lanes());
-        if self.one_upper {
-            self.b.iter_mut().for_each(lanes::repeat);
+        self.displace_section(manipulator, Section::Upper, self.upper_lanes);
+        if self.one_upper() {
+            lanes::repeat(&mut self.b);
         }
     }
 
@@ -396,16 +398,16 @@ impl Block {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
         for section in leg.order() {
             let is_first = section == leg.split_section;
-            let one = self.one_upper && is_first && section == Section::Upper;
+            let first_upper = is_first && section == Section::Upper;
+            let lanes = if first_upper { self.upper_lanes } else { LANES };
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
             let (of_section, branch, found, target) = match section {
                 Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
             };
             let target = if is_first { target } else { &*shifted };
-            let lanes = if one { FEWEST } else { LANES };
             section::solve(&of_section.chain, branch, target, found, lanes);
-            if one {
+            if lanes < LANES {
                 found.repeat();
             }
             status.note(found);

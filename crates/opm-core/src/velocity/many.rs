@@ -224,7 +224,7 @@ impl Conditions<'_> {
         let mut metric = metric_at(self.work, 0);
         for start in (0..self.count).step_by(CHUNK) {
             // The platform's twist depends on the upper section alone.
-            if start > 0 && !self.batch.block.one_upper {
+            if start > 0 && !self.batch.block.one_upper() {
                 metric = metric_at(self.work, start);
             }
             self.work.choice.fill(0);

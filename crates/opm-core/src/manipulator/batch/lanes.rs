@@ -91,10 +91,12 @@ impl Lane for Matrix3<f64> {
     }
 }
 
-/// Repeats the first value of a column for all poses.
+/// Repeats the first value of every column for all poses.
 #[inline(always)]
-pub fn repeat(column: &mut Column) {
-    *column = [column[0]; LANES];
+pub fn repeat(columns: &mut [Column]) {
+    for column in columns {
+        *column = [column[0]; LANES];
+    }
 }
 
 /// One joint displacement for each pose, all of the same variant.
@@ -121,7 +123,7 @@ impl DisplacementColumns {
     /// Repeats the first one for all poses.
     #[inline(always)]
     pub fn repeat(&mut self) {
-        self.columns.iter_mut().for_each(repeat);
+        repeat(&mut self.columns);
     }
 
     /// The displacement of pose number `lane`, which must be a direction.

@@ -42,7 +42,9 @@ impl Found {
     /// Repeats the result of the first pose for all.
     #[inline(always)]
     pub fn repeat(&mut self) {
-        self.displacements.iter_mut().for_each(DisplacementColumns::repeat);
+        for displacements in &mut self.displacements {
+            displacements.repeat();
+        }
         (self.holds, self.beyond) = ([self.holds[0]; LANES], [self.beyond[0]; LANES]);
     }
 }

@@ -96,7 +96,7 @@ impl Screws {
             SubspaceKind::Planar => {
                 along_screw(&s1, q1, one, lanes);
                 along_screw(&s2, q2, two, lanes);
-                for lane in 0..lanes {
+                for lane in 0..lanes.min(LANES) {
                     let one = PlanarDisplacement::load(one, lane);
                     let two = one.after(&PlanarDisplacement::load(two, lane));
                     store(second, lane, Planar::adjoint(&one, &s2));
@@ -106,7 +106,7 @@ impl Screws {
             SubspaceKind::Spherical => {
                 unit_directions(q1, one, lanes);
                 unit_directions(q2, two, lanes);
-                for lane in 0..lanes {
+                for lane in 0..lanes.min(LANES) {
                     let one = Complex::load(one, lane);
                     let two = Complex::load(two, lane);
                     store(second, lane, rotated(&s1, one, &s2));
@@ -128,7 +128,7 @@ impl Screws {
     fn invert(&mut self, scale: f64, serial: &mut Mask, lanes: usize) {
         let Self { moved: [first, second, third], inverse, .. } = self;
         let mut singular = [0; LANES];
-        for lane in 0..lanes {
+        for lane in 0..lanes.min(LANES) {
             let cross = vector(second, lane).cross(&vector(third, lane));
             let determinant = vector(first, lane).dot(&cross);
             singular[lane] = u64::from((determinant / scale).abs() < SINGULAR);
@@ -150,7 +150,7 @@ impl Screws {
             1 => [&self.moved[2], &self.moved[0]],
             _ => [&self.moved[0], &self.moved[1]],
         };
-        for lane in 0..lanes {
+        for lane in 0..lanes.min(LANES) {
             store(to, lane, vector(a, lane).cross(&vector(b, lane)) * self.inverse[lane]);
         }
     }
@@ -161,13 +161,13 @@ impl Screws {
 fn along_screw(screw: &LocalTwist, q: &DisplacementColumns, to: &mut Displacements, lanes: usize) {
     // The displacement of a slider is a value.
     if screw.x == 0.0 {
-        for lane in 0..lanes {
-            PlanarDisplacement::along_screw(screw, q.value(lane)).store(to, lane);
+        for lane in 0..lanes.min(LANES) {
+            PlanarDisplacement::along_slider(screw, q.value(lane)).store(to, lane);
         }
         return;
     }
     unit_directions(q, to, lanes);
-    for lane in 0..lanes {
+    for lane in 0..lanes.min(LANES) {
         let rotation = Complex::load(to, lane);
         PlanarDisplacement::along_rotation(screw, rotation).store(to, lane);
     }
@@ -178,7 +178,7 @@ fn along_screw(screw: &LocalTwist, q: &DisplacementColumns, to: &mut Displacemen
 fn unit_directions(q: &DisplacementColumns, to: &mut Displacements, lanes: usize) {
     macro_rules! each {
         ($read:ident) => {
-            for lane in 0..lanes {
+            for lane in 0..lanes.min(LANES) {
                 q.$read(lane).unit_direction().store(to, lane);
             }
         };
@@ -278,7 +278,7 @@ impl LegRows {
         out.serial = [0; LANES];
         // What is solved first in the upper section may be the same at all poses.
         let first = leg.split_section == Section::Upper;
-        let upper_lanes = if first { block.upper_lanes() } else { LANES };
+        let upper_lanes = if first { block.upper_lanes } else { LANES };
         for (section, kind, found, screws, lanes) in [
             (&leg.lower, task.lower.kind, &block.lower, &mut self.lower_screws, LANES),
             (&leg.upper, task.upper.kind, &block.upper, &mut self.upper_screws, upper_lanes),
@@ -342,11 +342,11 @@ impl LegRows {
         };
         screws.reciprocal(joint, &mut self.reciprocal, lanes);
         for (twist, rates) in own.iter().zip(&mut self.along) {
-            for lane in 0..lanes {
+            for lane in 0..lanes.min(LANES) {
                 rates[lane] = vector(&self.reciprocal, lane).dot(&vector(twist, lane));
             }
             if lanes < LANES {
-                repeat(rates);
+                repeat(std::slice::from_mut(rates));
             }
         }
     }
@@ -382,11 +382,11 @@ impl LegRows {
             let Some(rates) = out.row(coordinate.number) else { continue };
             screws.reciprocal(joint, reciprocal, lanes);
             for (twist, rates) in own.iter().zip(&mut rates[start..]) {
-                for lane in 0..lanes {
+                for lane in 0..lanes.min(LANES) {
                     rates[lane] = vector(reciprocal, lane).dot(&vector(twist, lane));
                 }
                 if lanes < LANES {
-                    repeat(rates);
+                    repeat(std::slice::from_mut(rates));
                 }
             }
             for (along, rates) in along[..count].iter().zip(&mut rates[other..]) {

@@ -51,7 +51,7 @@ impl PlatformColumns {
     pub fn find(&mut self, manipulator: &Manipulator, basis: &Basis, block: &Block) {
         let task = manipulator.task();
         let Self { point, velocities } = self;
-        let lanes = block.upper_lanes();
+        let lanes = block.upper_lanes.min(LANES);
         macro_rules! each {
             ($group:ty) => {
                 for lane in 0..lanes {
@@ -82,8 +82,8 @@ impl PlatformColumns {
                 let velocity = linear + angular.cross(&(vector(point, lane) - origin));
                 store(velocities, lane, velocity);
             }
-            if block.one_upper {
-                velocities.iter_mut().for_each(repeat);
+            if block.one_upper() {
+                repeat(velocities);
             }
         }
     }
