@@ -100,7 +100,7 @@ pub enum Command {
 /// The mechanism of a command.
 #[derive(Debug, clap::Args)]
 pub struct MechanismArgs {
-    /// Mechanism file, or the name of a shipped example
+    /// Mechanism file, - for standard input, or the name of a shipped example
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// Accept joints that miss their subspaces by at most this length, for example 0.5mm, and move them

@@ -53,6 +53,10 @@ pub fn run(
         let problem = "the CSV takes standard output; give it a file with --output";
         return Err(Failure::flag("--format json", problem));
     }
+    if input == dash && args.mechanism.file == dash {
+        let problem = "standard input is the mechanism already, expected a file of poses";
+        return Err(Failure::flag("--poses", problem));
+    }
     let (label, reader): (_, Box<dyn Read + Send>) = if input == dash {
         ("standard input".to_owned(), Box::new(io::stdin()))
     } else {

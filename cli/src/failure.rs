@@ -92,7 +92,7 @@ impl Failure {
             Self::Interrupted(message) => (message, 130),
             Self::Closed => return 0,
         };
-        talk(&message.text);
+        talk(Kind::Error, &message.text);
         code
     }
 }
@@ -119,11 +119,28 @@ impl Error for Failure {
     }
 }
 
-/// Writes lines to standard error with the name of this program. Failures to write are ignored.
-pub fn talk(message: &str) {
+/// The kind of a line on standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Note,
+    Warning,
+    Error,
+}
+
+/// Writes lines to standard error, each with the name of this program and its kind. An indented line goes on with the
+/// one before. Failures to write are ignored.
+pub fn talk(kind: Kind, message: &str) {
+    let kind = match kind {
+        Kind::Note => "note",
+        Kind::Warning => "warning",
+        Kind::Error => "error",
+    };
     let mut stderr = io::stderr().lock();
     for line in message.lines() {
-        let _ = writeln!(stderr, "opm: {line}");
+        let _ = match line.starts_with(' ') {
+            true => writeln!(stderr, "opm: {line}"),
+            false => writeln!(stderr, "opm: {kind}: {line}"),
+        };
     }
 }
 

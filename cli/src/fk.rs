@@ -7,6 +7,7 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Pose;
 use crate::text::{self, Table};
+use crate::unitless;
 use opm_core::forward::{Assemblies, Assembly, NearError, Stop, Unmet};
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
@@ -19,6 +20,7 @@ use std::fmt::Write;
 pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
+    unitless::note_joints(output, "--joints", &args.joints, &loaded, &manipulator);
     let actuated = joints(&args.joints, &manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
     let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
@@ -32,7 +34,10 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         }
         (near, closed_form) => {
             let start = match near {
-                Some(pose) => pose.resolve_for("--near", &manipulator)?,
+                Some(pose) => {
+                    unitless::note_pose(output, "--near", pose, &loaded, &manipulator);
+                    pose.resolve_for("--near", &manipulator)?
+                }
                 None => manipulator.home_pose(),
             };
             if let (None, Err(why)) = (near, closed_form) {

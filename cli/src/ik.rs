@@ -8,6 +8,7 @@ use crate::output::named;
 use crate::pose::Checks;
 use crate::text::{self, Table};
 use crate::transform::{self, Located};
+use crate::unitless;
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
@@ -28,6 +29,7 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     let mut checks = None;
     let located = match (&args.pose, &args.transform) {
         (Some(pose), _) => {
+            unitless::note_pose(output, "--pose", pose, &loaded, &manipulator);
             let (pose, given) = pose.resolve_with_checks(&manipulator)?;
             checks = Some(given);
             Located::Pose(pose)

@@ -26,6 +26,7 @@ mod schema;
 mod text;
 mod trajectory;
 mod transform;
+mod unitless;
 mod velocity;
 mod workspace;
 

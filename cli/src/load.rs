@@ -9,11 +9,12 @@ use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, near
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, Digits, MechanismFile};
 use opm_core::task::{OddJoint, TaskError};
 use opm_study::recording::Attachment;
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Largest size of a mechanism file. A larger one is something else, for instance an endless device.
@@ -54,8 +55,20 @@ pub fn read(given: &MechanismArgs) -> Result<Loaded, Failure> {
     Ok(loaded)
 }
 
-/// Reads a mechanism. An existing path has priority over an example of the same name.
+/// The name of standard input among files.
+pub const DASH: &str = "-";
+
+/// Reads a mechanism: a file, standard input, or an example. An existing path has priority over an example of the same
+/// name.
 pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
+    if given == Path::new(DASH) {
+        let label = "standard input".to_owned();
+        let text = whole(io::stdin(), &label, LONGEST, "mechanism file")?;
+        let file =
+            file::read(&text).map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
+        let file_name = "mechanism.toml".to_owned();
+        return Ok(Loaded { label, file_name, path: None, text, file, snapped: None });
+    }
     let label = given.display().to_string();
     let (text, path, file_name) = match text(given, LONGEST, "mechanism file")? {
         Some(text) => {
@@ -66,9 +79,10 @@ pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
             Some(example) => (example.text.to_owned(), None, format!("{}.toml", example.name)),
             // A bare word is more likely a name than a path.
             None if given.extension().is_none() && given.components().count() == 1 => {
+                let names: Vec<&str> = EXAMPLES.iter().map(|example| example.name).collect();
                 return Err(Failure::work(format!(
-                    "{label}: no such file, and no such example; there are {}",
-                    example_names()
+                    "{label}: no such file, and no such example; {}",
+                    expected_one_of(&label, &names)
                 )));
             }
             None => return Err(Failure::work(format!("{label}: No such file or directory"))),
@@ -89,25 +103,28 @@ pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Fail
 
 /// The text of a file with at most this number of bytes; `None` if there is no such file.
 pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
-    let label = given.display();
-    let failed = |error| Failure::at(&label, error);
-    let source = match File::open(given) {
-        Ok(source) => source,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(failed(error)),
-    };
+    let label = given.display().to_string();
+    match File::open(given) {
+        Ok(source) => whole(source, &label, longest, what).map(Some),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Failure::at(&label, error)),
+    }
+}
+
+/// Everything that a source holds, which is at most this number of bytes.
+fn whole(source: impl Read, label: &str, longest: u64, what: &str) -> Result<String, Failure> {
     let mut bytes = Vec::new();
-    source.take(longest + 1).read_to_end(&mut bytes).map_err(failed)?;
+    let read = source.take(longest + 1).read_to_end(&mut bytes);
+    read.map_err(|error| Failure::at(label, error))?;
     if bytes.len() as u64 > longest {
         let most = longest >> 20;
         return Err(Failure::work(format!("{label}: more than {most} MiB, expected a {what}")));
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
         Failure::work(format!("{label}:{line}: not UTF-8, expected a {what}"))
-    })?;
-    Ok(Some(text))
+    })
 }
 
 impl Loaded {

@@ -1,7 +1,7 @@
 //! Results on standard output, and notes on standard error.
 
 use crate::args::{Format, Output};
-use crate::failure::{Failure, talk};
+use crate::failure::{Failure, Kind, talk};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Display;
@@ -22,13 +22,15 @@ impl Output {
     /// Prints a note on standard error, unless --quiet is given.
     pub fn note(&self, message: impl Display) {
         if !self.quiet {
-            talk(&message.to_string());
+            talk(Kind::Note, &message.to_string());
         }
     }
 
     /// As [`Output::note`], for a warning that the result may be useless.
     pub fn warn(&self, message: impl Display) {
-        self.note(format_args!("warning: {message}"));
+        if !self.quiet {
+            talk(Kind::Warning, &message.to_string());
+        }
     }
 }
 

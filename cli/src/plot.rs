@@ -1,10 +1,11 @@
-//! `opm plot`: pictures of recordings.
+//! `opm plot`: pictures of mechanisms and of recordings.
 
 mod choice;
 mod cloud;
 mod grid;
 mod label;
 mod layout;
+mod mechanism;
 mod motion;
 pub mod options;
 mod sized;
@@ -18,26 +19,32 @@ use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::progress::interruptible;
 use opm_mcap::{PartialFile, Sink};
-use opm_plot::{Size, png, svg};
+use opm_plot::{Drawing, Size, png};
 use serde_json::json;
 use source::Source;
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+
+/// The first bytes of every MCAP file.
+const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
 /// The formats of pictures.
 #[derive(Clone, Copy)]
 enum Ending {
     Svg,
     Png,
+    Pdf,
 }
 
 pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let ending = match args.output.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => Ending::Svg,
         Some("png") => Ending::Png,
+        Some("pdf") => Ending::Pdf,
         _ => {
             let place = args.output.display();
-            let problem = format!("{place}: expected a name that ends in .svg or .png");
+            let problem = format!("{place}: expected a name that ends in .svg, .png or .pdf");
             return Err(Failure::flag("--output", problem));
         }
     };
@@ -47,6 +54,60 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         return Err(Failure::flag("--output", problem));
     }
     let target = Target::create(&args.output)?;
+    let Picture { drawing, complete } = picture(args, output)?;
+    let place = args.output.display();
+    let bytes = match ending {
+        Ending::Svg => drawing.to_svg().map(String::into_bytes).map_err(io::Error::other),
+        Ending::Png => drawing.to_png().map_err(io::Error::other),
+        Ending::Pdf => drawing.to_pdf(),
+    };
+    let bytes = bytes.map_err(|error| Failure::at(&place, error))?;
+    target.commit(&bytes)?;
+    if !complete {
+        let label = args.file.display();
+        output.warn(format_args!("{label}: unfinished; what is in it was drawn"));
+    }
+    let Size { width, height } = drawing.size;
+    let pixels = match ending {
+        Ending::Svg | Ending::Pdf => [width, height],
+        Ending::Png => [width, height].map(|side| (side * f64::from(png::SCALE)).round()),
+    };
+    output.note(format_args!("{place}: {} x {} pixels", pixels[0].round(), pixels[1].round()));
+    match output.format {
+        crate::args::Format::Text => Ok(()),
+        crate::args::Format::Json => {
+            let json = json!({
+                "file": place.to_string(),
+                "width": pixels[0],
+                "height": pixels[1],
+                "complete": complete,
+            });
+            output.print(&json, "")
+        }
+    }
+}
+
+/// A picture, and whether all is in it.
+struct Picture {
+    drawing: Drawing,
+    complete: bool,
+}
+
+/// Draws a recording or a mechanism, whichever the file is.
+fn picture(args: &PlotArgs, output: &Output) -> Result<Picture, Failure> {
+    if !is_recording(&args.file) {
+        return Ok(Picture { drawing: mechanism::draw(args, output)?, complete: true });
+    }
+    for (flag, given) in [
+        ("--pose", args.pose.is_some()),
+        ("--mode", args.mode.is_some()),
+        ("--tolerance", args.tolerance.is_some()),
+    ] {
+        if given {
+            let problem = format!("{} is a recording, expected a mechanism", args.file.display());
+            return Err(Failure::flag(flag, problem));
+        }
+    }
     let progress = interruptible()?;
     let source = Source::open(&args.file, output, &progress)?;
     if let Some(shard) = source.metadata("shard").get("shard") {
@@ -61,35 +122,15 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     } else {
         motion::draw(&source, args)?
     };
-    let place = args.output.display();
-    let bytes = match ending {
-        Ending::Svg => svg::write(&drawing).map(String::into_bytes),
-        Ending::Png => png::write(&drawing),
-    };
-    let bytes = bytes.map_err(|error| Failure::at(&place, error))?;
-    target.commit(&bytes)?;
-    if !source.recording.complete {
-        let label = &source.label;
-        output.warn(format_args!("{label}: unfinished; what is in it was drawn"));
-    }
-    let Size { width, height } = drawing.size;
-    let pixels = match ending {
-        Ending::Svg => [width, height],
-        Ending::Png => [width, height].map(|side| (side * f64::from(png::SCALE)).round()),
-    };
-    output.note(format_args!("{place}: {} x {} pixels", pixels[0].round(), pixels[1].round()));
-    match output.format {
-        crate::args::Format::Text => Ok(()),
-        crate::args::Format::Json => {
-            let json = json!({
-                "file": place.to_string(),
-                "width": pixels[0],
-                "height": pixels[1],
-                "complete": source.recording.complete,
-            });
-            output.print(&json, "")
-        }
-    }
+    Ok(Picture { drawing, complete: source.recording.complete })
+}
+
+/// Whether a file is to be read as a recording: by its first bytes, or by its name if it is none of the two.
+fn is_recording(path: &Path) -> bool {
+    let named = path.extension().is_some_and(|ending| ending == "mcap" || ending == "partial");
+    let mut start = [0; MAGIC.len()];
+    let begins = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    named || begins.is_ok() && start == MAGIC
 }
 
 /// The file of the picture: opened before the work, so that a wrong path costs no time.

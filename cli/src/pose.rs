@@ -150,6 +150,11 @@ impl Number {
         length.map_err(|error| Failure::flag("--length", error))
     }
 
+    /// The value, in metres or radians, if it was given without a unit.
+    pub fn without_unit(self) -> Option<f64> {
+        self.quantity.is_none().then_some(self.value)
+    }
+
     /// The value of `name`, which has no unit.
     pub fn bare(self, name: &str) -> Result<f64, Misread> {
         match self.quantity {

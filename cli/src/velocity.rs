@@ -6,6 +6,7 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Number;
 use crate::text::{self, Table, short};
+use crate::unitless;
 use opm_core::Quantity;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
@@ -20,6 +21,7 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let mode = load::mode(&manipulator, &args.mode)?;
+    unitless::note_pose(output, "--pose", &args.pose, &loaded, &manipulator);
     let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
     let rates = args.rates.resolve_rates(&manipulator)?;
     let length = args.length.map(Number::characteristic_length).transpose()?;
@@ -280,8 +282,10 @@ impl<'a> Answer<'a> {
             let _ = writeln!(text, "{leg}: {} section without rates", singular.section);
         }
         if self.measured.coordinates.abs() < opm_core::velocity::SINGULAR {
-            let _ =
-                writeln!(text, "the pose's coordinates are singular here, the mechanism is not");
+            let regular =
+                self.motion.singular.is_empty() && self.conditioning.condition.is_finite();
+            let mechanism = if regular { ", the mechanism is not" } else { "" };
+            let _ = writeln!(text, "the pose's coordinates are singular here{mechanism}");
         }
         text
     }

@@ -75,24 +75,17 @@ impl Manipulator {
         }
         let decomposition = manipulator.decomposition();
         let joints = ImaginaryJoints { decomposition, imaginary: manipulator.imaginary() };
-        let skeleton = Skeleton::new(manipulator.mechanism(), joints);
+        let skeleton = Skeleton::new(manipulator.mechanism(), Some(joints));
         let posture = Configuration {
             joints: solution.joints(),
             imaginary: solution.imaginary(),
             platform: solution.displacement(manipulator),
         };
-        let mut places = Vec::new();
-        skeleton.place(&posture, &mut places).map_err(|error| failed(&error))?;
+        let places = skeleton.place_in_base(&posture).map_err(|error| failed(&error))?;
         let mut solids = Vec::new();
-        for (number, body) in skeleton.bodies().iter().enumerate() {
-            let mut place = places[number];
-            let mut parent = body.parent;
-            while let Some(outer) = parent {
-                place = places[outer] * place;
-                parent = skeleton.bodies()[outer].parent;
-            }
+        for (body, place) in skeleton.bodies().iter().zip(&places) {
             for part in &body.parts {
-                let (shape, ends, width) = shape(&part.solid, &place);
+                let (shape, ends, width) = shape(&part.solid, place);
                 let ends = ends.iter().flat_map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>();
                 solids.push(Solid {
                     body: body.name.clone(),

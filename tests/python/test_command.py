@@ -77,7 +77,7 @@ def test_ctrl_c(opm, program):
     except OSError:  # the terminal closed with the process
         pass
     assert process.wait() == 130
-    assert b"opm: interrupted; " in said and b"poses were decided" in said
+    assert b"opm: error: interrupted; " in said and b"poses were decided" in said
     assert b"Traceback" not in said
 
 

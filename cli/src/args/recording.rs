@@ -1,11 +1,16 @@
 //! Arguments of the commands that read a recording.
 
 use crate::plot::options::{PanelName, PictureSize};
-use crate::pose::SliceValue;
+use crate::pose::{Number, Pose, SliceValue};
 use clap::ValueHint;
 use std::path::PathBuf;
 
-/// Draw a recording as a picture, SVG or PNG
+/// Draw a mechanism or a recording as a picture: SVG, PNG or PDF
+///
+/// A mechanism is drawn at home or at --pose, from above, from the front, from the right and in perspective. Its
+/// links have no shapes in the file: rods run from joint to joint. The base is dark, actuated joints are orange,
+/// passive ones light blue, the platform is blue. The links of both sections differ, and imaginary joints are pale.
+/// A mechanism that does not decompose is drawn, too, at home.
 ///
 /// The picture of a motion shows poses, imaginary joints, actuated joints and their velocities over time;
 /// each value is beside its velocity. Spans in which the mechanism cannot follow are shaded. The picture of
@@ -19,16 +24,18 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
+  opm plot plano-spherical-5dof -o mechanism.svg
+  opm plot my-mechanism.toml -o tilted.png --pose x=10mm,xi=15deg
   opm plot cloud.mcap -o cloud.svg
   opm plot cloud.mcap -o tilted.png --slice zeta=0,psi=0,xi=30deg,xi=60deg
   opm plot cloud.mcap -o joints.svg --panels imaginary --values theta11,theta12
   opm plot round.mcap -o round.png --values a1,b3 --size 900x300")]
 pub struct PlotArgs {
-    /// MCAP file of `opm workspace`, `opm linkage` or any other command that records
-    #[arg(value_name = "RECORDING", value_hint = ValueHint::FilePath)]
+    /// Mechanism file, the name of a shipped example, or a recording (MCAP) of any command
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// Output file; its ending selects the format
-    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_hint = ValueHint::FilePath)]
+    #[arg(short, long, value_name = "OUT.svg|OUT.png|OUT.pdf", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
     /// Panels to draw, instead of those that suit the recording
     #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
@@ -41,6 +48,15 @@ pub struct PlotArgs {
     /// coordinate may have several values, with a slice for each
     #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
     pub slice: Vec<SliceValue>,
+    /// The pose of a mechanism, for example x=10mm,xi=15deg; other coordinates stay at home
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    pub pose: Option<Pose>,
+    /// The working mode of a mechanism: `home`, or a sign for every two-valued choice
+    #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
+    pub mode: Option<String>,
+    /// Accept joints of a mechanism that miss their subspaces by at most this length, as in `opm decompose`
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub tolerance: Option<Number>,
     /// Width and height in screen pixels, up to 4000 each, instead of a size that suits the panels; a
     /// PNG has twice as many pixels
     #[arg(long, value_name = "WxH")]

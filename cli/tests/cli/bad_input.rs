@@ -1,6 +1,6 @@
 //! Every kind of wrong use: the exit status, and a message that names the flag or the place.
 
-use crate::run::{Folder, command, opm};
+use crate::run::{Folder, command, opm, opm_reading};
 use crate::{HELICAL, PLANO};
 use std::fs;
 
@@ -96,8 +96,11 @@ fn a_mechanism_that_cannot_be_had() {
     let folder = Folder::new();
     let missing = folder.arg("missing.toml");
     opm(&["decompose", &missing]).fails_with_one_line(1, &["missing.toml: No such file"]);
-    let unknown = opm(&["decompose", "plano-sperical"]);
-    unknown.fails_with_one_line(1, &["plano-sperical", "no such example", PLANO]);
+    let unknown = opm(&["decompose", "plano-sperical-5dof"]);
+    unknown.fails_with_one_line(
+        1,
+        &["plano-sperical", "no such example", "did you mean `plano-spherical-5dof`"],
+    );
     opm(&["decompose", &folder.arg("")]).fails_with_one_line(1, &["directory"]);
     let latin = folder.write("latin.toml", b"format = 1\nname = \"caf\xe9\"\n");
     opm(&["decompose", &latin]).fails_with_one_line(1, &["latin.toml:2: not UTF-8"]);
@@ -120,7 +123,7 @@ fn every_problem_of_a_file_has_its_line() {
     run.fails(1, &["b1"]);
     let lines: Vec<&str> = run.stderr.lines().collect();
     assert!(lines.len() >= 4, "three legs and the arm: {}", run.stderr);
-    let prefix = format!("opm: {file}:");
+    let prefix = format!("opm: error: {file}:");
     for line in &lines {
         let place = line.strip_prefix(&prefix).unwrap_or_else(|| panic!("{line}"));
         let mut numbers = place.splitn(3, ':').take(2);
@@ -269,7 +272,10 @@ fn a_full_standard_output_is_a_failure() {
         let output = command(args).stdout(full).output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{args:?}: {stderr}");
-        assert!(stderr.starts_with("opm: standard output: No space left"), "{args:?}: {stderr}");
+        assert!(
+            stderr.starts_with("opm: error: standard output: No space left"),
+            "{args:?}: {stderr}"
+        );
     }
 }
 
@@ -346,4 +352,34 @@ fn no_list_of_names_is_empty() {
     ] {
         grid(file, kind).fails_with_one_line(2, &words);
     }
+}
+
+/// 10 m is 30 times as large as the mechanism, and 15 rad is more than two turns.
+#[test]
+fn numbers_without_a_unit_that_look_misread_are_noted() {
+    let odd =
+        |args: &[&str]| opm(args).stderr.lines().filter(|l| l.contains("has no unit")).count();
+    for args in [
+        &["ik", PLANO, "--pose", "x=10,xi=15"][..],
+        &["velocity", PLANO, "--pose", "x=10,xi=15"],
+        &["fk", PLANO, "--joints", "S1=170,S2=165mm,S3=160mm,phi14=-150,phi24=130deg"],
+    ] {
+        assert_eq!(odd(args), 2, "{args:?}");
+        assert_eq!(odd(&[args, &["--quiet"]].concat()), 0, "{args:?}");
+    }
+    assert_eq!(odd(&["ik", PLANO, "--pose", "x=10mm,y=0.01,xi=15deg,psi=0.2"]), 0);
+    let run = opm(&["ik", PLANO, "--pose", "xi=15"]);
+    let expected = "opm: note: --pose: xi=15 has no unit and was read as 15 rad, 859 degrees; if it is in \
+                    deg, write xi=15deg\n";
+    assert_eq!(run.stderr, expected);
+}
+
+#[test]
+fn a_mechanism_can_come_from_standard_input() {
+    let text = opm(&["examples", PLANO]).text().to_owned();
+    let read = opm_reading(&text, &["decompose", "-"]);
+    assert_eq!(read.text(), opm(&["decompose", PLANO]).text());
+    opm_reading("format = 2", &["decompose", "-"]).fails(1, &["standard input:1:10"]);
+    opm_reading(&text, &["ik", "-", "--poses", "-"])
+        .fails_with_one_line(2, &["--poses", "standard input is the mechanism already"]);
 }

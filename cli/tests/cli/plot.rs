@@ -353,7 +353,9 @@ fn what_is_no_recording_is_refused_and_leaves_nothing() {
     let missing = folder.arg("missing.mcap");
     opm(&["plot", &missing, "-o", &output]).fails_with_one_line(1, &["missing.mcap: No such file"]);
     opm(&["plot", &folder.arg(""), "-o", &output]).fails_with_one_line(1, &["directory"]);
-    opm(&["plot", "/dev/null", "-o", &output]).fails_with_one_line(1, &["not a regular file"]);
+    let text = folder.write("text.txt", "this is neither");
+    opm(&["plot", &text, "-o", &output]).fails(1, &["text.txt:1:"]);
+    fs::remove_file(text).unwrap();
     let nowhere = folder.arg("far.mcap");
     let grid = ["--grid", "x=5:6:3", "--grid", "y=0:1:3"];
     opm(&[&["workspace", PLANO, "-o", &nowhere, "-q"], &grid[..]].concat()).text();
@@ -368,8 +370,8 @@ fn wrong_usage_names_the_flag() {
     let (cloud, turn) = (workspace(&folder), turn(&folder));
     let svg = folder.arg("p.svg");
     for (file, args, parts) in [
-        (&cloud, &["-o", "p.jpg"][..], &["--output", "p.jpg", ".svg or .png"][..]),
-        (&cloud, &["-o", "-"], &["--output", ".svg or .png"]),
+        (&cloud, &["-o", "p.jpg"][..], &["--output", "p.jpg", ".svg, .png or .pdf"][..]),
+        (&cloud, &["-o", "-"], &["--output", ".svg, .png or .pdf"]),
         (&cloud, &["-o", &svg, "--values", "theta14"], &["--values", "\"theta14\"", "theta13"]),
         (&cloud, &["-o", &svg, "--values", "x"], &["--values", "two of x, y"]),
         (&cloud, &["-o", &svg, "--values", "x,x"], &["--values", "x is given twice"]),
@@ -407,8 +409,96 @@ fn an_output_that_cannot_be_written_is_told_at_once() {
     fs::rename(&file, &renamed).unwrap();
     opm(&["plot", &renamed, "-o", &renamed])
         .fails_with_one_line(2, &["--output", "also the input"]);
-    opm(&["plot", HELICAL, "-o", &folder.arg("q.svg")]).fails_with_one_line(1, &[HELICAL]);
     assert_eq!(folder.names(), ["p.svg", "turn.svg"]);
+}
+
+/// The centres of all shapes of the solids in a view, as its axes tell them.
+fn centres(document: &Document<'_>, view: &str) -> Vec<[f64; 2]> {
+    let panel = named(document.root_element(), "panel", view);
+    let (x, y) = (across(panel), up(panel));
+    let solids = class(panel, "solids")[0];
+    let middle = |path| {
+        let points: Vec<[f64; 2]> = pieces(path).into_iter().flatten().collect();
+        let range = |i: usize| {
+            let values = || points.iter().map(|point| point[i]);
+            0.5 * (values().fold(f64::INFINITY, f64::min) + values().fold(f64::MIN, f64::max))
+        };
+        [x(range(0)), y(range(1))]
+    };
+    paths(solids).into_iter().map(middle).collect()
+}
+
+/// The joints of the planar 3-RRR, from above: bases A, and the platform's C, which move with it.
+#[test]
+fn a_mechanism_is_drawn_where_its_joints_are() {
+    let folder = Folder::new();
+    let (a, c) = (331.0 / 2.0, 75.06);
+    let at = |radius: f64, degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        [radius * cos, radius * sin]
+    };
+    let radius = a / 30_f64.to_radians().cos();
+    for (pose, moved, turned) in
+        [("", [0.0, 0.0], 0.0), ("x=10mm,y=-5mm,theta=20deg", [10.0, -5.0], 20.0)]
+    {
+        let (_, svg) = plot(&folder, "planar-3rrr", &["--pose", pose]);
+        let document = Document::parse(&svg).unwrap();
+        assert_legible(&svg);
+        let found = centres(&document, "from above");
+        let drawn = |point: [f64; 2]| {
+            found.iter().any(|at| (at[0] - point[0]).hypot(at[1] - point[1]) < 0.1)
+        };
+        for corner in [-150.0, -30.0, 90.0] {
+            assert!(drawn(at(radius, corner)), "{pose}: base at {corner}");
+            let [x, y] = at(c, corner + turned);
+            assert!(drawn([x + moved[0], y + moved[1]]), "{pose}: platform at {corner}");
+        }
+        let views: Vec<&str> =
+            class(document.root_element(), "panel").into_iter().map(label).collect();
+        assert_eq!(views, ["from above", "from the front", "from the right", "in perspective"]);
+        for name in ["A1", "B2", "C3"] {
+            named(named(document.root_element(), "panel", "from above"), "text", name);
+        }
+    }
+}
+
+#[test]
+fn mechanisms_of_every_kind_are_drawn() {
+    let folder = Folder::new();
+    let outside = folder.write(
+        "outside.toml",
+        opm(&["examples", "planar-3rrr"])
+            .text()
+            .replace("axis = [0, 0, 1], point = [0, 75.06", "axis = [0, 1, 1], point = [0, 75.06"),
+    );
+    for mechanism in [PLANO, HELICAL, BENNETT, "orbita", "cartesian-wrist-6dof", &outside] {
+        for ending in ["svg", "png", "pdf"] {
+            let output = folder.arg(&format!("picture.{ending}"));
+            opm(&["plot", mechanism, "-o", &output, "--quiet"]).text();
+            let start: &[u8] = match ending {
+                "svg" => b"<svg",
+                "png" => b"\x89PNG",
+                _ => b"%PDF-1.",
+            };
+            assert!(fs::read(&output).unwrap().starts_with(start), "{mechanism}: {ending}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_of_a_mechanism_needs_a_pose_in_reach_and_its_own_flags() {
+    let folder = Folder::new();
+    let output = folder.arg("p.svg");
+    let draw = |args: &[&str]| opm(&[&["plot", PLANO, "-o", &output], args].concat());
+    draw(&["--pose", "y=-5"]).fails(1, &[PLANO, "out of reach", "leg4"]);
+    draw(&["--pose", "yaw=1"]).fails_with_one_line(2, &["--pose", "yaw"]);
+    draw(&["--slice", "xi=0"]).fails_with_one_line(2, &["--slice", "is a mechanism"]);
+    draw(&["--size", "100x100"]).fails_with_one_line(2, &["--size", "4 panels need"]);
+    let turn = turn(&folder);
+    opm(&["plot", &turn, "-o", &output, "--pose", "x=0"])
+        .fails_with_one_line(2, &["--pose", "is a recording"]);
+    opm(&["plot", BENNETT, "-o", &output, "--pose", "x=0"]).fails(1, &[BENNETT]);
+    assert_eq!(folder.names(), ["round.mcap"]);
 }
 
 /// A recording of an unknown mechanism, with two joints.

@@ -89,7 +89,7 @@ impl Run {
     pub fn fails_with_one_line(&self, code: i32, parts: &[&str]) {
         self.fails(code, parts);
         assert_eq!(self.stderr.lines().count(), 1, "opm {}: {}", self.args, self.stderr);
-        assert!(self.stderr.starts_with("opm: "), "opm {}: {}", self.args, self.stderr);
+        assert!(self.stderr.starts_with("opm: error: "), "opm {}: {}", self.args, self.stderr);
     }
 }
 

@@ -314,7 +314,7 @@ fn missing_shards_are_made(flags: &[&str]) {
     let parts: Vec<&str> = parts.iter().map(|part| &**part).collect();
     let merge = [&["merge"], &parts[..]].concat();
     let failed = opm(&merge);
-    failed.fails(1, &["opm: 3 of 5 shards are missing: 2-3,5\n"]);
+    failed.fails(1, &["opm: error: 3 of 5 shards are missing: 2-3,5\n"]);
     let program = env!("CARGO_BIN_EXE_opm");
     for line in failed.stderr.lines().skip(1) {
         let words = line.strip_prefix("opm:   opm ").unwrap();

@@ -116,7 +116,7 @@ pub struct Configuration<'a> {
 /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
 /// let joints = ImaginaryJoints { decomposition, imaginary };
-/// let skeleton = Skeleton::new(manipulator.mechanism(), joints);
+/// let skeleton = Skeleton::new(manipulator.mechanism(), Some(joints));
 ///
 /// let solution = manipulator.solution(); // home
 /// let (joints, imaginary) = (solution.joints(), solution.imaginary());
@@ -166,8 +166,8 @@ pub struct ImaginaryJoints<'a> {
 }
 
 impl Skeleton {
-    /// Builds the bodies of a mechanism and of its imaginary joints.
-    pub fn new(mechanism: &Mechanism, joints: ImaginaryJoints<'_>) -> Self {
+    /// Builds the bodies of a mechanism and, if it decomposes, of its imaginary joints.
+    pub fn new(mechanism: &Mechanism, joints: Option<ImaginaryJoints<'_>>) -> Self {
         let size = centre::size(mechanism);
         Builder {
             mechanism,
@@ -182,6 +182,25 @@ impl Skeleton {
     /// The bodies; the first one is the base.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// The transform from every body's frame to the base, in the order of [`Skeleton::bodies`].
+    ///
+    /// # Errors
+    /// The configuration does not have as many coordinates as the mechanism.
+    pub fn place_in_base(
+        &self,
+        configuration: &Configuration<'_>,
+    ) -> Result<Vec<Isometry3<f64>>, ValueCountError> {
+        let mut placed = Vec::new();
+        self.place(configuration, &mut placed)?;
+        for (number, body) in self.bodies.iter().enumerate() {
+            // A parent has a lower number than its children.
+            if let Some(parent) = body.parent {
+                placed[number] = placed[parent] * placed[number];
+            }
+        }
+        Ok(placed)
     }
 
     /// Writes the transform from every body's frame to its parent's into `out`, in the order of
@@ -268,7 +287,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn build(mut self, joints: ImaginaryJoints<'_>) -> Skeleton {
+    fn build(mut self, joints: Option<ImaginaryJoints<'_>>) -> Skeleton {
         let mechanism = self.mechanism;
         self.add("base".into(), None, Point3::origin());
         for (leg, centres) in mechanism.legs.iter().zip(self.centres.clone()) {
@@ -288,7 +307,7 @@ impl Builder<'_> {
         }
         let ball = Solid::ball(mechanism.platform, self.sizes.ball);
         self.draw(platform, ball, Material::Platform);
-        let imaginary = self.imaginary(joints, platform);
+        let imaginary = joints.map_or_else(Vec::new, |joints| self.imaginary(joints, platform));
         Skeleton {
             coordinates: mechanism.coordinates().count(),
             bodies: self.bodies,

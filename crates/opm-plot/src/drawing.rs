@@ -4,7 +4,8 @@
 
 use crate::color::Color;
 use crate::font::Face;
-use crate::{png, svg};
+use crate::{pdf, png, svg};
+use std::io;
 
 /// A size, in pixels of a screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,14 @@ impl Drawing {
     /// [`png::Error::Size`] if there is no memory for so many pixels.
     pub fn to_png(&self) -> Result<Vec<u8>, png::Error> {
         png::write(self)
+    }
+
+    /// The drawing as a PDF file, one page of the drawing's size.
+    ///
+    /// # Errors
+    /// The bytes cannot be compressed.
+    pub fn to_pdf(&self) -> io::Result<Vec<u8>> {
+        pdf::write(self)
     }
 }
 

@@ -1,8 +1,9 @@
-//! Figures of curves over time and of points in a plane, as SVG and PNG.
+//! Figures of curves over time, of points in a plane and of solids in space, as SVG, PNG and PDF.
 //!
 //! A figure is plain data: numbers in the units that they are shown in, and names. [`TimeFigure`] shows curves
-//! over time, [`TileFigure`] shows tiles with cells of a grid, point clouds and histograms. Either is laid out
-//! as a [`Drawing`], a list of shapes, which is written as SVG or PNG; both look the same.
+//! over time, [`TileFigure`] shows tiles with cells of a grid, point clouds and histograms, [`ViewFigure`] shows
+//! solids from four sides. Each is laid out as a [`Drawing`], a list of shapes, which is written as SVG, PNG or PDF; all
+//! look the same.
 //!
 //! ```
 //! use opm_plot::{Curve, Heading, Panel, Row, Scale, Steps, TimeFigure, Unit};
@@ -38,10 +39,11 @@
 //! |---|---|
 //! | curves over time | [`TimeFigure`], [`Row`], [`Panel`], [`Curve`], [`Scale`] |
 //! | points in a plane | [`TileFigure`], [`Section`], [`Tile`], [`Cells`], [`Cloud`], [`Histogram`], [`Bar`] |
+//! | solids in space | [`ViewFigure`], [`Body`], [`Named`] |
 //! | axes and units | [`Unit`], [`Steps`], [`Measure`], module [`axis`] |
 //! | texts above and below | [`Heading`] |
 //! | the shapes of a figure | [`Drawing`], modules [`drawing`], [`color`], [`font`] |
-//! | files | [`Drawing::to_svg`], [`Drawing::to_png`], modules [`svg`], [`png`] |
+//! | files | [`Drawing::to_svg`], [`Drawing::to_png`], [`Drawing::to_pdf`], modules [`svg`], [`png`], [`pdf`] |
 //!
 //! Texts are outlines of fonts that come with the crate, and are measured with the same fonts: nothing depends
 //! on the fonts of the machine. The same figure gives the same bytes.
@@ -56,10 +58,12 @@ pub mod drawing;
 pub mod font;
 mod frame;
 mod heading;
+pub mod pdf;
 pub mod png;
 pub mod svg;
 mod tiles;
 mod time;
+mod views;
 
 pub use axis::{Steps, Unit};
 pub use color::{Color, Map};
@@ -70,6 +74,7 @@ pub use tiles::{
     Bar, Cells, Cloud, Content, Histogram, Measure, Paint, Section, Spacing, Tile, TileFigure,
 };
 pub use time::{Panel, Row, Scale, TimeFigure};
+pub use views::{Body, Named, Point, ViewFigure};
 
 /// The largest width and height of a figure, in pixels of a screen. A PNG has [`png::SCALE`] pixels for each of
 /// them, each way.

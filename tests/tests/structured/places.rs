@@ -32,8 +32,10 @@ fn mechanisms_are_the_same_anywhere() {
                 assert!((c.home - q).abs() < 1e-6, "{name} at {g}, {}: {q}", c.name);
             }
             let (decomposition, imaginary) = (there.decomposition(), there.imaginary());
-            let drawn =
-                Skeleton::new(there.mechanism(), ImaginaryJoints { decomposition, imaginary });
+            let drawn = Skeleton::new(
+                there.mechanism(),
+                Some(ImaginaryJoints { decomposition, imaginary }),
+            );
             for _ in 0..12 {
                 let pose = pose(&mut rng, &there);
                 // Dependent coordinates have no solution at some poses.

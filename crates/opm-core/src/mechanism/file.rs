@@ -50,7 +50,8 @@
 
 pub(crate) mod checks;
 #[cfg(feature = "files")]
-mod hint;
+#[doc(hidden)]
+pub mod hint;
 #[cfg(feature = "files")]
 mod joints;
 #[cfg(feature = "files")]

@@ -24,7 +24,7 @@ fn skeleton(manipulator: &Manipulator) -> Skeleton {
         decomposition: manipulator.decomposition(),
         imaginary: manipulator.imaginary(),
     };
-    Skeleton::new(manipulator.mechanism(), imaginary_joints)
+    Skeleton::new(manipulator.mechanism(), Some(imaginary_joints))
 }
 
 /// The transforms from each body's frame to the base's.

@@ -17,7 +17,7 @@ pub struct Scene {
 
 impl Scene {
     pub fn new(mechanism: &Mechanism, cuts: ImaginaryJoints<'_>) -> Self {
-        let skeleton = Skeleton::new(mechanism, cuts);
+        let skeleton = Skeleton::new(mechanism, Some(cuts));
         Self { skeleton, placed: Vec::new(), frames: Vec::new() }
     }
 

@@ -1,7 +1,7 @@
 //! Hints for an unknown word: the known words, and the one that was probably meant.
 
 /// The text `expected A, B, C`, or `did you mean A? expected one of A, B, C` if one is similar.
-pub(super) fn expected_one_of(found: &str, words: &[&str]) -> String {
+pub fn expected_one_of(found: &str, words: &[&str]) -> String {
     let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let expected = if words.len() == 1 { "expected" } else { "expected one of" };
     // Exchanging two letters takes two edits: still a slip in a word of four letters.

@@ -1,0 +1,268 @@
+//! The picture of a mechanism, from four sides.
+
+use super::sized::drawn;
+use crate::args::{MechanismArgs, Output, PlotArgs};
+use crate::failure::Failure;
+use crate::ik::reason;
+use crate::load::{self, Loaded};
+use crate::text;
+use crate::unitless;
+use nalgebra::{Isometry3, Point3};
+use opm_core::decomposition::Decomposition;
+use opm_core::linkage::Linkage;
+use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::mechanism::Mechanism;
+use opm_core::skeleton::{
+    Body, Configuration, ImaginaryJoints, Material, SeatMotion, Skeleton, Solid,
+};
+use opm_core::{Quantity, group::subspace::SubspaceClass};
+use opm_plot::{Color, Drawing, Heading, Named, Steps, Unit, ViewFigure};
+use std::collections::BTreeSet;
+
+/// Differences below this are noise of the arithmetic, in metres.
+const NOISE: f64 = 1e-9;
+
+/// Draws a mechanism at a pose, or as it was assembled.
+pub fn draw(args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
+    for (flag, given) in [
+        ("--panels", !args.panels.is_empty()),
+        ("--values", !args.values.is_empty()),
+        ("--slice", !args.slice.is_empty()),
+    ] {
+        if given {
+            let problem = format!("{} is a mechanism, expected a recording", args.file.display());
+            return Err(Failure::flag(flag, problem));
+        }
+    }
+    let given = MechanismArgs { file: args.file.clone(), tolerance: args.tolerance };
+    let loaded = load::open(&given, output)?;
+    let figure = figure(&loaded, args, output)?;
+    drawn(args, |size| figure.draw(size))
+}
+
+fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigure, Failure> {
+    let mechanism = &loaded.file.mechanism;
+    let posed = args.pose.is_some() || args.mode.is_some();
+    match Manipulator::new(mechanism.clone()) {
+        Ok(manipulator) => {
+            let solution = solve(loaded, &manipulator, args, output)?;
+            if !solution.within_limits() {
+                output.warn(format_args!("the pose is beyond the limits of a joint"));
+            }
+            let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
+            let at = Configuration {
+                joints: solution.joints(),
+                imaginary: solution.imaginary(),
+                platform: solution.displacement(&manipulator),
+            };
+            let lines = vec![pose_line(loaded, &manipulator, &solution), split_line(decomposition)];
+            let joints = ImaginaryJoints { decomposition, imaginary };
+            assemble(loaded, Some(joints), &at, lines)
+        }
+        // It has no inverse kinematics, so that no other pose is known than that at home.
+        Err(_) if posed => Err(loaded.compile().map_or_else(
+            |failure| failure,
+            |_| Failure::flag("--pose", "the mechanism has no inverse kinematics"),
+        )),
+        Err(_) => {
+            let joints: Vec<f64> = mechanism.coordinates().map(|c| c.home).collect();
+            let home = |imaginary| Configuration {
+                joints: &joints,
+                imaginary,
+                platform: Isometry3::identity(),
+            };
+            match Linkage::new(mechanism) {
+                Ok(linkage) => {
+                    let (decomposition, imaginary) =
+                        (linkage.decomposition(), std::slice::from_ref(linkage.imaginary()));
+                    let homes: Vec<f64> = imaginary.iter().map(|joint| joint.home).collect();
+                    let cuts = ImaginaryJoints { decomposition, imaginary };
+                    let lines = vec!["at home".to_owned(), split_line(decomposition)];
+                    assemble(loaded, Some(cuts), &home(&homes), lines)
+                }
+                Err(_) => {
+                    let why = "it does not decompose: `opm decompose` says why";
+                    assemble(loaded, None, &home(&[]), vec![format!("at home; {why}")])
+                }
+            }
+        }
+    }
+}
+
+/// The solution at the pose that was asked for.
+fn solve(
+    loaded: &Loaded,
+    manipulator: &Manipulator,
+    args: &PlotArgs,
+    output: &Output,
+) -> Result<Solution, Failure> {
+    let pose = match &args.pose {
+        Some(pose) => {
+            unitless::note_pose(output, "--pose", pose, loaded, manipulator);
+            pose.resolve(manipulator)?
+        }
+        None => manipulator.home_pose(),
+    };
+    let mode = load::mode(manipulator, args.mode.as_deref().unwrap_or("home"))?;
+    let mut buffer = manipulator.solution();
+    let found = manipulator.inverse(&pose, mode, &mut buffer);
+    if let Some(found) = found.map_err(|error| Failure::flag("--pose", error))? {
+        return Ok(found.clone());
+    }
+    let units = loaded.file.units;
+    let legs = &manipulator.mechanism().legs;
+    let each = buffer.unreachable().iter();
+    let each = each.map(|u| format!("{}, {}", legs[u.leg].name, reason(u, units)));
+    let each = each.collect::<Vec<_>>().join("; ");
+    Err(Failure::work(format!("{}: the pose is out of reach: {each}", loaded.label)))
+}
+
+fn pose_line(loaded: &Loaded, manipulator: &Manipulator, solution: &Solution) -> String {
+    let units = loaded.file.units;
+    let coordinates = manipulator.task_coordinates().iter().zip(solution.pose());
+    let pose = coordinates.map(|(c, &value)| {
+        let value = text::number(value, c.quantity, units);
+        format!("{} = {value} {}", c.name, units.symbol(c.quantity))
+    });
+    let pose = pose.collect::<Vec<_>>().join(", ");
+    if solution.pose() == manipulator.home_pose() { format!("at home: {pose}") } else { pose }
+}
+
+fn split_line(decomposition: &Decomposition) -> String {
+    let Decomposition { lower, upper, .. } = decomposition;
+    if matches!(upper, SubspaceClass::Identity) {
+        return format!("all legs move in one subspace: {}", lower.name());
+    }
+    format!("lower section: {}; upper section: {}", lower.name(), upper.name())
+}
+
+/// The figure of a mechanism in a configuration.
+fn assemble(
+    loaded: &Loaded,
+    joints: Option<ImaginaryJoints<'_>>,
+    at: &Configuration<'_>,
+    lines: Vec<String>,
+) -> Result<ViewFigure, Failure> {
+    let Loaded { file, label, .. } = loaded;
+    let (mechanism, units) = (&file.mechanism, file.units);
+    let skeleton = Skeleton::new(mechanism, joints);
+    let placed = skeleton.place_in_base(at).map_err(|error| Failure::at(label, error))?;
+    let factor = units.factor(Quantity::Length);
+    let point = |p: Point3<f64>| -> [f64; 3] { (p.coords / factor).into() };
+    let mut bodies = Vec::new();
+    let mut names = Vec::new();
+    let mut used = BTreeSet::new();
+    for (body, place) in skeleton.bodies().iter().zip(&placed) {
+        for part in &body.parts {
+            let paint = Paint::of(part.material, || {
+                let divided = joints.filter(|joints| !joints.imaginary.is_empty());
+                divided.and_then(|joints| is_upper(mechanism, joints.decomposition, body))
+            });
+            used.insert(paint);
+            bodies.push((solid(&part.solid, place, point, factor), paint.color()));
+        }
+        // Each joint is named once, at the body on its base side.
+        for seat in body.seats.iter().filter(|seat| seat.motion != SeatMotion::Weld) {
+            if !names.iter().any(|named: &Named| named.name == seat.joint) {
+                let at = point(place * seat.centre);
+                names.push(Named { name: seat.joint.clone(), at });
+            }
+        }
+    }
+    let length = units.symbol(Quantity::Length).to_owned();
+    Ok(ViewFigure {
+        heading: Heading { title: mechanism.name.clone(), lines, notes: vec![] },
+        unit: Unit { symbol: length, steps: Steps::Decimal, resolution: NOISE / factor },
+        bodies,
+        names,
+        legend: used.into_iter().map(|paint| (paint.name().to_owned(), paint.color())).collect(),
+    })
+}
+
+fn solid(
+    solid: &Solid,
+    place: &Isometry3<f64>,
+    point: impl Fn(Point3<f64>) -> [f64; 3],
+    factor: f64,
+) -> opm_plot::Body {
+    match *solid {
+        Solid::Cylinder { from, to, radius } => opm_plot::Body::Rod {
+            from: point(place * from),
+            to: point(place * to),
+            radius: radius / factor,
+        },
+        Solid::Ball { centre, radius } => {
+            opm_plot::Body::Ball { centre: point(place * centre), radius: radius / factor }
+        }
+        Solid::Block { centre, axis, length, width } => opm_plot::Body::Block {
+            centre: point(place * centre),
+            axis: (place.rotation * axis.into_inner()).into(),
+            length: length / factor,
+            width: width / factor,
+        },
+    }
+}
+
+/// Whether a link belongs to the upper section: a joint of that section is on its base side.
+fn is_upper(mechanism: &Mechanism, decomposition: &Decomposition, body: &Body) -> Option<bool> {
+    let (leg, joint) = body.name.split_once('/')?;
+    let number = mechanism.legs.iter().position(|known| known.name == leg)?;
+    let joint = mechanism.legs[number].joints.iter().position(|known| known.name == joint)?;
+    Some(decomposition.legs[number].upper.iter().any(|freedom| freedom.joint <= joint))
+}
+
+/// What a part of the picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Paint {
+    Base,
+    Link,
+    LowerLink,
+    UpperLink,
+    Platform,
+    Actuated,
+    Passive,
+    Imaginary,
+}
+
+impl Paint {
+    fn of(material: Material, is_upper: impl FnOnce() -> Option<bool>) -> Self {
+        match material {
+            Material::Base => Self::Base,
+            Material::Link => match is_upper() {
+                Some(true) => Self::UpperLink,
+                Some(false) => Self::LowerLink,
+                None => Self::Link,
+            },
+            Material::Platform => Self::Platform,
+            Material::Actuated => Self::Actuated,
+            Material::Passive => Self::Passive,
+            Material::Imaginary => Self::Imaginary,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Link => "link",
+            Self::LowerLink => "link of the lower section",
+            Self::UpperLink => "link of the upper section",
+            Self::Platform => "platform",
+            Self::Actuated => "actuated joint",
+            Self::Passive => "passive joint",
+            Self::Imaginary => "imaginary joint",
+        }
+    }
+
+    /// Colours that people with any kind of colour vision can tell apart, by Okabe and Ito, and greys.
+    fn color(self) -> Color {
+        match self {
+            Self::Base => [0x55, 0x55, 0x5a],
+            Self::Link | Self::LowerLink => [0xc4, 0xc6, 0xca],
+            Self::UpperLink => [0x8f, 0xc9, 0xb4],
+            Self::Platform => [0x00, 0x72, 0xb2],
+            Self::Actuated => [0xd5, 0x5e, 0x00],
+            Self::Passive => [0x56, 0xb4, 0xe9],
+            Self::Imaginary => [0xe6, 0xbf, 0xd6],
+        }
+    }
+}
