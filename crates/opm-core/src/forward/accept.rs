@@ -5,7 +5,7 @@ use super::matches::{Match, Matches};
 use super::search::Search;
 use super::{Assemblies, Assembly, Unmet};
 use crate::group::Displacement;
-use crate::manipulator::{Dependent, Manipulator, Mode, Products, Section, Solution, Unreachable};
+use crate::manipulator::{Dependent, Manipulator, Mode, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
 use std::f64::consts::TAU;
@@ -52,13 +52,13 @@ impl Assembly {
 
 impl Manipulator {
     /// Writes the assembly at a pose, where the actuated joints have these displacements from home. The other joints
-    /// are those of a solution there, improved where that does not close to rounding.
+    /// are those of a solution there, improved where that does not close to rounding. `tried` is a buffer.
     pub(super) fn write_assembly(
         &self,
         Place { pose, target, mode }: Place<'_>,
         displacements: &[f64],
         solution: &Solution,
-        products: &mut Products,
+        tried: &mut Vec<f64>,
         out: &mut Assembly,
     ) {
         let write = |to: &mut Vec<f64>, from: &[f64]| {
@@ -81,9 +81,9 @@ impl Manipulator {
             };
             *joint = given + TAU * revolutions;
         }
-        out.residual = self.closure.residual(&out.joints, target, products);
+        out.residual = self.closure.residual(&out.joints, target);
         if out.residual > SETTLED {
-            out.residual = self.closure.settle(&mut out.joints, target, out.residual, products);
+            out.residual = self.closure.settle(&mut out.joints, target, out.residual, tried);
         }
     }
 }
@@ -222,8 +222,8 @@ impl Search<'_> {
         let m = self.manipulator;
         let place = Place { pose, target, mode };
         let mut assembly = Assembly::buffer(m);
-        let (solution, products) = (&self.solution, &mut self.products);
-        m.write_assembly(place, self.displacements, solution, products, &mut assembly);
+        let (solution, tried) = (&self.solution, &mut self.tried);
+        m.write_assembly(place, self.displacements, solution, tried, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.

@@ -4,7 +4,7 @@ use super::accept::Place;
 use super::near::{NotFound, Stop};
 use super::{Assembly, NearError};
 use crate::group::LocalTwist;
-use crate::manipulator::{Manipulator, Mode, PoseError, Products, Solution};
+use crate::manipulator::{Manipulator, Mode, PoseError, Solution};
 use crate::mechanism::joint::JointKind;
 use crate::numeric::Quantity;
 use crate::numeric::least_squares::{LeastSquares, MOST};
@@ -58,7 +58,8 @@ pub struct NearBuffer {
     /// The unit of each component of a step: the size where it is a length, otherwise one.
     units: [f64; MOST],
     system: LeastSquares,
-    products: Products,
+    /// A buffer for joint values.
+    joints: Vec<f64>,
     /// The assembly that was found last.
     pub(super) assembly: Assembly,
 }
@@ -91,7 +92,7 @@ impl Manipulator {
             units: self.units(&jacobians),
             system: LeastSquares::new(actuated + locked, jacobians.joints.ncols()),
             jacobians,
-            products: self.closure.products(),
+            joints: Vec::with_capacity(self.coordinates().len()),
             assembly: Assembly::buffer(self),
         }
     }
@@ -282,10 +283,10 @@ impl Newton<'_> {
     /// Writes the assembly at the present pose.
     fn assemble(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
-        let NearBuffer { displacements, pose, solution, products, assembly, .. } = at;
+        let NearBuffer { displacements, pose, solution, joints, assembly, .. } = at;
         let target = solution.displacement(m);
         let place = Place { pose, target: &target, mode: self.mode };
-        m.write_assembly(place, displacements, solution, products, assembly);
+        m.write_assembly(place, displacements, solution, joints, assembly);
     }
 }
 
