@@ -158,7 +158,7 @@ pub struct Manipulator {
     /// The legs' products of exponentials.
     pub(crate) closure: Closure,
     /// The instructions of the processor at hand.
-    arch: Arch,
+    pub(crate) arch: Arch,
 }
 
 impl Manipulator {

@@ -8,6 +8,7 @@ use crate::group::Displacement;
 use crate::manipulator::{Dependent, Manipulator, Mode, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
+use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
@@ -134,22 +135,27 @@ impl Search<'_> {
         m.task().write_pose(v, b, self.rise, &mut all);
         m.write_independent(&mut all, &mut pose);
         if m.check_pose(&pose).is_ok() {
-            self.assemble_at(&all, &pose);
+            m.arch.dispatch(AssembleAt { search: self, all: &all, pose: &pose });
         }
         self.poses = [all, pose];
     }
 
     /// The same at a pose: all of its coordinates, and the independent ones.
+    #[inline(always)]
     fn assemble_at(&mut self, all: &[f64], pose: &[f64]) {
         let m = self.manipulator;
         let (v, b) = m.task().sections(all);
         let rise = m.task().rise(all);
         let target = m.task().raised(rise, m.task().isometry(&v, &b));
         let mut matches = std::mem::take(&mut self.matches);
-        let open = matches.iter_mut().enumerate().find_map(|(leg, found)| {
+        let mut open = None;
+        for (leg, found) in matches.iter_mut().enumerate() {
             self.match_leg(leg, [&v, &b], rise, found);
-            found.list.is_empty().then_some(found.least)
-        });
+            if found.list.is_empty() {
+                open = Some(found.least);
+                break;
+            }
+        }
         match open {
             Some(error) => self.reject(error),
             None => self.accept_matches(&matches, all, pose, &target),
@@ -159,6 +165,7 @@ impl Search<'_> {
 
     /// Accepts every combination of solutions of the legs at a pose. `all` has all of its coordinates, and `pose` the
     /// independent ones.
+    #[inline(always)]
     fn accept_matches(
         &mut self,
         matches: &[Matches],
@@ -176,8 +183,9 @@ impl Search<'_> {
                 let Match { mode: own, solution, .. } = &list[rest % list.len()];
                 rest /= list.len();
                 mode = mode.with(*own);
-                m.write_leg(leg, solution, &mut self.solution);
+                self.solution.legs[leg] = *solution;
             }
+            m.write_legs(&mut self.solution);
             if m.task().height.is_some() {
                 self.solution.solved.pose.copy_from_slice(all);
                 m.write_lifts(&mut self.solution);
@@ -269,5 +277,21 @@ impl Search<'_> {
         let Assemblies { loose, unmet, .. } = &mut self.out;
         unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
         self.out
+    }
+}
+
+/// [`Search::assemble_at`], with the instructions of the processor at hand.
+struct AssembleAt<'s, 'a, 'p> {
+    search: &'s mut Search<'a>,
+    all: &'p [f64],
+    pose: &'p [f64],
+}
+
+impl WithSimd for AssembleAt<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.search.assemble_at(self.all, self.pose);
     }
 }

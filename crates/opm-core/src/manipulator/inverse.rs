@@ -186,12 +186,13 @@ impl Manipulator {
         }
     }
 
-    /// Writes a leg's solution to `out`, with angles within π of home. Values that `out` holds already, for the same
-    /// lower section and τ, are not computed again.
-    pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
-        let mut angles = Angles::new(AngleOf::Leg(number));
-        out.legs[number] = *solution;
-        self.write(number, out, Revolutions::NearHome, &mut angles);
+    /// Writes the joints of all legs, whose solutions `out` holds, with angles within π of home.
+    #[inline(always)]
+    pub(crate) fn write_legs(&self, out: &mut Solution) {
+        let mut angles = Angles::new(AngleOf::Leg(0));
+        for number in 0..self.legs.len() {
+            self.write(number, out, Revolutions::NearHome, &mut angles);
+        }
         angles.answer(|of, angle| self.take(of, angle, out, Revolutions::NearHome));
     }
 
