@@ -127,6 +127,15 @@ impl From<csv::Error> for Stop {
     }
 }
 
+/// What is in a column of the input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    /// A time, which is carried through.
+    Time,
+    /// The task coordinate of this number.
+    Coordinate(usize),
+}
+
 struct Batch<'a> {
     /// The name of the input in messages.
     label: &'a str,
@@ -145,16 +154,17 @@ impl Batch<'_> {
         let start = Instant::now();
         let mut lines = Lines::new(input);
         let columns = self.columns(lines.next().map_err(|error| self.unreadable(error))?)?;
+        let timed = columns.contains(&Column::Time);
         let writer =
             WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
-        let mut table = Rows::new(self.manipulator, writer)?;
+        let mut table = Rows::new(self.manipulator, timed, writer)?;
 
         let mut pose = self.manipulator.home_pose();
         while let Some(line) = lines.next().map_err(|error| self.unreadable(error))? {
             if progress.is_cancelled() {
                 return Err(Failure::interrupted("interrupted").into());
             }
-            self.read(line, &columns, &mut pose)?;
+            table.time = self.read(line, &columns, &mut pose)?;
             table.pose(&pose, self.modes, |error| self.at(line.number, error))?;
             rows.fetch_add(1, Ordering::Relaxed);
         }
@@ -170,8 +180,8 @@ impl Batch<'_> {
         })
     }
 
-    /// The task coordinate of every column.
-    fn columns(&self, header: Option<Line<'_>>) -> Result<Vec<usize>, Failure> {
+    /// What is in every column.
+    fn columns(&self, header: Option<Line<'_>>) -> Result<Vec<Column>, Failure> {
         let coordinates = self.manipulator.task_coordinates();
         let number = header.map_or(1, |line| line.number);
         let names: Vec<_> =
@@ -186,7 +196,10 @@ impl Batch<'_> {
             let wrong =
                 |error: &dyn Display| self.at(number, format_args!("column {name:?}: {error}"));
             self.manipulator.refuse_following(name).map_err(|error| wrong(&error))?;
-            let column = find(name, coordinates).map_err(|error| wrong(&error))?;
+            let column = match &**name {
+                "t" => Column::Time,
+                name => Column::Coordinate(find(name, coordinates).map_err(|error| wrong(&error))?),
+            };
             if columns.contains(&column) {
                 return Err(self.at(number, format_args!("column {name:?}: given twice")));
             }
@@ -195,9 +208,17 @@ impl Batch<'_> {
         Ok(columns)
     }
 
-    /// Reads a row into the columns of a pose.
-    fn read(&self, line: Line<'_>, columns: &[usize], pose: &mut [f64]) -> Result<(), Failure> {
-        let name = |column: usize| self.manipulator.task_coordinates()[column].name;
+    /// Reads a row into the columns of a pose, and returns its time if it has one.
+    fn read(
+        &self,
+        line: Line<'_>,
+        columns: &[Column],
+        pose: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        let name = |column: Column| match column {
+            Column::Time => "t",
+            Column::Coordinate(number) => self.manipulator.task_coordinates()[number].name,
+        };
         let given = line.fields().count();
         if given != columns.len() {
             let names: Vec<_> = columns.iter().map(|&column| name(column)).collect();
@@ -206,18 +227,23 @@ impl Batch<'_> {
             let problem = format_args!("{given}, expected {expected}: {names}");
             return Err(self.at(line.number, problem));
         }
+        let mut time = None;
         for (field, &column) in line.fields().zip(columns) {
             let wrong = |problem: &str| {
                 let (name, field) = (name(column), String::from_utf8_lossy(field));
                 self.at(line.number, format_args!("column {name}: {field:?} {problem}"))
             };
             let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
-            pose[column] = number.ok_or_else(|| wrong("is not a number"))?;
-            if !pose[column].is_finite() {
+            let number: f64 = number.ok_or_else(|| wrong("is not a number"))?;
+            if !number.is_finite() {
                 return Err(wrong("is not a finite number"));
             }
+            match column {
+                Column::Time => time = Some(number),
+                Column::Coordinate(column) => pose[column] = number,
+            }
         }
-        Ok(())
+        Ok(time)
     }
 
     fn unreadable(&self, error: io::Error) -> Failure {
@@ -236,6 +262,8 @@ struct Rows<'a, W: Write> {
     drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
+    /// The time of the pose, if the input has times.
+    time: Option<f64>,
     /// Imaginary joints, then actuated joints; empty if the pose is out of reach.
     cells: Vec<Option<f64>>,
     /// Dependent coordinates; empty if they have no solution.
@@ -245,9 +273,14 @@ struct Rows<'a, W: Write> {
 }
 
 impl<'a, W: Write> Rows<'a, W> {
-    fn new(manipulator: &'a Manipulator, mut writer: csv::Writer<W>) -> Result<Self, Stop> {
+    fn new(
+        manipulator: &'a Manipulator,
+        timed: bool,
+        mut writer: csv::Writer<W>,
+    ) -> Result<Self, Stop> {
         let coordinates = manipulator.coordinates();
-        let header: Vec<&str> = (manipulator.task_coordinates().iter().map(|c| c.name))
+        let header: Vec<&str> = (timed.then_some("t").into_iter())
+            .chain(manipulator.task_coordinates().iter().map(|c| c.name))
             .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
             .chain(["reachable", "within_limits", "mode"])
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
@@ -260,6 +293,7 @@ impl<'a, W: Write> Rows<'a, W> {
             drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
+            time: None,
             cells: Vec::new(),
             dependent: Vec::new(),
             reachable: 0,
@@ -335,7 +369,8 @@ impl<'a, W: Write> Rows<'a, W> {
         mode: &str,
     ) -> Result<(), Stop> {
         let (reachable, within_limits) = (u8::from(reachable), u8::from(within_limits));
-        let row = (pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
+        let time: &[f64] = self.time.as_slice();
+        let row = (time, pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
         Ok(self.writer.serialize(row)?)
     }
 }
