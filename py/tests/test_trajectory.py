@@ -170,3 +170,16 @@ def test_a_table_is_that_of_the_command_line(manipulator, tmp_path):
         found.write_table(tmp_path / "a.txt")
     with pytest.raises(opm.OpmError, match='units: "mm"'):
         found.write_table(tmp_path / "a.csv", units="mm")
+
+
+def test_actuated_joints_lead_back_to_the_motion(manipulator, followed):
+    columns = [followed.joint_names.index(name) for name in manipulator.actuated]
+    joints = followed.joints[:, columns].copy()
+    joints[500] = 9
+    poses = manipulator.forward_track(joints, near=followed.poses[0])
+    assert np.isnan(poses[500]).all()
+    rest = np.arange(len(joints)) != 500
+    np.testing.assert_allclose(poses[rest], followed.poses[rest], atol=1e-9)
+    with pytest.raises(opm.OpmError, match="row 3: S2 is NaN"):
+        joints[3, 1] = np.nan
+        manipulator.forward_track(joints)

@@ -241,7 +241,7 @@ fn wrong_points_are_told_with_their_places() {
         ),
         (
             "[points]\nt = [0, 1, 2]\nx = [0, 1]\n",
-            &["m.toml:7:5: `x` has 2 values, expected 3, as `t` has"],
+            &["m.toml:7:5: `x` has 2 values, expected 3 as `t` has"],
         ),
         (
             "duration = 2\n[points]\nt = [0, 1]\n[coordinates]\n",

@@ -601,12 +601,40 @@ class Manipulator:
         Returns
         -------
         list of list of Assembly
-            One list for each row: empty where there is no assembly, or where Newton's method does not converge.
+            One list for each row, the assembly nearest to home first: empty where there is no assembly, or where Newton's
+            method does not converge.
 
         Raises
         ------
         OpmError
             The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
+        """
+    def forward_track(
+        self, joints: ArrayLike, *, near: ArrayLike | None = None, mode: str = "home"
+    ) -> NDArray[np.float64]:
+        """The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
+
+        Newton's method starts at the last pose that was found. Where it ends without an assembly, the closed form finds
+        the nearest one in this mode, for mechanisms that have one.
+
+        Parameters
+        ----------
+        joints : (n, a) array_like
+            Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
+        near : (d,) array_like, optional
+            The pose before the first row; home if not given.
+        mode : str, optional
+            ``"home"``, or a sign for every two-valued choice.
+
+        Returns
+        -------
+        (n, d) ndarray
+            Task coordinates, metres and radians; NaN in the rows for which no assembly was found.
+
+        Raises
+        ------
+        OpmError
+            A value is not a finite number.
         """
     def transform(
         self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None

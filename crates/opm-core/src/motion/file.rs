@@ -167,12 +167,12 @@ fn read_points(
     allow_coordinates(&table, &["t"], manipulator);
     let times = table.require("t", "an array of times in seconds").and_then(|value| {
         let times = all(value.items("an array of times in seconds")?.iter().map(Value::number))?;
-        if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
-            value.report(format!("has {} after {}, expected a later time", times[i], times[i - 1]));
-            return None;
-        }
         if let Some(time) = times.iter().find(|time| time.abs() > LARGEST) {
             value.report(format!("has {time:e}, expected at most {LARGEST:e} seconds"));
+            return None;
+        }
+        if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
+            value.report(format!("has {} after {}, expected a later time", times[i], times[i - 1]));
             return None;
         }
         Some(times)
@@ -195,7 +195,8 @@ fn read_column(value: &Value<'_>, quantity: Quantity, count: Option<usize>) -> O
     let values = value.items("a number, or one for each time")?;
     let values = all(values.iter().map(|value| value.quantity(quantity)))?;
     if let Some(expected) = count.filter(|&count| count != values.len()) {
-        value.report(format!("has {} values, expected {expected}, as `t` has", values.len()));
+        let (given, noun) = (values.len(), if values.len() == 1 { "value" } else { "values" });
+        value.report(format!("has {given} {noun}, expected {expected} as `t` has"));
         return None;
     }
     Some(values)
