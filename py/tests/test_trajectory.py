@@ -173,8 +173,7 @@ def test_a_table_is_that_of_the_command_line(manipulator, tmp_path):
 
 
 def test_actuated_joints_lead_back_to_the_motion(manipulator, followed):
-    columns = [followed.joint_names.index(name) for name in manipulator.actuated]
-    joints = followed.joints[:, columns].copy()
+    joints = followed.joints[:, manipulator.actuated].copy()
     joints[500] = 9
     poses = manipulator.forward_track(joints, near=followed.poses[0])
     assert np.isnan(poses[500]).all()
